@@ -1,0 +1,65 @@
+"""Units at the edge and the dictionary of quantities."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tribolab.errors import TribolabError, UnitError
+from tribolab.quantities import QUANTITIES, quantity, stamp
+from tribolab.units import conversion, to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("31 N", "N", 31.0),
+        ("7 cm", "m", 0.07),
+        ("1.4 Pa s", "Pa s", 1.4),
+        ("51 mJ/m^2", "J/m2", 0.051),
+        ("20 °C", "K", 293.15),
+        ("-200 gf", "N", -1.96133),
+        ("60 rpm", "rad/s", 2 * np.pi),
+        ("1e3 µm/s", "m/s", 1e-3),
+        (0.25, "m", 0.25),
+    ],
+)
+def test_text_with_a_unit_becomes_si(text, unit, expected):
+    assert to_si(text, unit) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("31", "has no unit"), ("N", "has no number"), ("3 parsecs/N", "load"), ("3 s", "load")],
+)
+def test_bad_units_say_what_and_where(text, words):
+    with pytest.raises(UnitError, match="load") as caught:
+        to_si(text, "N", name="load")
+    assert words in str(caught.value)
+
+
+def test_every_unit_in_the_dictionary_is_si():
+    for known in QUANTITIES.values():
+        assert conversion(known.unit, known.unit) == (1.0, 0.0), known.name
+
+
+def test_stamp_overwrites_what_arithmetic_carried_along():
+    run = stamp(
+        xr.Dataset(
+            {"friction_force": ("time", [1.0, 2.0]), "normal_force": ("time", [4.0, 4.0])},
+            coords={"time": [0.0, 1.0]},
+        )
+    )
+    with xr.set_options(keep_attrs=True):
+        ratio = (run.friction_force / run.normal_force).to_dataset(name="friction_coefficient")
+    assert stamp(ratio).friction_coefficient.attrs["units"] == "1"
+    assert run.friction_force.attrs["units"] == "N"
+    assert run.time.attrs["units"] == "s"
+
+
+def test_stamp_refuses_unknown_names_and_names_the_nearest():
+    with pytest.raises(TribolabError, match="normal_force"):
+        stamp(xr.Dataset({"normal_forse": ("time", [1.0])}))
+
+
+def test_derived_quantities_follow_their_base():
+    assert quantity("friction_force_sem").unit == "N"

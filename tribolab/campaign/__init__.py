@@ -1,0 +1,1 @@
+"""Campaigns: the typed campaign file and the pipeline over its runs."""

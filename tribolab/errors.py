@@ -1,0 +1,39 @@
+"""The errors a user can meet: each says what is wrong, where, and how to mend it."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class TribolabError(Exception):
+    """Base of every error that tribolab raises on purpose."""
+
+
+class ReadError(TribolabError):
+    """A raw file could not be understood."""
+
+
+class UnitError(TribolabError):
+    """A quantity has no unit, an unknown unit, or one of the wrong dimension."""
+
+
+class ConfigError(TribolabError):
+    """A campaign file or an option is wrong."""
+
+
+class AnalysisError(TribolabError):
+    """The data were read, but the question asked of them has no answer."""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return a hint naming the known words nearest to `word`, ready to end an error message.
+
+    >>> nearest("viscosty", ["viscosity", "radius"])
+    "; did you mean 'viscosity'?"
+    """
+    known = list(known)
+    close = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
+    if close:
+        return "; did you mean " + " or ".join(repr(c) for c in close) + "?"
+    return "; known are " + ", ".join(sorted(known)[:20]) if known else ""

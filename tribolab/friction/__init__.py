@@ -1,0 +1,1 @@
+"""What the friction signals say: segments, friction coefficients, measured curves."""

@@ -1,0 +1,1 @@
+"""Files to xarray: dialects, runs, scans, netCDF."""

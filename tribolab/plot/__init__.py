@@ -1,0 +1,1 @@
+"""Figures: one function per figure, a result in, a matplotlib Figure out."""

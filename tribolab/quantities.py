@@ -1,0 +1,154 @@
+"""The one dictionary of variables: what each is called, its symbol, SI unit and long name."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import xarray as xr
+
+from tribolab.errors import TribolabError, nearest
+
+
+class Quantity(NamedTuple):
+    """Name, symbol (as on paper), SI unit (as in netCDF attributes) and long name."""
+
+    name: str
+    symbol: str
+    unit: str
+    long_name: str
+
+
+_ROWS = [
+    # signals of a run
+    ("time", "t", "s", "time from the first sample"),
+    ("friction_force", "F_x", "N", "friction force"),
+    ("normal_force", "F_N", "N", "normal force"),
+    ("sliding_velocity", "v", "m/s", "sliding velocity, signed"),
+    ("position", "x", "m", "position along the sliding direction"),
+    ("normal_stress", "\\sigma_0", "Pa", "nominal normal stress"),
+    ("shear_stress", "\\sigma_f", "Pa", "shear stress"),
+    ("temperature", "T", "K", "temperature"),
+    ("ambient_pressure", "p_a", "Pa", "pressure beside the contact"),
+    ("set_speed", "v_set", "m/s", "set-point of the sliding speed"),
+    ("set_normal_force", "F_set", "N", "set-point of the normal force"),
+    ("rolling_speed", "u", "m/s", "rolling (entrainment) speed"),
+    ("rotation_speed", "\\omega", "rad/s", "rotation speed"),
+    ("slide_roll_ratio", "SRR", "1", "slide-to-roll ratio"),
+    ("film_thickness", "h", "m", "film thickness"),
+    ("height_displacement", "z", "m", "displacement normal to the contact"),
+    ("electrical_contact_resistance", "ECR", "1", "electrical contact resistance, relative"),
+    ("voltage", "U", "V", "raw sensor voltage"),
+    ("viscosity", "\\eta", "Pa s", "viscosity"),
+    ("shear_rate", "\\dot\\gamma", "1/s", "shear rate"),
+    ("step", "", "1", "number of the instrument's step"),
+    ("cycle", "", "1", "number of the cycle"),
+    # segments
+    ("segment", "", "1", "number of the segment"),
+    ("start", "t_0", "s", "start of the segment"),
+    ("stop", "t_1", "s", "end of the segment"),
+    ("trimmed_start", "t_0'", "s", "start of the trimmed segment"),
+    ("trimmed_stop", "t_1'", "s", "end of the trimmed segment"),
+    ("sliding_speed", "v", "m/s", "sliding speed"),
+    ("direction", "", "1", "sliding direction"),
+    ("sliding_distance", "s", "m", "sliding distance"),
+    ("samples", "n", "1", "number of samples"),
+    # friction
+    ("friction_coefficient", "\\mu", "1", "friction coefficient"),
+    ("effective_samples", "n_eff", "1", "effective number of independent samples"),
+    ("autocorrelation_time", "\\tau_int", "s", "integrated autocorrelation time"),
+    ("trend", "d\\mu/dt", "1/s", "linear trend of the friction coefficient"),
+    ("force_trend", "dF/dt", "N/s", "linear trend of the friction force"),
+    ("trend_change", "\\Delta\\mu", "1", "change along the linear trend over the trimmed segment"),
+    ("trend_p_value", "p", "1", "probability of such a trend in a steady signal"),
+    ("steady", "", "1", "1 where the trend is not significant, else 0"),
+    ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
+    ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
+    ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
+    ("half_loop", "", "N", "half the difference of the friction force between the strokes"),
+    ("pair", "", "1", "number of the pair of strokes"),
+    ("runs", "", "1", "number of runs"),
+    ("segments", "", "1", "number of segments"),
+    ("load", "F_N/L", "N/m", "normal force per unit length"),
+    # surfaces
+    ("x", "x", "m", "coordinate along the profile"),
+    ("y", "y", "m", "coordinate across the profile"),
+    ("height", "h", "m", "surface height"),
+    ("wavenumber", "q", "1/m", "wavenumber"),
+    ("psd_1d", "C_{1D}", "m3", "one-dimensional power spectrum"),
+    ("psd_2d", "C", "m4", "two-dimensional power spectrum"),
+    ("scans", "", "1", "number of scans"),
+    ("rms_roughness", "h_rms", "m", "root-mean-square roughness"),
+    ("rms_slope", "\\xi", "1", "root-mean-square slope"),
+    ("rms_curvature", "\\kappa", "1/m", "root-mean-square curvature"),
+    # contact, adhesion
+    ("pressure", "p", "Pa", "nominal contact pressure"),
+    ("contact_area_ratio", "A/A_0", "1", "relative contact area"),
+    ("separation", "\\bar u", "m", "mean interfacial separation"),
+    ("work_of_adhesion", "\\gamma", "J/m2", "work of adhesion"),
+    ("effective_work_of_adhesion", "\\gamma_eff", "J/m2", "effective work of adhesion"),
+    ("magnification", "\\zeta", "1", "magnification"),
+]
+
+QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
+
+_DERIVED = {
+    "_std": "standard deviation of the {}",
+    "_sem": "standard error of the {}",
+    "_low": "lower bound of the {}",
+    "_high": "upper bound of the {}",
+    "_between": "standard deviation between runs of the {}",
+    "_within": "standard deviation within runs of the {}",
+}
+
+
+def quantity(name: str) -> Quantity:
+    """Look a variable up; ``..._std``, ``..._sem``, ``..._low``, ``..._high`` follow their base.
+
+    Raises
+    ------
+    TribolabError
+        If there is no such quantity; the message names the nearest.
+
+    Examples
+    --------
+    >>> quantity("normal_force").unit
+    'N'
+    >>> quantity("friction_coefficient_std").long_name
+    'standard deviation of the friction coefficient'
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    for ending, text in _DERIVED.items():
+        base = QUANTITIES.get(name.removesuffix(ending))
+        if name.endswith(ending) and base:
+            return Quantity(name, base.symbol, base.unit, text.format(base.long_name))
+    raise TribolabError(f"no quantity is called '{name}'{nearest(name, QUANTITIES)}")
+
+
+def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
+    """Return the dataset with ``units`` and ``long_name`` of the dictionary on every variable.
+
+    What arithmetic carried along (F_x/F_N would still say "N") is overwritten. Flags (``*_qc``,
+    ``*_qc_tests``) keep their own attributes; text variables get a long name only if known.
+
+    Parameters
+    ----------
+    data
+        Dataset whose variable names stand in the dictionary.
+    **attrs
+        Attributes to add to the dataset.
+
+    Raises
+    ------
+    TribolabError
+        If a numeric variable's name is not in the dictionary.
+    """
+    result = data.copy()
+    for name in result.variables:
+        variable = result[name]
+        if str(name).endswith(("_qc", "_qc_tests")) or variable.dtype.kind in "OUSTM":
+            continue
+        known = quantity(str(name))
+        variable.attrs.update(units=known.unit, long_name=known.long_name)
+    result.attrs.update(attrs)
+    return result

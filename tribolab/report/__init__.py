@@ -1,0 +1,1 @@
+"""The report page, report.json and the tables."""

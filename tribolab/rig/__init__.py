@@ -1,0 +1,1 @@
+"""The virtual rig: raw files like a lab's, with the truth beside them."""

@@ -1,0 +1,1 @@
+"""Parameter sets named after the papers they come from."""

@@ -1,0 +1,1 @@
+"""Rough surfaces: form removal, power spectra, self-affine models, roughness parameters."""

@@ -1,0 +1,132 @@
+"""Units at the edge: text such as ``"31 N"`` becomes an SI float; inside there are only SI floats."""
+
+from __future__ import annotations
+
+import functools
+import re
+from typing import TYPE_CHECKING
+
+from tribolab.errors import UnitError
+
+if TYPE_CHECKING:
+    import pint
+
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+
+# How instruments write units that pint reads otherwise or not at all.
+_SPELLINGS = {
+    "microns": "um",
+    "micron": "um",
+    "sec": "s",
+    "secs": "s",
+    "msec": "ms",
+    "mm/sec": "mm/s",
+    "um/sec": "um/s",
+    "g": "gram",
+    "gf": "force_gram",
+    "kgf": "force_kilogram",
+    "-": "",
+    "1": "",
+    "deg": "degree",
+    "°": "degree",
+    "°C": "degC",
+    "C": "degC",
+    "ºC": "degC",
+    "Pa.s": "Pa*s",
+    "Pa s": "Pa*s",
+    "mPa s": "mPa*s",
+    "mPa.s": "mPa*s",
+}
+
+
+@functools.lru_cache(maxsize=1)
+def registry() -> pint.UnitRegistry:
+    """Return the one pint registry, made when first asked for."""
+    import pint
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+def _clean(unit: str) -> str:
+    unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
+    unit = _SPELLINGS.get(unit, unit)
+    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"**\1", unit)  # netCDF writes m2 and s-1
+    return unit.replace("^", "**").replace("²", "**2").replace("³", "**3")
+
+
+@functools.lru_cache(maxsize=512)
+def conversion(unit: str, si_unit: str) -> tuple[float, float]:
+    """Scale and offset that turn a number in `unit` into `si_unit`: ``si = scale * x + offset``.
+
+    Parameters
+    ----------
+    unit
+        Unit as an instrument or a person writes it: ``"mm/s"``, ``"µm"``, ``"gf"``, ``"degC"``.
+    si_unit
+        The unit wanted: ``"m/s"``, ``"K"``.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown or of another dimension.
+
+    Examples
+    --------
+    >>> conversion("mm/s", "m/s")
+    (0.001, 0.0)
+    """
+    import pint
+
+    ureg = registry()
+    try:
+        source, target = ureg.Unit(_clean(unit)), ureg.Unit(_clean(si_unit))
+        zero = ureg.Quantity(0.0, source).to(target).magnitude
+        one = ureg.Quantity(1.0, source).to(target).magnitude
+    except pint.DimensionalityError as error:
+        raise UnitError(f"unit '{unit}' cannot be turned into '{si_unit}'") from error
+    except Exception as error:  # pint raises many kinds on text that is no unit
+        raise UnitError(f"'{unit}' is not a unit that is known; write e.g. '{si_unit}'") from error
+    scale = float(one - zero)
+    # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
+    return float(f"{scale:.15g}"), float(zero)
+
+
+def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
+    """Turn ``"31 N"``, or a number that already is SI, into an SI float.
+
+    Parameters
+    ----------
+    value
+        Text with a number and a unit, or a bare number in `si_unit`.
+    si_unit
+        The SI unit wanted.
+    name
+        What the value is called where the user wrote it; the error names it.
+
+    Raises
+    ------
+    UnitError
+        If the text has no number, no unit, or a unit of another dimension.
+
+    Examples
+    --------
+    >>> to_si("7 cm", "m")
+    0.07
+    >>> to_si(0.07, "m")
+    0.07
+    """
+    if isinstance(value, bool):
+        raise UnitError(f"{name}: a number with a unit is wanted, e.g. '1 {si_unit}'; got {value}")
+    if isinstance(value, int | float):
+        return float(value)
+    match = _NUMBER.match(value)
+    if not match:
+        raise UnitError(f"{name}: '{value}' has no number; write e.g. '1 {si_unit}'")
+    number, unit = float(match[1]), match[2]
+    if not unit and si_unit not in ("", "1"):
+        raise UnitError(f"{name}: '{value}' has no unit; write e.g. '{value} {si_unit}'")
+    try:
+        scale, offset = conversion(unit, si_unit)
+    except UnitError as error:
+        raise UnitError(f"{name}: {error}; a value in {si_unit} is wanted") from error
+    return float(f"{number * scale + offset:.15g}")
