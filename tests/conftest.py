@@ -1,0 +1,24 @@
+"""Fixtures that every test file shares."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Reference material beside the project; tests on it run wherever it is present."""
+    if not SHARED.is_dir():
+        pytest.skip("the reference material (../shared) is not beside the project")
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def shared_data(shared: Path) -> Path:
+    """Real measured files."""
+    return shared / "data"
