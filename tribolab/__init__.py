@@ -28,7 +28,7 @@ _PUBLIC = {
     "half_loops": "tribolab.friction.coefficient",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "load_campaign": "tribolab.campaign.config",
-    "run_campaign": "tribolab.campaign.pipeline",
+    "run_campaign": "tribolab.report.run",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -40,7 +40,7 @@ __all__ = ["__version__", *_PUBLIC]
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.campaign.config import load_campaign
-    from tribolab.campaign.pipeline import run_campaign
+    from tribolab.report.run import run_campaign
     from tribolab.errors import TribolabError
     from tribolab.friction.coefficient import friction_coefficient, half_loops
     from tribolab.friction.segments import find_segments
