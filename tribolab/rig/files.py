@@ -21,8 +21,9 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
     Notes
     -----
-    All digits of a column are laid out in one byte matrix; leading zeros and absent signs are
-    masked away. Ten times faster than formatting number by number.
+    Loggers write fixed decimals; the fast CSV writers know the shortest form only (``1e-05``). All
+    digits of a column are laid out in one byte matrix; leading zeros and absent signs are masked
+    away.
 
     Examples
     --------
