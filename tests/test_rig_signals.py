@@ -153,6 +153,23 @@ def test_clock_shift_and_rate_bring_the_logs_together(seed):
     assert np.abs(run.motion_log.position.values[cut] - true).max() < 3e-7
 
 
+@pytest.mark.parametrize("name", ["dry", "glycerol", "rough"])
+def test_half_loops_of_the_readings_give_the_truth(name, request):
+    # the shortest analysis there is: zeros from the unloaded rest, then half the loop of each pair
+    run = request.getfixturevalue(name)
+    start = run.force_log.time.values < 9
+    fx, fz = (run.force_log[n].values for n in ("friction_force", "normal_force"))
+    mu = (fx - fx[start].mean()) / (fz - fz[start].mean())
+    means = np.array([mu[inside(run, row)].mean() for row in run.segments.itertuples()])
+    half_loops = (means[::2] - means[1::2]) / 2
+    truth = run.segments.friction_coefficient_trimmed_mean.values.reshape(-1, 2).mean(axis=1)
+    # three standard deviations of the normal force's drift, one of the friction force's, on 31 N
+    cell = rig.ForceCell()
+    np.testing.assert_allclose(
+        half_loops, truth, rtol=3 * cell.drift / 5 / 31, atol=cell.drift / 31
+    )
+
+
 def test_sticking_slips_abruptly_when_dry_and_round_in_glycerol(dry, glycerol):
     skewness = {}
     for name, run in (("dry", dry), ("glycerol", glycerol)):
