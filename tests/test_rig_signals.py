@@ -159,8 +159,9 @@ def test_half_loops_of_the_readings_give_the_truth(name, request):
     run = request.getfixturevalue(name)
     start = run.force_log.time.values < 9
     fx, fz = (run.force_log[n].values for n in ("friction_force", "normal_force"))
-    mu = (fx - fx[start].mean()) / (fz - fz[start].mean())
-    means = np.array([mu[inside(run, row)].mean() for row in run.segments.itertuples()])
+    fx, fz = fx - fx[start].mean(), fz - fz[start].mean()
+    within = [inside(run, row) for row in run.segments.itertuples()]
+    means = np.array([np.mean(fx[cut] / fz[cut]) for cut in within])
     half_loops = (means[::2] - means[1::2]) / 2
     truth = run.segments.friction_coefficient_trimmed_mean.values.reshape(-1, 2).mean(axis=1)
     # three standard deviations of the normal force's drift, one of the friction force's, on 31 N
