@@ -137,7 +137,7 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
         sign = _sign(part, signal, friction)
         x, y = envelope(part.distance / length, sign * signal.values[part.samples], budget)
         colour = _COLOURS[int(np.sign(part.direction))]
-        axes.plot(x, y, color=colour, linewidth=0.5, alpha=0.8, zorder=3)
+        axes.plot(x, y, color=colour, linewidth=0.5, alpha=0.65, zorder=3)
         numbers = {"distance_over_length": x, column(signal.name): y}
         figure.keep(panel, f"segment {part.number}", **numbers)
         counted = (x >= part.trimmed[0] / length) & (x <= part.trimmed[1] / length)
@@ -158,6 +158,7 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
         axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + 0.4 * span)
     axes.set_xlim(0, 1)
     axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.tick_params(top=False, right=False)
     axes.set_xticks([0, 0.5, 1], ["0", "0.5", "1"])
     left = panel if len(chosen) == len(group) else f"{panel} ({len(chosen)} of {len(group)})"
     axes.text(0.03, 0.96, left, transform=axes.transAxes, va="top", fontsize=7, zorder=6)

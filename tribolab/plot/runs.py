@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
@@ -159,8 +160,8 @@ def _over_distance(figure, axes, signal, parts: list[Stroke], friction) -> None:
         figure.keep("distance", f"segment {part.number}", **numbers)
         lowest.append(np.nanmin(y, initial=np.inf))
         highest.append(np.nanmax(y, initial=-np.inf))
-    long_name = "sliding distance, segment after segment" if known else "time within segments"
-    axes.set_xlabel(label(name, long_name))
+    known_text = r"sliding distance $s$ in the segments, one after the other (m)"
+    axes.set_xlabel(known_text if known else r"time $t$ in the segments, one after the other (s)")
     axes.set_ylabel(_ylabel(signal.name))
     axes.set_xlim(0, max(begins[-1] + lengths[-1], np.finfo(float).tiny))
     _room_above(axes, np.array(lowest + highest))
@@ -191,15 +192,22 @@ def _room_above(axes: Axes, values: np.ndarray) -> None:
 def _shade(axes: Axes, start, stop, inner_start, inner_stop, directions) -> None:
     """Shade the segments: the part that counts dark, the trimmed ends light."""
     across = blended_transform_factory(axes.transData, axes.transAxes)
-    for bounds, alpha in (((start, stop), 0.07), ((inner_start, inner_stop), 0.11)):
-        boxes = [[(a, 0), (a, 1), (b, 1), (b, 0)] for a, b in zip(*bounds, strict=True)]
-        colours = [_SHADE.get(int(np.sign(d)), SKY) for d in directions]
-        axes.add_collection(
-            PolyCollection(
-                boxes, facecolors=colours, alpha=alpha, linewidths=0, transform=across, zorder=1
-            ),
-            autolim=False,
-        )
+    signs = np.sign(np.asarray(directions, int))
+    for sign in np.unique(signs):
+        for bounds, alpha in (((start, stop), 0.07), ((inner_start, inner_stop), 0.11)):
+            boxes = [
+                Path([(a, 0), (a, 1), (b, 1), (b, 0), (a, 0)], closed=True)
+                for a, b in zip(bounds[0][signs == sign], bounds[1][signs == sign], strict=True)
+            ]
+            patch = PathPatch(  # one patch for all boxes of a kind keeps the file small
+                Path.make_compound_path(*boxes),
+                facecolor=_SHADE[int(sign)],
+                alpha=alpha,
+                linewidth=0,
+                transform=across,
+                zorder=1,
+            )
+            axes.add_artist(patch)
 
 
 def _speeds_above(axes: Axes, start, stop, speeds) -> None:
@@ -243,7 +251,9 @@ def _means(axes, start, stop, signal, friction, numbers, directions) -> None:
     mean = np.asarray(friction[signal.name], float)[numbers]
     if signal.name == "friction_coefficient":
         mean = mean * np.where(directions == 0, 1, directions)
-    axes.hlines(mean, start, stop, color=MEAN, linewidth=1.0, zorder=4)
+    gap = np.full(mean.size, np.nan)
+    x, y = np.c_[start, stop, gap].ravel(), np.c_[mean, mean, gap].ravel()
+    axes.plot(x, y, color=MEAN, linewidth=1.0, zorder=4, scalex=False, scaley=False)
 
 
 def _key(axes: Axes, parts: list[Stroke], means: bool) -> None:
