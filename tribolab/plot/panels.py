@@ -26,7 +26,7 @@ from tribolab.plot.style import (
 
 _MOST_PANELS = 24
 _MOST_LINES = 6  # per direction and panel
-_POINTS = 2400  # pixel columns in the whole figure, which keeps it below 150 kB
+_POINTS = 2000  # pixel columns in the whole figure, which keeps it below 150 kB
 _TOLERANCE = 0.05
 _COLOURS = {1: FORWARD, -1: BACKWARD, 0: SKY}
 

@@ -236,6 +236,29 @@ def _shorter(match: re.Match[str]) -> str:
     return f' d="{path}"'
 
 
+_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # never a scale
+_GROUP_ID = re.compile(r'<g id="[^"]*"')
+_SYMBOL = re.compile(r'<path id="([^"]+)"[^>]*? style="([^"]*)"')
+_USE = re.compile(r'<use xlink:href="#([^"]+)"([^>]*?) style="([^"]*)"/>')
+_BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
+
+
+def _smaller(text: str) -> str:
+    """Leave out what the drawing does not need: decimals, indents, ids of groups, said-twice styles."""
+    text = _DRAWN.sub(_shorter, _COMMENT.sub("", text))
+    text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
+    styles = dict(_SYMBOL.findall(text))
+
+    def use(match: re.Match[str]) -> str:
+        name, place, own = match.groups()
+        return match[0] if styles.get(name) != own else f'<use xlink:href="#{name}"{place}/>'
+
+    text = re.sub(r"\n\s*", "\n", _GROUP_ID.sub("<g", _USE.sub(use, text)))
+    for _ in range(2):  # a bare group around one symbol
+        text = _BARE_GROUP.sub(r"\1", text)
+    return text
+
+
 def svg(figure: Figure) -> str:
     """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
 
@@ -244,8 +267,7 @@ def svg(figure: Figure) -> str:
     buffer = io.StringIO()
     with paper_style():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
-    text = _COMMENT.sub("", buffer.getvalue())
-    return re.sub(r"\n\s+", "\n", _DRAWN.sub(_shorter, text))
+    return _smaller(buffer.getvalue())
 
 
 def save(figure: Figure, path: str | Path) -> Path:
