@@ -1,4 +1,4 @@
-"""Made-up results for the tests of the figures and the report, built as the analysis builds them."""
+"""Made-up results for the tests of figures and report, as the analysis builds them."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,7 @@ SPEEDS = (1e-6, 4.64e-5, 1e-2)
 def made_run(speeds=SPEEDS, load=31.0, mu=0.8, seed=0, samples=400, stroke=2e-3, rest=2.0):
     """Return run, segments and friction of strokes forward and backward at each speed."""
     rng = np.random.default_rng(seed)
-    time, velocity, direction_of = [], [], []
+    time, velocity = [], []
     now, rows, left_out = 0.0, [], []
 
     def add(duration, n, v):

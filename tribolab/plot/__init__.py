@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tribolab.plot.curves import half_loop, stribeck
+from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
-from tribolab.plot.panels import strokes
 from tribolab.plot.style import figure_data, paper_style, save, svg
 
 __all__ = [

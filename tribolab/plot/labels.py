@@ -113,7 +113,7 @@ def _known_characters() -> frozenset[int]:
 
 
 def plain(text: object) -> str:
-    """Make a name from a user's file safe to draw: no mathtext, no unknown letters, one line.
+    r"""Make a name from a user's file safe to draw: no mathtext, no unknown letters, one line.
 
     A letter that the figures' font does not have is drawn as a box; the page beside the figure
     has the name in full.
@@ -121,7 +121,7 @@ def plain(text: object) -> str:
     Examples
     --------
     >>> plain("load $31$")
-    'load \\\\$31\\\\$'
+    'load \\$31\\$'
     """
     line = "".join(c if c.isprintable() else " " for c in str(text))
     line = "".join(c if ord(c) in _known_characters() else "□" for c in line)

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.reduce import envelope
 from tribolab.plot.labels import column, number, plain, speed_text
+from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal
 from tribolab.plot.signals import strokes as find_strokes
 from tribolab.plot.style import (

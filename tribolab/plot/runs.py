@@ -10,8 +10,8 @@ from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
-from tribolab.plot.reduce import envelope
 from tribolab.plot.labels import column, label, plain, speed_text
+from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Stroke, main_signal, strokes
 from tribolab.plot.style import (
     BACKWARD,

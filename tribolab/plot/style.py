@@ -244,7 +244,7 @@ _BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
 
 
 def _smaller(text: str) -> str:
-    """Leave out what the drawing does not need: decimals, indents, ids of groups, said-twice styles."""
+    """Leave out what the drawing does not need: decimals, indents, ids, styles said twice."""
     text = _DRAWN.sub(_shorter, _COMMENT.sub("", text))
     text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
     styles = dict(_SYMBOL.findall(text))
