@@ -19,7 +19,7 @@ from functools import partial
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
-from tribolab.errors import AnalysisError, ConfigError, TribolabError
+from tribolab.errors import AnalysisError, ConfigError
 
 # Two BLAS threads in each of many workers are slower than one, by up to fifty times.
 _ONE_THREAD = {
@@ -46,7 +46,7 @@ class WorkerDied(AnalysisError):
 
 
 def default_jobs() -> int:
-    """Number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -313,9 +313,3 @@ def _begin_worker() -> None:
 
     threading.Thread(target=follow, daemon=True).start()
 
-
-def failure(error: BaseException) -> tuple[str, str]:
-    """Return one line that says why something failed, and the class name of the error."""
-    name = type(error).__name__
-    text = " ".join(str(error).split())
-    return (text if isinstance(error, TribolabError) else f"{name}: {text}", name)

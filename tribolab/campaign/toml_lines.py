@@ -15,7 +15,7 @@ def _parts(dotted: str) -> tuple[str, ...]:
 
 
 def line_of(text: str, where: Sequence[str | int]) -> int | None:
-    """Line (from 1) on which the key at `where` stands, or the nearest table above it.
+    r"""Return the line (from 1) on which the key at `where` stands, or the nearest table above it.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
 
     Examples
     --------
-    >>> line_of('[[run]]\\nfiles = "a"\\n[[run]]\\nfiles = "b"\\n', ["run", 1, "files"])
+    >>> line_of('[[run]]\nfiles = "a"\n[[run]]\nfiles = "b"\n', ["run", 1, "files"])
     4
     """
     found: dict[tuple[str | int, ...], int] = {}
