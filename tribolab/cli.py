@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tribolab.cli_words import progress_bar, reported, show_outcome, show_truth
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome
+
+USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -70,15 +76,16 @@ def demo(
 
         tribolab demo /tmp/look
     """
-    with reported(debug):
+    with _reported(debug):
         from tribolab.campaign.executor import default_jobs
         from tribolab.report.run import run_campaign
+        from tribolab.report.terminal import truth_lines
         from tribolab.report.truth import compare_with_truth
         from tribolab.rig import simulate_campaign
 
         campaign = folder / "campaign.toml"
         compared = []
-        with progress_bar(quiet) as progress:
+        with _progress(quiet) as progress:
             if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
                 simulate_campaign(folder, jobs=jobs or default_jobs(), progress=progress)
             outcome = run_campaign(
@@ -87,8 +94,9 @@ def demo(
                 progress=progress,
                 finish=lambda outcome: compared.append(compare_with_truth(outcome, folder)),
             )
-        code = show_outcome(outcome)
-        show_truth(compared[0], folder, outcome)
+        code = _show(outcome)
+        for line in truth_lines(compared[0], folder, outcome):
+            typer.echo(line)
     raise typer.Exit(code)
 
 
@@ -126,14 +134,14 @@ def run(
 
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
-    with reported(debug):
+    with _reported(debug):
         from tribolab.report.run import run_campaign
 
-        with progress_bar(quiet) as progress:
+        with _progress(quiet) as progress:
             outcome = run_campaign(
                 campaign, output=output, jobs=jobs, scheduler=scheduler, progress=progress
             )
-        code = show_outcome(outcome)
+        code = _show(outcome)
     raise typer.Exit(code)
 
 
@@ -157,11 +165,11 @@ def simulate(
 
         tribolab run practice/campaign.toml
     """
-    with reported(debug):
+    with _reported(debug):
         from tribolab.campaign.executor import default_jobs
         from tribolab.rig import simulate_campaign
 
-        with progress_bar(quiet) as progress:
+        with _progress(quiet) as progress:
             campaign = simulate_campaign(
                 folder,
                 seed,
@@ -189,15 +197,93 @@ def info(
 ) -> None:
     """Show how raw files are understood, before anything is computed.
 
-        tribolab info raw/friction/*.csv
+    tribolab info raw/friction/*.csv
 
-        tribolab info odd.txt --instrument my_tribometer.toml
+    tribolab info odd.txt --instrument my_tribometer.toml
     """
-    with reported(debug):
-        from tribolab.cli_words import show_files
+    with _reported(debug):
+        from tribolab.errors import ReadError
+        from tribolab.io.runs import describe
 
-        code = show_files(files, instrument)
-    raise typer.Exit(code)
+        unreadable = 0
+        for file in files:
+            try:
+                typer.echo(describe(file, instrument))
+            except ReadError as error:  # the other files want to be seen too
+                unreadable += 1
+                typer.echo(f"tribolab: {error}", err=True)
+    raise typer.Exit(UNREADABLE if unreadable else 0)
+
+
+@contextlib.contextmanager
+def _reported(debug: bool) -> Iterator[None]:
+    """Turn an error into one short message on stderr and an exit code."""
+    from tribolab.errors import ConfigError, TribolabError, UnitError
+
+    try:
+        yield
+    except (ConfigError, UnitError) as error:
+        _fail(str(error), USAGE, debug)
+    except TribolabError as error:
+        _fail(str(error), UNREADABLE, debug)
+    except KeyboardInterrupt:
+        _fail("interrupted; results of before are as they were", INTERRUPTED, debug)
+    except (typer.Exit, BrokenPipeError):
+        raise
+    except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
+        from tribolab.campaign.work import explain
+
+        _fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
+
+
+def _fail(message: str, code: int, debug: bool) -> None:
+    if debug:
+        raise
+    typer.echo(f"tribolab: {message}", err=True)
+    raise typer.Exit(code) from None
+
+
+@contextlib.contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[str, int, int], None] | None]:
+    """Show bars with the time left on a terminal; say nothing in a pipe."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (TextColumn("{task.description:>10}"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as bars:
+        stages = {}
+
+        def tell(stage: str, done: int, total: int) -> None:
+            if stage not in stages:
+                stages[stage] = bars.add_task(stage, total=total)
+            bars.update(stages[stage], completed=done, total=total)
+
+        yield tell
+
+
+def _show(outcome: Outcome) -> int:
+    """Show what a campaign came to; return the exit code."""
+    from tribolab.report import terminal
+
+    table = terminal.outcome_table(outcome)
+    if table.row_count:
+        terminal.console().print(table)
+    for line in terminal.outcome_lines(outcome):
+        typer.echo(line)
+    for line in terminal.failure_lines(outcome):
+        typer.echo(f"tribolab: {line}", err=True)
+    if not outcome.segments:
+        typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
+    return UNREADABLE if outcome.failed or not outcome.segments else 0
 
 
 def main() -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.campaign.problems import Problem
-from tribolab.errors import ReadError, nearest
+from tribolab.errors import nearest
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
@@ -153,10 +153,7 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     from tribolab.io.runs import group_files
 
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
-    try:
-        return group_files(files, instrument)
-    except (ReadError, OSError):  # one file that cannot be recognised must not stop the others
-        return [[file] for file in files]
+    return group_files(files, instrument)
 
 
 def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) -> PlannedRun:

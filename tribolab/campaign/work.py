@@ -209,10 +209,11 @@ def _write(groups: dict[str | None, xr.Dataset], path: Path) -> None:
         with _NETCDF:
             for group, data in groups.items():
                 write_netcdf(data, path, group=group)
-    except (OSError, RuntimeError) as error:
+    except (OSError, RuntimeError, TribolabError) as error:
         # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"
         full = shutil.disk_usage(path.parent).free < _LITTLE if path.parent.is_dir() else False
-        number = errno.ENOSPC if full else getattr(error, "errno", None)
+        cause = error.__cause__ if isinstance(error, TribolabError) else error
+        number = errno.ENOSPC if full else getattr(cause, "errno", None)
         path.unlink(missing_ok=True)
         if number == errno.ENOSPC:
             raise OutputError(

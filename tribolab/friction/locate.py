@@ -51,7 +51,8 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
         What counts as constant.
     """
     pieces = _locate(time, velocity, limits, None, None)
-    return _proven(_settled(_fused(pieces, limits), limits), limits)
+    pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
+    return _proven(pieces, limits)
 
 
 def block_size(samples: int, most: int = MOST_BLOCKS) -> int:
@@ -191,15 +192,32 @@ def _same(a: Piece, b: Piece, limits: Limits) -> bool:
     return apart <= max(limits.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
 
 
+def _bridged(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Join two plateaus of one velocity across a disturbance that is short beside both."""
+    result: list[Piece] = []
+    for piece in pieces:
+        if len(result) > 1 and piece.kind == "constant" == result[-2].kind:
+            left, odd = result[-2], result[-1]
+            brief = 20 * (odd.last - odd.first) < piece.last - left.first
+            wide = limits._replace(resolution=2 * limits.resolution)
+            if odd.kind == "too short" and brief and _same(left, piece, wide):
+                del result[-2:]
+                result += _fused([left, piece._replace(first=odd.first)], wide)
+                continue
+        result.append(piece)
+    return result
+
+
 def _proven(pieces: list[Piece], limits: Limits) -> list[Piece]:
-    """Call a short piece a ramp if noise hides whether it is constant and it leads to longer ones.
-    """
+    """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         around = pieces[max(i - 1, 0) : i] + pieces[i + 1 : i + 2]
+        size = piece.last - piece.first
         longest = max((p.last - p.first for p in around), default=0)
         uncertain = np.sqrt(12) * piece.error * 3 > limits.drift * abs(piece.velocity)
-        if piece.kind == "constant" and uncertain and 4 * (piece.last - piece.first) < longest:
+        speck = 10 * size < max((p.last - p.first for p in around if p.kind == "ramp"), default=0)
+        if piece.kind == "constant" and ((uncertain and 4 * size < longest) or speck):
             result[i] = piece._replace(kind="ramp")
     return _fused(result, limits)
 

@@ -80,14 +80,17 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
             spread = max(
                 np.median(chosen) / 0.6745, np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)])
             )
-            levels.append((np.median(middle[inside]), spread))
+            levels.append((np.median(middle[inside]), spread, chosen.size))
     if not levels:
         return Noise(float(np.median(difference) / 0.6745), 0.0)
-    speed, spread = np.array(levels).T
+    speed, spread, count = np.array(levels).T
     floor = float(spread.min())
     high = speed > 0.03 * top
     relative = np.sqrt(np.maximum(spread[high] ** 2 - floor**2, 0)) / speed[high]
-    return Noise(floor, float(np.median(relative)) if high.any() else 0.0)
+    # most blocks lie on plateaus; bins with few blocks are ramps and reversals
+    order = np.argsort(relative)
+    share = np.cumsum(count[high][order]) / count[high].sum()
+    return Noise(floor, float(relative[order][np.searchsorted(share, 0.5)]))
 
 
 def find_breaks(
@@ -191,7 +194,10 @@ def straight_pieces(
 ) -> Pieces:
     """Merge neighbours that one straight line describes as well as two, best first."""
     starts = np.concatenate([[0], breaks])
-    variance = noise.variance(velocity) + (1e-4 * velocity) ** 2
+    # the weight follows the mean of the piece: single readings would draw the mean towards zero
+    size = np.diff(np.append(starts, time.size))
+    level = np.repeat(np.add.reduceat(velocity, starts) / size, size)
+    variance = noise.variance(level) + (1e-4 * level) ** 2
     variance = variance + max((1e-7 * np.max(np.abs(velocity))) ** 2, 1e-60)
     m = _moments(time, velocity, variance, starts)
     while m.shape[1] > 1:

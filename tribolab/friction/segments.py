@@ -55,7 +55,8 @@ def find_segments(
         Shortest segment [s].
     max_gap
         Longest pause between two samples within a segment [s]; by default a twentieth of the
-        segment and no less than 20 usual sample spacings.
+        segment (a quarter if ``position`` shows that the speed held) and no less than 20 usual
+        sample spacings.
     rest_speed
         Speed below which the slider is at rest [m/s]; by default 1e-5 of the highest speed or
         a twentieth of the noise of a reading, whichever is larger.

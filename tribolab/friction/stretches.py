@@ -58,8 +58,8 @@ def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
     time, velocity = finite(run, "sliding_velocity")
     if time.size < 2:
         return _nothing(run, time.size)
-    pieces = locate(time, velocity, limits)
-    return _in_time(run, time, pieces, limits, max_gap)
+    pieces, share = locate(time, velocity, limits), 0.05
+    return _in_time(run, time, pieces, limits, max_gap, share)
 
 
 def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
@@ -73,7 +73,8 @@ def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
     pieces[-1] = pieces[-1]._replace(last=time.size)
     pieces = _kinks(time, position, pieces, size)
     pieces = [_with_slope(time, position, p) for p in pieces]
-    return _in_time(run, time, pieces, limits, max_gap)
+    share = 0.25  # one straight line on both sides of a pause shows that the speed held
+    return _in_time(run, time, pieces, limits, max_gap, share)
 
 
 def _with_slope(time: np.ndarray, position: np.ndarray, piece: Piece) -> Piece:
@@ -93,9 +94,13 @@ def _kinks(
         left, right = result[i], result[j]
         if right.first - left.last > 3 * size:
             continue
+        near = 20 * size  # the speed wanders within a plateau: only its end tells where it ends
         (a, va), (b, vb) = (
-            slopes.line(time[p.first : p.last], position[p.first : p.last])
-            for p in (left, right)
+            slopes.line(time[first:last], position[first:last])
+            for first, last in (
+                (max(left.first, left.last - near), left.last),
+                (right.first, min(right.last, right.first + near)),
+            )
         )
         crossing = (a - b) / (vb - va) if va != vb else np.nan
         index = int(np.searchsorted(time, crossing)) if np.isfinite(crossing) else -1
@@ -119,6 +124,7 @@ def _in_time(
     pieces: list[Piece],
     limits: Limits,
     max_gap: float | None,
+    share: float,
 ) -> list[Stretch]:
     """Pieces in run time, split at gaps; a gap is where samples are missing or not numbers."""
     result: list[Stretch] = []
@@ -126,7 +132,7 @@ def _in_time(
     if time[0] > whole[0]:
         result.append(Stretch(float(whole[0]), float(time[0]), "not a number", np.nan))
     for piece in pieces:
-        at = _gaps(time, piece, max_gap)
+        at = _gaps(time, piece, max_gap, share)
         edges = [piece.first, *(at + 1), piece.last]
         for first, last in zip(edges[:-1], edges[1:], strict=True):
             kind = piece.kind
@@ -149,7 +155,7 @@ def _wide(time: np.ndarray, index: int, piece: Piece) -> bool:
     return bool(time[index + 1] - time[index] > 3 * usual)
 
 
-def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None) -> np.ndarray:
+def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -> np.ndarray:
     """Samples of a plateau after which too long a pause follows."""
     inside = time[piece.first : piece.last]
     if piece.kind != "constant" or inside.size < 2:
@@ -160,7 +166,7 @@ def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None) -> np.ndarray:
     longest = max_gap
     if longest is None:
         usual = float(np.median(spans)) / step
-        longest = max(20 * usual, 0.05 * float(inside[-1] - inside[0]))
+        longest = max(20 * usual, share * float(inside[-1] - inside[0]))
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     found = []
     for block in wide:

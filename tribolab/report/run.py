@@ -72,9 +72,7 @@ def run_campaign(
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
         with given as pool:
-            outcome = process(
-                campaign, folder, executor=pool, previous=place, progress=progress
-            )
+            outcome = process(campaign, folder, executor=pool, previous=place, progress=progress)
             write_report(outcome, executor=pool, progress=progress)
         if finish is not None:
             finish(outcome)
