@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.labels import column, number, plain, speed_text
+from tribolab.plot.labels import aligned, column, plain, speed_text
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal
 from tribolab.plot.signals import strokes as find_strokes
@@ -183,7 +183,7 @@ def _mean_text(group: list[Stroke], signal: Signal, friction) -> str:
     means = np.array([float(friction[signal.name][part.number]) for part in group])
     if not np.isfinite(means).any():
         return ""
-    return rf"$\mu$ = {number(float(np.nanmean(means)))}"
+    return rf"$\mu$ = {aligned(float(np.nanmean(means)))}"
 
 
 def _key(figure: PaperFigure, parts: list[Stroke], means: bool, height: float) -> None:

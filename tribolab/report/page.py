@@ -13,7 +13,7 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup
 
-from tribolab.plot.labels import force_text, number, speed_text
+from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import wording
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
@@ -53,6 +53,7 @@ def render(document: dict[str, Any], folder: Path) -> str:
     )
     environment.filters |= {
         "number": lambda value, digits=3: "–" if value is None else number(value, digits),
+        "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
         "speed": lambda value: speed_text(float("nan") if value is None else value),
         "force": lambda value: "–" if value is None else force_text(value),
         "duration": wording.duration,
