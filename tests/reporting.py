@@ -151,8 +151,18 @@ def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS,
         count = parts[1].sizes["segment"]
         outcomes.append(
             RunOutcome(
-                run_name, ("raw/made.csv",), surface, medium, load, "done", "", "", data_file,
-                False, 0.5, count,
+                run_name,
+                ("raw/made.csv",),
+                surface,
+                medium,
+                load,
+                "done",
+                "",
+                "",
+                data_file,
+                False,
+                0.5,
+                count,
             )  # fmt: skip
         )
         groups.setdefault((surface, medium, load), []).append((run_name, mu))

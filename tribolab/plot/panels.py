@@ -75,13 +75,14 @@ def strokes(
     # the widest grid that leaves the fewest places empty
     across = min((5, 4, 3), key=lambda n: -len(shown) % n) if len(shown) > 5 else len(shown)
     down = -(-len(shown) // across)
-    height = 27.0 * down + (down - 1) * 5.0
+    panel_height = {1: 52.0, 2: 40.0}.get(across, 27.0)
+    height = panel_height * down + (down - 1) * 5.0
     lines = sum(len(_chosen(group)) for group in shown)
-    budget = int(np.clip(_POINTS // lines, 30, 160))
+    budget = int(np.clip(_POINTS // lines, 30, 300))
     with paper_style():
         figure = new_figure(DOUBLE_MM, height + 19.0)
         grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / 27.0)
+        margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / panel_height)
         for axes, group in zip(grid.flat, shown, strict=False):
             _panel(figure, axes, group, signal, friction, budget)
         for axes in grid.flat[len(shown) :]:
@@ -92,7 +93,9 @@ def strokes(
         unit = "" if signal.name == "friction_coefficient" else " (N)"
         word = r"friction coefficient $\mu$" if not unit else r"friction force $F_x$ (N)"
         figure.supylabel(word, x=2.5 / DOUBLE_MM, fontsize=8, va="center")
-        figure.supxlabel("distance slid / length of the stroke (1)", y=0.008, fontsize=8)
+        known = np.isfinite([part.speed for part in parts]).all() or "position" in run
+        share = "distance slid / length of the stroke" if known else "time / duration of the stroke"
+        figure.supxlabel(share, y=0.8 / (height + 19.0), fontsize=8)
         _key(figure, parts, friction is not None, height + 19.0)
         heading = plain(title)
         if len(shown) < len(groups):
@@ -161,9 +164,10 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
     axes.tick_params(top=False, right=False)
     axes.set_xticks([0, 0.5, 1], ["0", "0.5", "1"])
     left = panel if len(chosen) == len(group) else f"{panel} ({len(chosen)} of {len(group)})"
-    axes.text(0.03, 0.96, left, transform=axes.transAxes, va="top", fontsize=7, zorder=6)
+    inset = {"textcoords": "offset points", "xycoords": "axes fraction", "va": "top"}
+    axes.annotate(left, (0, 1), xytext=(3, -3), fontsize=7, zorder=6, **inset)
     text = _mean_text(group, signal, friction)
-    axes.text(0.97, 0.96, text, transform=axes.transAxes, va="top", ha="right", fontsize=7)
+    axes.annotate(text, (1, 1), xytext=(-3, -3), ha="right", fontsize=7, zorder=6, **inset)
 
 
 def _sign(part: Stroke, signal: Signal, friction) -> float:
