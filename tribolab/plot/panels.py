@@ -84,7 +84,7 @@ def strokes(
         grid = figure.subplots(down, across, squeeze=False)
         margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / panel_height)
         for axes, group in zip(grid.flat, shown, strict=False):
-            _panel(figure, axes, group, signal, friction, budget)
+            _panel(figure, axes, group, signal, friction, budget, narrow=across > 4)
         for axes in grid.flat[len(shown) :]:
             axes.remove()
         for k, axes in enumerate(grid.flat[: len(shown)]):
@@ -131,7 +131,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
     return [part for side in sides for part in _evenly(side, _MOST_LINES)]
 
 
-def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> None:
+def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int, narrow: bool) -> None:
     panel = speed_text(float(np.median([part.speed for part in group])))
     chosen = _chosen(group)
     every = []
@@ -155,10 +155,11 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
         axes.axvspan(a, b, color="#E4E4E4", linewidth=0, zorder=0)
     values = np.concatenate(every)
     values = values[np.isfinite(values)]
+    room = 0.6 if narrow else 0.4  # for the text, of two lines in a narrow panel
     if values.size:
         low, high = values.min(), values.max()
         span = max(high - low, 0.02 * abs(high)) or 1.0
-        axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + 0.4 * span)
+        axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + room * span)
     axes.set_xlim(0, 1)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.tick_params(top=False, right=False)
@@ -167,7 +168,9 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
     inset = {"textcoords": "offset points", "xycoords": "axes fraction", "va": "top"}
     axes.annotate(left, (0, 1), xytext=(3, -3), fontsize=7, zorder=6, **inset)
     text = _mean_text(group, signal, friction)
-    axes.annotate(text, (1, 1), xytext=(-3, -3), ha="right", fontsize=7, zorder=6, **inset)
+    corner, side = ((0, 1), (3, -11.5)) if narrow else ((1, 1), (-3, -3))
+    align = "left" if narrow else "right"
+    axes.annotate(text, corner, xytext=side, ha=align, fontsize=7, zorder=6, **inset)
 
 
 def _sign(part: Stroke, signal: Signal, friction) -> float:
