@@ -1,6 +1,7 @@
 """The pipeline over the runs: all that can be done is done, what cannot be says why."""
 
 import errno
+import multiprocessing
 import os
 import pickle
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -160,9 +161,7 @@ def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
     assert friction.attrs["trim"] == 0.12
 
 
-def test_another_version_and_a_damaged_file_are_done_again(
-    campaign, done, tmp_path, monkeypatch
-):
+def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_path, monkeypatch):
     first = again(campaign, done, tmp_path / "first")
     damaged = first.folder / first.runs[1].data_file
     content = damaged.read_bytes()
@@ -181,31 +180,22 @@ def test_a_campaign_whose_files_are_gone_says_so(campaign, tmp_path):
         process(loaded, tmp_path)
 
 
-@pytest.mark.slow
-def test_processes_and_threads_give_what_one_process_gives(original, done, tmp_path):
-    with workers(2) as pool, ThreadPoolExecutor(2) as threads:
-        for name, executor in (("processes", pool), ("threads", threads)):
-            folder = tmp_path / name
-            folder.mkdir()
-            outcome = process(load_campaign(original), folder, executor=executor)
-            assert outcome.curves == done.curves
-            assert outcome.sources == done.sources
-            for run in outcome.runs:
-                one, other = (
-                    read_netcdf(f / run.data_file, group="friction")
-                    for f in (folder, done.folder)
-                )
-                xr.testing.assert_equal(one, other)
+def same_results(outcome, other):
+    assert outcome.curves == other.curves
+    assert outcome.sources == other.sources
+    for run in outcome.runs:
+        one, two = (
+            read_netcdf(o.folder / run.data_file, group="friction") for o in (outcome, other)
+        )
+        xr.testing.assert_equal(one, two)
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_costs_nothing(original, tmp_path):
-    import multiprocessing
-
+def test_processes_give_what_this_process_gives_even_if_one_is_killed(original, done, tmp_path):
     killed = []
 
-    def progress(stage, done, total):
-        if stage == "runs" and done == 1:
+    def progress(stage, count, total):
+        if stage == "runs" and count == 1:
             victim = multiprocessing.active_children()[0]
             victim.kill()
             killed.append(victim.pid)
@@ -213,8 +203,12 @@ def test_a_worker_that_is_killed_costs_nothing(original, tmp_path):
     with workers(2) as pool:
         outcome = process(load_campaign(original), tmp_path, executor=pool, progress=progress)
     assert len(killed) == 1
-    assert all(run.done for run in outcome.runs)
-    assert len(outcome.curves) == 2
+    same_results(outcome, done)
+
+
+def test_threads_give_what_this_process_gives(original, done, tmp_path):
+    with ThreadPoolExecutor(2) as threads:
+        same_results(process(load_campaign(original), tmp_path, executor=threads), done)
 
 
 class Losing(ThreadPoolExecutor):
@@ -252,9 +246,8 @@ def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, 
         process(load_campaign(original), tmp_path)
 
 
-def test_a_force_log_without_speed_is_a_run_that_failed_not_a_number(original, tmp_path):
-    campaign = copied(original, tmp_path)
+def test_a_force_log_without_its_motion_log_fails_and_says_what_is_missing(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
     outcome = process(load_campaign(campaign), tmp_path)
-    assert [run.name for run in outcome.failed] == [RUNS[3]]
+    assert [run.name for run in outcome.failed] == [f"{RUNS[3]}_force"]
     assert "sliding speed" in outcome.failed[0].reason

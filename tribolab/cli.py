@@ -204,11 +204,12 @@ def info(
     with _reported(debug):
         from tribolab.errors import ReadError
         from tribolab.io.runs import describe
+        from tribolab.report.terminal import file_lines
 
         unreadable = 0
         for file in files:
             try:
-                typer.echo(describe(file, instrument))
+                typer.echo("\n".join(file_lines(describe(file, instrument))))
             except ReadError as error:  # the other files want to be seen too
                 unreadable += 1
                 typer.echo(f"tribolab: {error}", err=True)
