@@ -1,8 +1,13 @@
 """Made-up results for the tests of figures and report, as the analysis builds them."""
 
+import json
+
 import numpy as np
 import xarray as xr
 
+from tribolab.campaign.config import Campaign
+from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.io.netcdf import write_netcdf
 from tribolab.quantities import stamp
 
 SPEEDS = (1e-6, 4.64e-5, 1e-2)
@@ -116,3 +121,68 @@ def made_curve(speeds=SPEEDS, mu=0.8, surface="Sb-R", medium="glycerol", load=31
         {"sliding_speed": speeds},
     )
     return stamp(curve, surface=surface, medium=medium, normal_force_N=load)
+
+
+CAMPAIGN = """[campaign]
+name = {name}
+
+[[run]]
+files = "*.csv"
+"""
+
+
+def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS, samples=400):
+    """Write data files of made runs and return their outcome.
+
+    `runs` has (name, surface, medium, load, mu) of each run, `failed` (name, reason).
+    """
+    campaign_file = folder / "campaign.toml"
+    (folder / "raw").mkdir(parents=True)
+    (folder / "raw" / "made.csv").write_text("t,F\n0,1\n")
+    campaign_file.write_text(CAMPAIGN.format(name=json.dumps(name)), encoding="utf-8")
+    results = folder / "results"
+    (results / "data").mkdir(parents=True)
+    outcomes, groups = [], {}
+    for number, (run_name, surface, medium, load, mu) in enumerate(runs):
+        data_file = f"data/run{number}.nc"
+        parts = made_run(speeds, load or 31.0, mu, seed=number, samples=samples)
+        for group, data in zip(("run", "segments", "friction"), parts, strict=True):
+            write_netcdf(data, results / data_file, group=group)
+        count = parts[1].sizes["segment"]
+        outcomes.append(
+            RunOutcome(
+                run_name,
+                ("raw/made.csv",),
+                surface,
+                medium,
+                load,
+                "done",
+                "",
+                "",
+                data_file,
+                False,
+                0.5,
+                count,
+            )  # fmt: skip
+        )
+        groups.setdefault((surface, medium, load), []).append((run_name, mu))
+    for run_name, reason in failed:
+        outcomes.append(
+            RunOutcome(run_name, ("raw/bad.csv",), "", "", None, "failed", reason, "ReadError")
+        )
+    curves = []
+    for number, ((surface, medium, load), members) in enumerate(groups.items()):
+        data_file = f"data/curve{number}.nc"
+        curve = made_curve(speeds, members[0][1], surface, medium, load or float("nan"))
+        write_netcdf(curve, results / data_file)
+        names = tuple(member for member, _ in members)
+        curves.append(CurveOutcome(f"curve{number}", surface, medium, load, data_file, names))
+    campaign = Campaign(campaign={"name": name}, run=[{"files": "*.csv"}])
+    campaign._file = campaign_file
+    return Outcome(
+        campaign=campaign,
+        folder=results,
+        runs=tuple(outcomes),
+        curves=tuple(curves),
+        sources=(("raw/made.csv", "ab" * 32, 9), ("raw/bad.csv", "", 0)),
+    )

@@ -84,6 +84,17 @@ def number(value: float, digits: int = 3) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def aligned(value: float, digits: int = 3) -> str:
+    """Return a number with so many significant digits, zeros kept, as columns of numbers want.
+
+    Examples
+    --------
+    >>> aligned(0.8), aligned(2000.0), aligned(float("nan"))
+    ('0.800', '2000', '–')
+    """
+    return f"{value:#.{digits}g}".rstrip(".") if math.isfinite(value) else "–"
+
+
 def speed_text(speed: float) -> str:
     """Return a sliding speed [m/s] with the prefix a reader would choose.
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.labels import column, number, plain, speed_text
+from tribolab.plot.labels import aligned, column, plain, speed_text
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal
 from tribolab.plot.signals import strokes as find_strokes
@@ -75,15 +75,16 @@ def strokes(
     # the widest grid that leaves the fewest places empty
     across = min((5, 4, 3), key=lambda n: -len(shown) % n) if len(shown) > 5 else len(shown)
     down = -(-len(shown) // across)
-    height = 27.0 * down + (down - 1) * 5.0
+    panel_height = {1: 52.0, 2: 40.0}.get(across, 27.0)
+    height = panel_height * down + (down - 1) * 5.0
     lines = sum(len(_chosen(group)) for group in shown)
-    budget = int(np.clip(_POINTS // lines, 30, 160))
+    budget = int(np.clip(_POINTS // lines, 30, 300))
     with paper_style():
         figure = new_figure(DOUBLE_MM, height + 19.0)
         grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / 27.0)
+        margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / panel_height)
         for axes, group in zip(grid.flat, shown, strict=False):
-            _panel(figure, axes, group, signal, friction, budget)
+            _panel(figure, axes, group, signal, friction, budget, narrow=across > 4)
         for axes in grid.flat[len(shown) :]:
             axes.remove()
         for k, axes in enumerate(grid.flat[: len(shown)]):
@@ -92,7 +93,9 @@ def strokes(
         unit = "" if signal.name == "friction_coefficient" else " (N)"
         word = r"friction coefficient $\mu$" if not unit else r"friction force $F_x$ (N)"
         figure.supylabel(word, x=2.5 / DOUBLE_MM, fontsize=8, va="center")
-        figure.supxlabel("distance slid / length of the stroke (1)", y=0.008, fontsize=8)
+        known = np.isfinite([part.speed for part in parts]).all() or "position" in run
+        share = "distance slid / length of the stroke" if known else "time / duration of the stroke"
+        figure.supxlabel(share, y=0.8 / (height + 19.0), fontsize=8)
         _key(figure, parts, friction is not None, height + 19.0)
         heading = plain(title)
         if len(shown) < len(groups):
@@ -128,7 +131,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
     return [part for side in sides for part in _evenly(side, _MOST_LINES)]
 
 
-def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> None:
+def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int, narrow: bool) -> None:
     panel = speed_text(float(np.median([part.speed for part in group])))
     chosen = _chosen(group)
     every = []
@@ -152,18 +155,22 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int) -> 
         axes.axvspan(a, b, color="#E4E4E4", linewidth=0, zorder=0)
     values = np.concatenate(every)
     values = values[np.isfinite(values)]
+    room = 0.6 if narrow else 0.4  # for the text, of two lines in a narrow panel
     if values.size:
         low, high = values.min(), values.max()
         span = max(high - low, 0.02 * abs(high)) or 1.0
-        axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + 0.4 * span)
+        axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + room * span)
     axes.set_xlim(0, 1)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.tick_params(top=False, right=False)
     axes.set_xticks([0, 0.5, 1], ["0", "0.5", "1"])
     left = panel if len(chosen) == len(group) else f"{panel} ({len(chosen)} of {len(group)})"
-    axes.text(0.03, 0.96, left, transform=axes.transAxes, va="top", fontsize=7, zorder=6)
+    inset = {"textcoords": "offset points", "xycoords": "axes fraction", "va": "top"}
+    axes.annotate(left, (0, 1), xytext=(3, -3), fontsize=7, zorder=6, **inset)
     text = _mean_text(group, signal, friction)
-    axes.text(0.97, 0.96, text, transform=axes.transAxes, va="top", ha="right", fontsize=7)
+    corner, side = ((0, 1), (3, -11.5)) if narrow else ((1, 1), (-3, -3))
+    align = "left" if narrow else "right"
+    axes.annotate(text, corner, xytext=side, ha=align, fontsize=7, zorder=6, **inset)
 
 
 def _sign(part: Stroke, signal: Signal, friction) -> float:
@@ -183,7 +190,7 @@ def _mean_text(group: list[Stroke], signal: Signal, friction) -> str:
     means = np.array([float(friction[signal.name][part.number]) for part in group])
     if not np.isfinite(means).any():
         return ""
-    return rf"$\mu$ = {number(float(np.nanmean(means)))}"
+    return rf"$\mu$ = {aligned(float(np.nanmean(means)))}"
 
 
 def _key(figure: PaperFigure, parts: list[Stroke], means: bool, height: float) -> None:

@@ -29,6 +29,7 @@ from tribolab.plot.style import (
 COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _LEFT, _RIGHT, _BOTTOM, _TOP = 17.0, 3.0, 11.0, 6.0
 _WIDTH = DOUBLE_MM - _LEFT - _RIGHT
+_MOTION = ("sliding_velocity", "set_speed", "position")
 _SHADE = {1: FORWARD, -1: BACKWARD, 0: SKY}
 
 
@@ -57,8 +58,8 @@ def trace(
     -------
     matplotlib.figure.Figure
         Panels: friction coefficient (or force, where no load was recorded) over time; sliding
-        velocity over time; friction over the distance slid in the segments. What was not
-        recorded has no panel.
+        velocity (else set speed, else position) over time; friction over the distance slid in
+        the segments. What was not recorded, or is constant, has no panel.
 
     Raises
     ------
@@ -68,8 +69,9 @@ def trace(
     signal = main_signal(run, friction)
     parts = strokes(run, segments)
     time = np.asarray(run["time"], float)
-    motion = next((n for n in ("sliding_velocity", "set_speed", "position") if n in run), None)
-    rows = ["time"] + ["motion"] * (motion is not None) + ["distance"] * bool(parts)
+    motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
+    known = bool(parts) and bool(np.isfinite([part.speed for part in parts]).all())
+    rows = ["time"] + ["motion"] * bool(motion) + ["distance"] * known
     heights = {"time": 44.0, "motion": 26.0, "distance": 44.0}
     gaps = {"motion": 3.0, "distance": 13.0}
     total = sum(heights[r] + gaps.get(r, 0.0) for r in rows) + _BOTTOM + _TOP
@@ -87,7 +89,7 @@ def trace(
             _motion(figure, last, time, motion, run, segments)
             axes["time"].tick_params(labelbottom=False)
         last.set_xlabel(label("time", "time"))
-        if parts:
+        if known:
             _over_distance(figure, axes["distance"], signal, parts, friction)
         for letter, row in zip("abc", rows, strict=False):
             tidy(axes[row], letter if len(rows) > 1 else "")
@@ -150,8 +152,7 @@ def _over_distance(figure, axes, signal, parts: list[Stroke], friction) -> None:
     lengths = np.array([part.distance[-1] for part in parts])
     begins = np.r_[0.0, np.cumsum(lengths)[:-1]]
     budget = max(20, COLUMNS // len(parts))
-    known = np.isfinite([part.speed for part in parts]).all()
-    name = "sliding_distance" if known else "time"
+    name = "sliding_distance"
     lowest, highest = [], []
     for begin, part in zip(begins, parts, strict=True):
         x, y = envelope(part.distance, signal.values[part.samples], budget)
@@ -160,8 +161,7 @@ def _over_distance(figure, axes, signal, parts: list[Stroke], friction) -> None:
         figure.keep("distance", f"segment {part.number}", **numbers)
         lowest.append(np.nanmin(y, initial=np.inf))
         highest.append(np.nanmax(y, initial=-np.inf))
-    known_text = r"sliding distance $s$ in the segments, one after the other (m)"
-    axes.set_xlabel(known_text if known else r"time $t$ in the segments, one after the other (s)")
+    axes.set_xlabel(r"sliding distance $s$ in the segments, one after the other (m)")
     axes.set_ylabel(_ylabel(signal.name))
     axes.set_xlim(0, max(begins[-1] + lengths[-1], np.finfo(float).tiny))
     _room_above(axes, np.array(lowest + highest))
@@ -211,18 +211,20 @@ def _shade(axes: Axes, start, stop, inner_start, inner_stop, directions) -> None
 
 
 def _speeds_above(axes: Axes, start, stop, speeds) -> None:
-    """Write the speed over what has room for it; neighbours of one speed share the text."""
+    """Write the speed (or, if unknown, the number) over the segments that have room for it.
+
+    Neighbours of one speed share the text.
+    """
     low, high = axes.get_xlim()
-    groups: list[list[float]] = []
-    for a, b, speed in zip(start, stop, speeds, strict=True):
-        same = groups and np.isclose(groups[-1][2], speed, rtol=0.05)
-        if same:
-            groups[-1][1] = b
+    groups: list[tuple[float, float, float, str]] = []
+    for number, (a, b, speed) in enumerate(zip(start, stop, speeds, strict=True)):
+        if groups and np.isclose(groups[-1][2], speed, rtol=0.05):
+            groups[-1] = (groups[-1][0], b, speed, groups[-1][3])
         else:
-            groups.append([a, b, speed])
+            text = speed_text(speed) if np.isfinite(speed) else f"no. {number + 1}"
+            groups.append((a, b, speed, text))
     ends = [6.0, 0.0]  # mm up to which each of the two rows is taken; the letter stands in one
-    for a, b, speed in groups:
-        text = speed_text(speed)
+    for a, b, _, text in groups:
         need = len(text) * 1.27 + 1.0  # mm at 7 pt
         middle = (np.clip(a, low, high) + np.clip(b, low, high)) / 2
         at = (middle - low) / (high - low) * _WIDTH

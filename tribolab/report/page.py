@@ -11,13 +11,14 @@ from typing import Any
 from urllib.parse import quote
 
 import jinja2
+from markupsafe import Markup
 
-from tribolab.plot.labels import force_text, number, speed_text
+from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import wording
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
-_SAFE = " !$&'()*+,-./:;=?@[]^_`{|}~"
+_SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 
 
 def write_page(document: dict[str, Any], folder: Path) -> Path:
@@ -52,6 +53,7 @@ def render(document: dict[str, Any], folder: Path) -> str:
     )
     environment.filters |= {
         "number": lambda value, digits=3: "–" if value is None else number(value, digits),
+        "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
         "speed": lambda value: speed_text(float("nan") if value is None else value),
         "force": lambda value: "–" if value is None else force_text(value),
         "duration": wording.duration,
@@ -91,13 +93,14 @@ def fingerprint(text: str) -> str:
     return "sha256-" + base64.b64encode(digest).decode()
 
 
-def data_address(svg: str) -> str:
+def data_address(svg: str) -> Markup:
     """Return a figure as an address that holds the figure itself.
 
     As an image it is shut off from the page: its ids meet no others, and nothing in it can run.
     """
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
-    return "data:image/svg+xml," + quote(body, safe=_SAFE)
+    # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
+    return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
 
 
 def left_out(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
     Examples
     --------
     >>> with_error(0.81234, 0.0042)
-    '0.8123 ± 0.0042'
+    '0.812 ± 0.004'
     >>> with_error(5.6312, None, " N")
     '5.63 N'
     """
@@ -26,7 +26,9 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
         return "–"
     if error is None or not math.isfinite(error) or error <= 0:
         return number(value) + unit
-    decimals = min(max(1 - math.floor(math.log10(error)), 0), 6)
+    # two digits of an error that begins with 1 or 2, else one
+    place = math.floor(math.log10(error))
+    decimals = min(max((error / 10**place < 2.95) - place, 0), 6)
     text = f"{value:.{decimals}f} ± {error:.{decimals}f}"
     return f"({text}){unit}" if unit else text
 
