@@ -34,6 +34,7 @@ _ONE_THREAD = {
 }
 
 
+DASK_TIMEOUT = "20s"
 _STOPPED = "stopped before it was done"
 _DIED = (
     "its worker process ended without an answer, twice (out of memory? a crash in a compiled "
@@ -124,7 +125,7 @@ def _dask(scheduler: str) -> Iterator[Executor]:
             "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
         ) from error
     try:
-        client = Client(scheduler, timeout="20s", set_as_default=False)
+        client = Client(scheduler, timeout=DASK_TIMEOUT, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise ConfigError(
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "

@@ -15,6 +15,7 @@ from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
 from tribolab.campaign.work import (
+    UNFINISHED,
     CurveTask,
     RunRecord,
     RunTask,
@@ -86,11 +87,14 @@ def process(
         tell("runs", len(records), len(runs))
     ordered = [records[run.name] for run in runs]
     outcomes = tuple(record.outcome for record in ordered)
+    curves = _curves(outcomes, staging, executor, tell)
+    for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
+        part.unlink()
     return Outcome(
         campaign=campaign,
         folder=staging,
         runs=outcomes,
-        curves=_curves(outcomes, staging, executor, tell),
+        curves=curves,
         sources=_unique(source for record in ordered for source in record.sources),
     )
 

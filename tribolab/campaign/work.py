@@ -11,6 +11,7 @@ import shutil
 import threading
 import time
 import traceback
+import uuid
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +30,7 @@ Source = tuple[str, str, int]
 _NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
+UNFINISHED = ".part"
 
 
 @dataclass(frozen=True)
@@ -203,18 +205,25 @@ def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:
 
 
 def _write(groups: dict[str | None, xr.Dataset], path: Path) -> None:
+    """Write a data file, whole or not at all.
+
+    A scheduler may repeat work whose worker died after it was done: readers of the file then go
+    on with the old one until the new one, of the same content, is complete.
+    """
     from tribolab.io.netcdf import write_netcdf
 
+    part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
         with _NETCDF:
             for group, data in groups.items():
-                write_netcdf(data, path, group=group)
+                write_netcdf(data, part, group=group)
+        part.replace(path)
     except (OSError, RuntimeError, TribolabError) as error:
         # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"
         full = shutil.disk_usage(path.parent).free < _LITTLE if path.parent.is_dir() else False
         cause = error.__cause__ if isinstance(error, TribolabError) else error
         number = errno.ENOSPC if full else getattr(cause, "errno", None)
-        path.unlink(missing_ok=True)
+        part.unlink(missing_ok=True)
         if number == errno.ENOSPC:
             raise OutputError(
                 f"{path.name}: the disk is full; make room or choose another folder with --output"
