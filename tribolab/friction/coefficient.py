@@ -62,11 +62,12 @@ def friction_coefficient(
 
     Notes
     -----
-    With F_f and F_b the mean forces of a pair, F_0 = (F_f + F_b)/2 is removed and the half loop
-    (F_f - F_b)/2 is what friction is. Both strokes then have the same mean force; their
-    coefficients differ only by their own normal forces, and they are one observation, not two. Each
-    keeps the standard deviation and the trend of its own stroke. Both errors are
-    sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the scatter
+    With F_f = mu N_f + F_0 and F_b = -mu N_b + F_0 the mean forces of a pair and N_f, N_b its mean
+    normal forces, F_0 = (F_f N_b + F_b N_f)/(N_f + N_b) is removed (the half sum where the load is
+    the same or unknown), and mu = (F_f - F_b)/(N_f + N_b). Both strokes then have the same
+    coefficient, and they are one observation, not two. Each keeps the standard deviation and the
+    trend of its own stroke. Both errors are sqrt((sem_f^2 + sem_b^2)/4 + tau^2)/F_N, with the errors
+    of the ratio times F_N, because each value rests on both strokes; tau is the scatter
     of the offsets from pair to pair beyond their errors, a wander of the zero that no stroke shows
     by itself (it needs at least two pairs).
     With another offset the error is sqrt(sem^2 + (sem(F_0)/F_N)^2). The zero of
@@ -165,16 +166,23 @@ def _halves(
 def _removed(
     means: np.ndarray,
     errors: np.ndarray,
+    load: np.ndarray,
     sign: np.ndarray,
     pair: np.ndarray,
     zero: Zero | None,
     offset: str,
     name: str,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, str, float]:
-    """Offset of each segment, error of its mean without it, half loop, method, unsteadiness."""
+    """Offset of each segment, error of its mean without it, half loop, method, unsteadiness.
+
+    `load` is the mean normal force of each segment, or one for all where it is not known.
+    """
     half = _halves(means, sign, pair, lambda f, b: (f - b) / 2)
     half_error = _halves(errors, sign, pair, lambda f, b: np.hypot(f, b) / 2)
-    middle = _halves(means, sign, pair, lambda f, b: (f + b) / 2)
+    # F_f = mu N_f + F_0 and F_b = -mu N_b + F_0: what the load did between the strokes must not
+    # pass for an offset
+    share = _halves(load, sign, pair, lambda f, b: np.array([b, f]) / (f + b))
+    middle = _halves(means * share, sign, pair, lambda f, b: f + b)
     paired = np.isfinite(middle)
     if offset == "half loop" and not paired.any():
         raise AnalysisError(
@@ -223,9 +231,14 @@ def _from_forces(
     zero, normal_zero = unloaded_rest(run, segments, load)
     if offset == "none":
         normal_zero = None
-    removed, errors, half, method, tau = _removed(
-        means, _column(forces, "sem"), sign, pair, zero, offset, _name(run)
-    )
+    n0 = normal_zero or Zero(0.0, 0.0)
+    pressed = np.ones(means.size)
+    if loads:
+        pressed = _column(loads, "mean") - n0.value
+    held = np.where(pressed > 0, pressed, 1.0)
+    own_errors = _column(forces, "sem")
+    arguments = sign, pair, zero, offset, _name(run)
+    removed, errors, half, method, tau = _removed(means, own_errors, held, *arguments)
     data = {
         "friction_force": sign * (means - removed),
         "friction_force_std": _column(forces, "std"),
@@ -240,23 +253,19 @@ def _from_forces(
         data |= _memory(forces) | {"force_trend": sign * _column(forces, "trend")}
         return _table(data, remarks, method)
 
-    n0 = normal_zero or Zero(0.0, 0.0)
     ratios, remarks = [], []
     for s, d, f0, one in zip(parts, sign, removed, loads, strict=True):
         ratio, remark = _ratio(time[s], d * (force[s] - f0), normal[s] - n0.value, one, n0, load)
         ratios.append(ratio)
         remarks.append(remark)
-    mu, pressed = _column(ratios, "mean"), _column(loads, "mean") - n0.value
+    mu, scatter = _column(ratios, "mean"), _column(ratios, "sem")
+    # the load's fluctuations move friction and load together and leave the ratio alone: its own
+    # scatter, not the force's, says how well friction is known
+    known = np.isfinite(scatter)
+    own_errors = np.where(known, scatter * held, own_errors)
+    _, errors_by_ratio, _, _, tau = _removed(means, own_errors, held, *arguments)
     with np.errstate(divide="ignore", invalid="ignore"):
-        own = _column(ratios, "sem")
-        # the stroke's own scatter of the ratio, then what the offset adds to it
-        shared = _halves(own * pressed, sign, pair, lambda f, b: np.hypot(f, b) / 2) / pressed
-        extra = np.sqrt(np.maximum(errors**2 - _column(forces, "sem") ** 2, 0)) / pressed
-        sem = np.where(
-            np.isfinite(shared) & (method == "half loop"),
-            np.hypot(shared, tau / pressed),
-            np.hypot(own, extra),
-        )
+        sem = np.where(known, errors_by_ratio / pressed, np.nan)
         sem = np.hypot(sem, mu * n0.error / pressed)
     data |= {
         "friction_coefficient": mu,
@@ -309,8 +318,9 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.nda
         sign, pair = np.ones_like(sign), np.full_like(pair, -1)
         if offset == "auto":
             offset = "none"
+    alike = np.ones(means.size)
     removed, errors, _, method, _ = _removed(
-        means, _column(found, "sem"), sign, pair, None, offset, _name(run)
+        means, _column(found, "sem"), alike, sign, pair, None, offset, _name(run)
     )
     if rectified and offset == "none":
         method = "none: the instrument gives the coefficient without sign"
