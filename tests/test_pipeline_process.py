@@ -4,6 +4,8 @@ import errno
 import multiprocessing
 import os
 import pickle
+import subprocess
+import sys
 from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
@@ -212,10 +214,14 @@ def test_threads_give_what_this_process_gives(original, done, tmp_path):
 
 
 class Losing(ThreadPoolExecutor):
-    """Loses one run, as a pool does whose worker dies again and again."""
+    """Loses some runs, as a pool does whose workers die again and again."""
+
+    def __init__(self, lost):
+        super().__init__(2)
+        self.lost = lost
 
     def submit(self, function, task):
-        if getattr(getattr(task, "run", None), "name", "") == RUNS[2]:
+        if getattr(getattr(task, "run", None), "name", "") in self.lost:
             future = Future()
             future.set_exception(WorkerDied("its worker process ended"))
             return future
@@ -223,10 +229,30 @@ class Losing(ThreadPoolExecutor):
 
 
 def test_a_run_that_kills_its_worker_fails_with_the_reason(original, tmp_path):
-    with Losing(2) as executor:
+    with Losing(RUNS[2:3]) as executor:
         outcome = process(load_campaign(original), tmp_path, executor=executor)
     assert [(run.name, run.error) for run in outcome.failed] == [(RUNS[2], "WorkerDied")]
     assert "ended" in outcome.failed[0].reason
+
+
+def test_results_in_which_nothing_could_be_done_replace_nothing(original, tmp_path):
+    with Losing(RUNS) as executor, pytest.raises(WorkerDied, match="no run could be done"):
+        process(load_campaign(original), tmp_path, executor=executor)
+
+
+@pytest.mark.slow
+def test_a_script_without_its_guard_is_told_so_and_harms_nothing(original, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import tribolab as tl\n"
+        f"tl.run_campaign({str(original)!r}, output={str(tmp_path / 'new')!r}, jobs=2)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 1
+    assert "__name__" in done.stderr.splitlines()[-1]
+    assert [path.name for path in tmp_path.iterdir()] == ["script.py"]
 
 
 def test_a_worker_hands_back_a_record_not_signals(original, tmp_path):
