@@ -11,13 +11,13 @@ name = "real files"
 raw = "raw"
 
 [[run]]
-files = "actuator/*.csv"
+files = "actuator/Circle*.csv"
 
 [[run]]
 files = "rock/*.txt"
 
 [[run]]
-files = "paper/k168*.mat"
+files = "paper/k168*v1100.mat"
 
 [[run]]
 files = "cetr/*.csv"
@@ -60,9 +60,7 @@ def test_every_run_is_shown(report):
 
 @pytest.mark.slow
 def test_actuator_is_told_by_its_half_loop_in_newton(report):
-    runs = {run["name"]: run for run in by_instrument(report, "pneumatic_actuator")}
-    assert len(runs) == 3
-    (circle,) = [run for name, run in runs.items() if "ircle" in name]
+    (circle,) = by_instrument(report, "pneumatic_actuator")
     assert circle["quantity"] == "half_loop"
     # the reference number was taken within 5 < x < 32 mm, here whole strokes count
     assert circle["value_min"] < 5.631 < circle["value_max"]
