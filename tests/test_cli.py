@@ -158,7 +158,7 @@ def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, ca
     assert caught.value.code == 3
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "crashed with ZeroDivisionError at test_cli.py:" in said
+    assert "crashed with ZeroDivisionError at cli.py:" in said
     assert "--debug" in said
     with pytest.raises(ZeroDivisionError):
         cli.app(["run", str(campaign), "--debug"])

@@ -125,7 +125,7 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     assert outcome.curves == ()
     assert outcome.runs[0].error == "ZeroDivisionError"
     assert outcome.runs[0].reason.startswith(
-        "crashed with ZeroDivisionError at test_pipeline_process.py:"
+        "crashed with ZeroDivisionError at work.py:"
     )
 
 
