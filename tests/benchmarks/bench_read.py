@@ -3,7 +3,8 @@
 Usage: python tests/benchmarks/bench_read.py [rows] [repeats]
 
 Writes a four-column csv of the linear slider (default 1e7 rows) to a temporary folder and reads it
-with each candidate in a process of its own, after a small file that loads its libraries. tribolab does more in that time: SI units, a check that
+with each candidate in a process of its own, after a small file that loads its libraries. tribolab
+does more in that time: SI units, a check that
 time increases, the SHA-256 of the file. Prints the best time and the least peak memory (resident,
 of the whole process, libraries included) of the repeats, and their ratios.
 """
