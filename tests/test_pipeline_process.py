@@ -124,9 +124,7 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     outcome = process(load_campaign(campaign), tmp_path)
     assert outcome.curves == ()
     assert outcome.runs[0].error == "ZeroDivisionError"
-    assert outcome.runs[0].reason.startswith(
-        "crashed with ZeroDivisionError at work.py:"
-    )
+    assert outcome.runs[0].reason.startswith("crashed with ZeroDivisionError at work.py:")
 
 
 def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
