@@ -80,7 +80,7 @@ def _mean_zero(found: list[tuple[float, float]]) -> Zero | None:
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
-    """Number of the pair that each segment belongs to, -1 for none (segment).
+    """Return the number of the pair that each segment belongs to, -1 for none (segment).
 
     Neighbours in time of opposite direction pair if their speeds differ by no more than
     `tolerance` of their mean and, where the run has set speeds, those agree.

@@ -213,7 +213,7 @@ def variance_of_sum(power: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 
 def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Standard error of each record's mean: as the spectrum gives it, and widened for few samples.
+    """Return the standard error of each mean: plain, and widened for few samples.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ class Stretch(NamedTuple):
 
 
 def name_of(run: xr.Dataset) -> str:
-    """What errors call the run: its source file if known."""
+    """Return what errors call the run: its source file if known."""
     return str(run.attrs.get("source", "run"))
 
 
@@ -154,7 +154,7 @@ def _wide(time: np.ndarray, index: int, piece: Piece) -> bool:
 
 
 def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -> np.ndarray:
-    """Samples of a plateau after which too long a pause follows."""
+    """Return the samples of a plateau after which too long a pause follows."""
     inside = time[piece.first : piece.last]
     if piece.kind != "constant" or inside.size < 2:
         return np.zeros(0, dtype=int)
