@@ -62,12 +62,20 @@ class Logs:
         self.force_time, self.force, self.motion_time = force_time, force, motion_time
         self.way = way  # -1 backward, 0 at rest, 1 forward
         self.impulse = _integral(force_time, force)
-        self.path = _integral(motion_time, np.abs(velocity))
+        self.speed = np.abs(velocity)
+        self.change = np.diff(self.speed) / np.diff(motion_time)
+        self.path = _integral(motion_time, self.speed)
 
     def slid(self, start: _Start, since: Array) -> Array:
         """Distance [m] since the start, at times since then."""
-        path = np.interp(start.time + since, self.motion_time, self.path)
-        return np.maximum(path - np.interp(start.time, self.motion_time, self.path), 0.0)
+        return np.maximum(self._path(start.time + since) - self._path(start.time), 0.0)
+
+    def _path(self, time: Array | float) -> Array:
+        """Path [m]; the velocity is linear between two samples, so the path is a parabola."""
+        time = np.clip(time, self.motion_time[0], self.motion_time[-1])
+        i = np.minimum(np.searchsorted(self.motion_time, time, "right"), len(self.path) - 1) - 1
+        since = time - self.motion_time[i]
+        return self.path[i] + (self.speed[i] + 0.5 * self.change[i] * since) * since
 
     def shapes(self, start: _Start, since: Array) -> Array:
         """Functions of the time since the start that make up the force (..., function)."""
@@ -127,6 +135,7 @@ def shift_from_starts(logs: Logs, shift: float, span: float) -> Told | None:
         return None
     middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
     since = np.array([start.time for start in starts]) - middle
+    sampling = np.array([start.sampling for start in starts])
     centre = np.full(len(starts), _together(logs, starts, shift, span))
     seen = np.full((2, len(starts)), np.inf)
     half, sharp = 0.1 * span, np.arange(len(starts))
@@ -142,12 +151,10 @@ def shift_from_starts(logs: Logs, shift: float, span: float) -> Told | None:
         if not told.any():
             return fit
         # nothing is seen between samples
-        errors = np.hypot(seen[1], [start.sampling for start in starts])
-        fit = _combined(since[told], seen[0][told], errors[told])
+        errors = np.hypot(seen[1], sampling)
+        fit = _combined(since[told], seen[0][told], errors[told], sampling.min())
         centre = fit[0] + fit[2] * since
-        sharp = np.flatnonzero(
-            (seen[1] < 1.5 * step) & (step > np.array([start.sampling for start in starts]))
-        )
+        sharp = np.flatnonzero((seen[1] < 1.5 * step) & (step > sampling))
         half = 4.0 * step
     return fit
 
@@ -204,7 +211,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
     return -0.5 * freedom * np.log(relative / relative.min())
 
 
-def _combined(since: Array, shifts: Array, errors: Array) -> Told:
+def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told:
     """Shift in the middle and rate, each with its uncertainty, from the starts' shifts."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, QUARTZ**-2])
@@ -227,4 +234,6 @@ def _combined(since: Array, shifts: Array, errors: Array) -> Told:
     if error[1] > _TELLING * QUARTZ:
         # a rate that is hardly told only moves the shift away from where it is known
         told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
+    # the loggers see all starts in the same way, so this does not become less by their number
+    error[0] = np.hypot(error[0], common)
     return Told(float(told[0]), float(error[0]), float(told[1]), float(error[1]))
