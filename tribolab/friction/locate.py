@@ -16,7 +16,7 @@ from tribolab.friction.plateaus import (
 )
 
 MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
-FEW_BLOCKS = 2048  # in a second look
+FEW_BLOCKS = 512  # in a second look
 PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
 KEPT = ("constant", "at rest")
 
@@ -123,7 +123,7 @@ def _locate(
         if last - first < fewest and kind != "ramp":
             kind = "too short"
         if size > 1:
-            if kind not in KEPT and not (kind == "ramp" and last - first >= 8 * size):
+            if kind not in KEPT and not (kind == "ramp" and last - first >= 4 * size):
                 continue
             pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
             pending = last

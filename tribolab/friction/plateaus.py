@@ -116,7 +116,7 @@ def find_breaks(
     free = np.zeros(m + 1, dtype=int)  # 1 where a break stands
     width, memory = 1, 1.0
     while 2 * width <= m:
-        k = np.arange(width, m - width + 1)
+        k = np.arange(width, m - width + 1, max(1, width // 64))
         before = (total[k] - total[k - width]) / width
         after = (total[k + width] - total[k]) / width
         jump = np.abs(after - before)
