@@ -221,7 +221,7 @@ class _Classes:
         at, _, total = self._parts(shift)
         squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
         whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
-        return self.explained(shift) / max(whole, 1e-12)
+        return float(self.explained(shift) / max(whole, 1e-12))
 
     def significance(self, shift: float) -> float:
         """F ratio: variance explained per class against the residual's, correlation allowed for."""
