@@ -6,11 +6,11 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_runs import strokes, with_friction
-from real_runs import actuator, paper, rock
+from real_runs import actuator, paper, reciprocating, rock
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import friction_coefficient, half_loops
-from tribolab.friction.offsets import unsteadiness
+from tribolab.friction.offsets import wander
 from tribolab.friction.segments import find_segments
 
 MU = 0.3
@@ -87,6 +87,14 @@ def test_paper_on_paper_means_and_deviations(shared_data, stiffness, speed, mean
     friction = friction_coefficient(run, find_segments(run, trim=0))
     assert friction["friction_coefficient"].item() == pytest.approx(mean, rel=0.002)
     assert friction["friction_coefficient_std"].item() == pytest.approx(std, rel=0.002)
+
+
+def test_reciprocating_steps_pair_though_no_speed_was_recorded(shared_data):
+    friction = analysed(reciprocating(shared_data))
+    assert friction.attrs["velocity_source"] == "step"
+    assert friction["direction"].values.tolist() == [-1, 1]
+    assert friction["pair"].values.tolist() == [0, 0]
+    assert (friction["friction_coefficient"].values > 0.5).all()
 
 
 # closed forms
@@ -175,18 +183,32 @@ def test_error_of_the_half_loop_covers_the_truth():
     assert np.mean(errors < 3) >= 0.99
 
 
-def test_wander_of_the_zero_from_pair_to_pair_is_found_without_its_own_errors():
+def test_movement_of_the_zero_from_pair_to_pair_is_told_from_its_own_errors():
     rng = np.random.default_rng(0)
-    drift = 0.2 * np.arange(40)
-    found = [
-        unsteadiness(drift + 0.3 * rng.standard_normal(40), np.full(40, 0.1)) for _ in range(50)
-    ]
-    assert np.mean(found) == pytest.approx(np.sqrt(0.3**2 - 0.1**2), rel=0.1)
-    quiet = [
-        unsteadiness(drift + 0.1 * rng.standard_normal(40), np.full(40, 0.1)) for _ in range(50)
-    ]
-    assert np.mean(quiet) < 0.05
-    assert unsteadiness(np.array([1.0]), np.array([0.1])) == 0
+    time, error = 10.0 * np.arange(60), np.full(60, 0.1)
+    quiet, fast, walk = [], [], []
+    for _ in range(40):
+        noise = 0.1 * rng.standard_normal(60)
+        quiet.append(wander(noise, error, time))
+        fast.append(wander(noise + 0.5 * rng.standard_normal(60), error, time))
+        walk.append(wander(noise + np.cumsum(0.5 * rng.standard_normal(60)), error, time))
+    # <d^2> beyond the errors: 2 x 0.5^2 for a zero that is new each time, 0.5^2 for one that walks
+    beyond = [np.mean([w.fast + 10 * w.rate for w in found]) for found in (quiet, fast, walk)]
+    assert beyond[0] < 0.04
+    assert beyond[1] == pytest.approx(0.5, rel=0.5)
+    assert beyond[2] == pytest.approx(0.25, rel=0.5)
+    assert wander(np.array([1.0]), np.array([0.1]), np.array([0.0])) == (0, 0)
+
+
+def test_load_that_differs_between_the_strokes_does_not_pass_for_an_offset():
+    run = small(offset=2.0, scatter=0.0)
+    backward = run["friction_force"].values < 0
+    heavier = {k: np.where(backward, 1.2, 1.0) * run[k].values for k in ("normal_force",)}
+    force = np.where(backward, 1.2, 1.0) * (run["friction_force"].values - 2.0) + 2.0
+    run = run.assign(normal_force=("time", heavier["normal_force"]), friction_force=("time", force))
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, rel=0.003)
+    assert friction["friction_force_offset"].values == pytest.approx([2.0] * 6, abs=0.05)
 
 
 def test_trend_within_a_segment_is_reported_and_not_steady():

@@ -1,0 +1,323 @@
+"""The results folder: tables, report.json and figures say what the data files say."""
+
+import json
+import math
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+from reporting import made_curve, made_outcome, made_run
+
+import tribolab
+from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.report.results import write_report
+from tribolab.report.run_summary import RunTask, summarise_run
+from tribolab.report.wording import plain_value, with_error
+
+SCHEMA = json.loads(
+    (Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json").read_text()
+)
+RUNS = [
+    ("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8),
+    ("sb-r_2", "Sb-R", "glycerol", 31.0, 0.82),
+    ("sb-s_1", "Sb-S", "glycerol", 31.0, 1.1),
+    ("sb-s_dry", "Sb-S", "dry", 31.0, 1.4),
+    ("nameless", "", "", None, 0.5),
+]
+REASON = "bad.csv: column 'Fx' has no unit; name it in the header, e.g. 'Fx [N]'"
+
+
+@pytest.fixture(scope="module")
+def outcome(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made")
+    made = made_outcome(folder, RUNS, failed=[("broken", REASON)], samples=60)
+    write_report(made)
+    return made
+
+
+@pytest.fixture(scope="module")
+def report(outcome):
+    def refuse(text):
+        raise AssertionError(f"{text} is no JSON")
+
+    return json.loads((outcome.folder / "report.json").read_text(), parse_constant=refuse)
+
+
+def valid(report):
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate(report, SCHEMA, cls=jsonschema.Draft202012Validator)
+
+
+def table(outcome, name):
+    return pd.read_csv(outcome.folder / "tables" / f"{name}.csv", keep_default_na=False)
+
+
+def test_report_json_fits_its_schema(report):
+    valid(report)
+
+
+def test_schema_refuses_what_it_does_not_know(report):
+    for wrong in (
+        report | {"schema_version": "0.9"},
+        report | {"more": 1},
+        report | {"runs": [report["runs"][0] | {"status": "fine"}]},
+        {key: value for key, value in report.items() if key != "findings"},
+    ):
+        with pytest.raises(jsonschema.ValidationError):
+            valid(wrong)
+
+
+def test_friction_table_is_the_data_files_to_the_last_digit(outcome):
+    friction = pd.read_csv(outcome.folder / "tables/friction.csv")
+    for run in outcome.runs[:-1]:
+        rows = friction[friction.run == run.name]
+        data = read_netcdf(outcome.folder / run.data_file, group="friction")
+        for column, name in {
+            "friction_coefficient": "friction_coefficient",
+            "friction_coefficient_std": "friction_coefficient_std",
+            "friction_coefficient_sem": "friction_coefficient_sem",
+            "sliding_speed_m_s": "sliding_speed",
+            "start_s": "start",
+            "trimmed_stop_s": "trimmed_stop",
+            "normal_force_N": "normal_force",
+            "trend_1_s": "trend",
+            "half_loop_N": "half_loop",
+            "friction_force_offset_N": "friction_force_offset",
+            "direction": "direction",
+        }.items():
+            np.testing.assert_array_equal(rows[column].to_numpy(), data[name].values)
+        assert rows.segment.tolist() == list(range(1, data.sizes["segment"] + 1))
+
+
+def test_friction_table_says_what_each_row_is_of(outcome):
+    friction = table(outcome, "friction")
+    assert list(friction.columns[:7]) == [
+        "run",
+        "surface",
+        "medium",
+        "nominal_normal_force_N",
+        "segment",
+        "sliding_speed_m_s",
+        "direction",
+    ]
+    row = friction[friction.run == "sb-s_dry"].iloc[0]
+    assert (row.surface, row.medium, float(row.nominal_normal_force_N)) == ("Sb-S", "dry", 31.0)
+    assert friction[friction.run == "nameless"].iloc[0].nominal_normal_force_N == ""
+
+
+def test_stribeck_table_has_every_point_of_every_curve(outcome):
+    points = pd.read_csv(outcome.folder / "tables/stribeck.csv")
+    for curve in outcome.curves:
+        rows = points[points.curve == curve.name]
+        data = read_netcdf(outcome.folder / curve.data_file)
+        np.testing.assert_array_equal(rows.sliding_speed_m_s, data.sliding_speed.values)
+        np.testing.assert_array_equal(rows.friction_coefficient, data.friction_coefficient.values)
+
+
+def test_sources_stand_with_their_checksums(outcome, report):
+    sources = table(outcome, "sources")
+    assert list(sources.itertuples(index=False, name=None)) == list(outcome.sources)
+    assert report["sources"][0] == {"file": "raw/made.csv", "sha256": "ab" * 32, "bytes": 9}
+
+
+def test_failed_run_leads_the_findings_with_its_reason(outcome, report):
+    first = table(outcome, "findings").iloc[0]
+    assert (first.severity, first.run, first.message) == ("fail", "broken", REASON)
+    assert report["findings"][0]["message"] == REASON
+    assert report["verdict"]["status"] == "incomplete"
+    assert "5 of 6 runs done; 1 failed; 30 segments" in report["verdict"]["text"]
+
+
+def test_what_was_left_out_is_a_finding_with_reason_and_time(outcome):
+    findings = table(outcome, "findings")
+    mine = findings[findings.run == "sb-r_1"]
+    assert "at rest: 7 intervals, 14 s" in mine[mine["where"] == "left out"].message.tolist()
+    assert "not used: Temp [C]; Aux" in mine[mine["where"] == "columns"].message.tolist()
+
+
+def test_highlights_are_means_over_the_strokes_at_a_speed(outcome, report):
+    run = outcome.runs[0]
+    data = read_netcdf(outcome.folder / run.data_file, group="friction")
+    marks = report["runs"][0]["highlights"]
+    assert [mark["where"] for mark in marks] == ["slowest", "middle", "fastest"]
+    for mark, part in zip(marks, (slice(0, 2), slice(2, 4), slice(4, 6)), strict=True):
+        both = data.friction_coefficient.values[part]
+        sem = data.friction_coefficient_sem.values[part]
+        assert mark["value"] == pytest.approx(both.mean(), rel=1e-12)
+        assert mark["sem"] == pytest.approx(math.hypot(*sem) / 2, rel=1e-12)
+        assert mark["segments"] == 2
+
+
+def test_every_figure_named_is_there_and_described_with_numbers(outcome, report):
+    figures = report["figures"] + [f for run in report["runs"] for f in run["figures"]]
+    assert len(figures) == 2 * 5 + 3 + 1  # per run, per surface, Sb-R with Sb-S at 31 N
+    on_disk = {f"figures/{path.name}" for path in (outcome.folder / "figures").iterdir()}
+    assert {figure["file"] for figure in figures} == on_disk
+    for figure in figures:
+        assert any(character.isdigit() for character in figure["alt"])
+        assert "µ from" in figure["alt"]
+
+
+@pytest.mark.slow
+def test_report_is_the_same_in_processes_threads_and_here(tmp_path):
+    made = made_outcome(tmp_path / "same", RUNS[:2], speeds=[1e-3], samples=50)
+
+    def written(executor=None):
+        calls = []
+        write_report(made, executor=executor, progress=lambda *call: calls.append(call))
+        assert calls[-1] == ("page", 1, 1) and ("figures", 2, 2) in calls
+        lines = (made.folder / "report.json").read_text().splitlines()
+        figures = {p.name: p.read_bytes() for p in (made.folder / "figures").iterdir()}
+        return [line for line in lines if "made_at" not in line], figures
+
+    here = written()
+    with ThreadPoolExecutor(3) as threads:
+        assert written(threads) == here
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as processes:
+        assert written(processes) == here
+
+
+def test_nan_becomes_null_and_infinity_too():
+    value = {"a": [np.float64("nan"), 1.5, np.int8(2)], "b": np.array([np.inf, 0.0]), "c": None}
+    assert plain_value(value) == {"a": [None, 1.5, 2], "b": [None, 0.0], "c": None}
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (0.81234, 0.0042, "0.812 ± 0.004"),
+        (0.81234, 0.0123, "0.812 ± 0.012"),
+        (123.4, 31.0, "123 ± 31"),
+        (0.5, None, "0.5"),
+        (0.5, float("nan"), "0.5"),
+        (None, 0.1, "–"),
+    ],
+)
+def test_error_sets_the_digits(value, error, text):
+    assert with_error(value, error) == text
+
+
+def test_empty_campaign_still_has_a_report(tmp_path):
+    made = made_outcome(tmp_path / "none", [], failed=[("a", "no such file"), ("b", "")])
+    write_report(made)
+    report = json.loads((made.folder / "report.json").read_text())
+    valid(report)
+    assert report["verdict"]["status"] == "nothing"
+    assert list(table(made, "friction").columns)[0] == "run"
+    assert table(made, "findings").message.tolist() == ["no such file", "ReadError"]
+
+
+def _one(tmp_path, change):
+    made = made_outcome(tmp_path / "one", [("only", "Sb-R", "glycerol", 31.0, 0.8)])
+    path = made.folder / made.runs[0].data_file
+    parts = change(*made_run())
+    path.unlink()
+    for group, data in zip(("run", "segments", "friction"), parts, strict=True):
+        write_netcdf(data, path, group=group)
+    return made
+
+
+def test_run_without_segments_is_suspect_and_has_a_trace(tmp_path):
+    def nothing(run, segments, friction):
+        empty = slice(0, 0)
+        return run, segments.isel(segment=empty), friction.isel(segment=empty)
+
+    made = _one(tmp_path, nothing)
+    write_report(made)
+    report = json.loads((made.folder / "report.json").read_text())
+    valid(report)
+    assert report["findings"][0]["severity"] == "suspect"
+    assert [figure["kind"] for figure in report["runs"][0]["figures"]] == ["trace"]
+    assert report["runs"][0]["sliding_speed_min_m_s"] is None
+
+
+def test_run_without_load_is_told_by_its_half_loops(tmp_path):
+    def no_load(run, segments, friction):
+        gone = [name for name in friction.data_vars if "coefficient" in name]
+        return run.drop_vars("normal_force"), segments, friction.drop_vars([*gone, "normal_force"])
+
+    made = replace(_one(tmp_path, no_load), curves=())
+    write_report(made)
+    report = json.loads((made.folder / "report.json").read_text())
+    valid(report)
+    run = report["runs"][0]
+    assert run["quantity"] == "half_loop"
+    assert run["value_min"] == pytest.approx(0.8 * 31, rel=0.02)
+    assert "half loop from 24" in report["verdict"]["text"]
+    assert {figure["kind"] for figure in run["figures"]} == {"trace", "strokes", "half_loop"}
+
+
+def test_unknown_speeds_are_null_and_averaged_over_all(tmp_path):
+    def speedless(run, segments, friction):
+        nan = ("segment", np.full(friction.sizes["segment"], np.nan))
+        run = run.drop_vars(["sliding_velocity", "position"])
+        return run, segments.assign(sliding_speed=nan), friction.assign(sliding_speed=nan)
+
+    made = _one(tmp_path, speedless)
+    task = RunTask(made.runs[0], made.folder)
+    (made.folder / "figures").mkdir()
+    facts = summarise_run(task).facts
+    assert [mark["where"] for mark in facts["highlights"]] == ["all"]
+    assert facts["highlights"][0]["sliding_speed_m_s"] is None
+    assert facts["highlights"][0]["segments"] == 6
+
+
+def test_drifting_and_backward_friction_is_said(tmp_path):
+    def odd(run, segments, friction):
+        friction = friction.copy()
+        friction["steady"][:2] = 0
+        friction["friction_coefficient"][3] *= -1
+        friction.attrs["offset"] = "none: strokes in one direction only"
+        return run, segments, friction
+
+    made = _one(tmp_path, odd)
+    write_report(made)
+    messages = " | ".join(table(made, "findings").message)
+    assert "2 segments of 6 with a significant trend" in messages
+    assert "1 segment of 6 with friction along the motion" in messages
+    assert "none: strokes in one direction only" in messages
+
+
+def test_a_broken_data_file_costs_only_its_own_place(tmp_path):
+    made = made_outcome(
+        tmp_path / "two",
+        [("good", "Sb-R", "glycerol", 31.0, 0.8), ("torn", "Sb-R", "glycerol", 31.0, 0.8)],
+        samples=60,
+    )
+    (made.folder / made.runs[1].data_file).write_bytes(b"CDF torn")
+    write_report(made)
+    report = json.loads((made.folder / "report.json").read_text())
+    valid(report)
+    assert report["findings"][0]["severity"] == "error" and report["findings"][0]["run"] == "torn"
+    assert [len(run["segments"]) for run in report["runs"]] == [6, 0]
+
+
+def test_a_curve_that_failed_is_a_finding(tmp_path):
+    made = made_outcome(tmp_path / "c", [("one", "Sb-R", "glycerol", 31.0, 0.8)])
+    failed = replace(made.curves[0], status="failed", data_file="", reason="no speed is known")
+    write_report(replace(made, curves=(failed,)))
+    findings = table(made, "findings")
+    assert findings.message.iloc[0] == "no measured curve: no speed is known"
+    assert findings.severity.iloc[0] == "suspect"
+
+
+def test_curves_beyond_nine_go_to_further_figures(tmp_path):
+    from tribolab.campaign.outcome import CurveOutcome
+    from tribolab.report.curve_figures import draw_curves, plan_figures
+
+    (tmp_path / "figures").mkdir()
+    curves = []
+    for number in range(11):
+        write_netcdf(made_curve(load=1.0 + number), tmp_path / f"{number}.nc")
+        curves.append(
+            CurveOutcome(f"c{number}", "Sb-R", "dry", 1.0 + number, f"{number}.nc", ("r",))
+        )
+    planned = plan_figures(curves, tmp_path)
+    assert [len(figure.curves) for figure in planned] == [9, 2]
+    assert "9 measured curves" in draw_curves(planned[0])["alt"]
+    assert len({figure.file for figure in planned}) == 2
