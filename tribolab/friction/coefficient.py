@@ -164,7 +164,7 @@ def _halves(
     for number in range(pair.max(initial=-1) + 1):
         both = np.flatnonzero(pair == number)
         forward, backward = both[np.argsort(-sign[both])]
-        result[both] = combine(values[forward], values[backward])
+        result[[forward, backward]] = combine(values[forward], values[backward])
     return result
 
 
