@@ -1,0 +1,1 @@
+def psd_2d_of_map(): pass
