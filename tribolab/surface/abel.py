@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,9 @@ class PowerLaws:
         Mean square height [m2] in each bin, negative wavenumbers included (bin).
     slope
         ``d ln C_1D / d ln k`` in each bin (bin).
+    slope_weights
+        Derivative of `slope` by the logarithms of the bins' powers (bin, bin); without it the
+        slopes are taken as known.
     tail
         Weights of the bins' logarithms in the slope of the tail, ``sum(weights * ln power)``
         plus `tail_offset`; by default the last bin's slope goes on.
@@ -35,6 +38,7 @@ class PowerLaws:
     edges: np.ndarray
     power: np.ndarray
     slope: np.ndarray
+    slope_weights: np.ndarray | None = None
     tail: np.ndarray | None = None
     tail_offset: float = 0.0
 
@@ -145,6 +149,12 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
     tail_power, by_exponent = _tail(end, last, exponent, at)
     sensitivity[:, -1] += tail_power
     above = sensitivity.sum(1)
+    if profile.slope_weights is not None:
+        step = 1e-4
+        parts = [
+            _pieces(replace(profile, slope=profile.slope + sign * step), at) for sign in (-1, 1)
+        ]
+        sensitivity += (parts[1] - parts[0]) / (2 * step) @ profile.slope_weights
     if profile.tail is not None:
         sensitivity -= by_exponent[:, None] * profile.tail
     return Annuli(

@@ -11,7 +11,7 @@ from tribolab.surface.moments import bin_integrals
 CONFIDENCE = 0.95
 _LARGEST_ERROR = 0.25  # relative standard error that an annulus may have
 _TAIL_DECADES = 0.5
-_SWEEPS = 30
+_PLATEAU = 3.0  # an annulus wider than this was joined, and is taken as flat
 
 
 def confidence_band(
@@ -50,10 +50,11 @@ def bins_of(profile: xr.Dataset) -> tuple[PowerLaws, np.ndarray]:
     weight = np.where(near, relative**-2.0, 0.0)
     x = np.log(q) - np.average(np.log(q), weights=weight)
     tail = weight * x / np.sum(weight * x**2)
-    slope = np.gradient(np.log(c), np.log(q))
-    slope[-1] = tail @ np.log(c)
+    weights = np.gradient(np.eye(q.size), np.log(q), axis=0)
+    weights[-1] = tail
     edges = np.append(profile.wavenumber_low.values, profile.wavenumber_high.values[-1])
-    return PowerLaws(edges, power, slope, tail, float(tail @ np.log(c / power))), relative
+    offset = float(tail @ np.log(c / power))
+    return PowerLaws(edges, power, weights @ np.log(c), weights, tail, offset), relative
 
 
 def join(found: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
@@ -93,78 +94,77 @@ def join(found: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
     return joined, error
 
 
-def on_nodes(edges: np.ndarray, mean: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _node_values(annuli: Annuli) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Carry the mean over each annulus to its rms radius, along the local power law.
+
+    The lowest annulus, where it was joined from several, is a plateau with a node at either end.
 
     Returns
     -------
     tuple of numpy.ndarray
-        Wavenumbers [1/m] and C [m4] there.
+        Wavenumbers [1/m], C [m4] there, and the annulus that each belongs to.
     """
-    low, high = edges[:-1], edges[1:]
-    node = np.sqrt(0.5 * (low**2 + high**2))
-    if mean.size < 2:
-        return node, mean
-    slope = np.clip(np.gradient(np.log(mean), np.log(node)), -8.0, 1.0)
-    left, right = (2 + slope) * np.log(low / node), (2 + slope) * np.log(high / node)
-    with np.errstate(invalid="ignore"):
-        area = np.where(
-            np.abs(2 + slope) < 1e-6,
-            np.log(high / low),
-            (np.exp(right) - np.exp(left)) / (2 + slope),
-        )
-    return node, mean * (high**2 - low**2) / (2 * node**2 * area)
+    low, high, mean = annuli.edges[:-1], annuli.edges[1:], annuli.mean
+    node, owner = np.sqrt(0.5 * (low**2 + high**2)), np.arange(mean.size)
+    if mean.size > 1:
+        slope = np.clip(np.gradient(np.log(mean), np.log(node)), -8.0, 1.0)
+        left, right = (2 + slope) * np.log(low / node), (2 + slope) * np.log(high / node)
+        flat = np.abs(2 + slope) < 1e-6
+        area = (np.exp(right) - np.exp(left)) / np.where(flat, 1.0, 2 + slope)
+        area = np.where(flat, np.log(high / low), area)
+        value = mean * (high**2 - low**2) / (2 * node**2 * area)
+    else:
+        value = mean
+    if high[0] > _PLATEAU * low[0]:
+        node, owner = np.append(low[0], node), np.append(0, owner)
+        node[1], value = high[0], np.concatenate([mean[:1], mean[:1], value[1:]])
+    return node, value, owner
 
 
-def _conserving(edges: np.ndarray, power: np.ndarray, q: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Nudge C at the nodes until the power laws between them hold the annuli's mean square height.
-
-    Smoothed over three annuli, so that the noise of single ones is not amplified.
-    """
-    if q.size < 3:
-        return c
-
-    def smooth(values: np.ndarray) -> np.ndarray:
-        padded = np.concatenate([values[:1], values, values[-1:]])
-        return 0.25 * padded[:-2] + 0.5 * padded[1:-1] + 0.25 * padded[2:]
-
-    for _ in range(_SWEEPS):
-        grid, value = _with_edges(edges, q, c)
-        held = 2 * np.pi * bin_integrals(grid, value, 1)
-        held = held[0::2] + held[1::2]
-        c = c * smooth(power) / smooth(held)
-    return c
+def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
+    """Mean square height [m2] of the power laws between nodes, carried on to the last edge."""
+    slope = np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2])
+    grid, value = np.append(q, edges[-1]), np.append(c, c[-1] * (edges[-1] / q[-1]) ** slope)
+    if edges[0] < q[0]:
+        slope = np.log(c[1] / c[0]) / np.log(q[1] / q[0])
+        grid = np.append(edges[0], grid)
+        value = np.append(c[0] * (edges[0] / q[0]) ** slope, value)
+    return float(2 * np.pi * bin_integrals(grid, value, 1).sum())
 
 
-def _with_edges(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and edges in turn, the ends carried on along the outermost power laws."""
-    grid = np.empty(2 * q.size + 1)
-    grid[0::2], grid[1::2] = edges, q
-    log_q, log_c = np.log(q), np.log(c)
-    value = np.interp(np.log(grid), log_q, log_c)
-    slope = (log_c[-1] - log_c[-2]) / (log_q[-1] - log_q[-2])
-    value[-1] = log_c[-1] + slope * (np.log(grid[-1]) - log_q[-1])
-    return grid, np.exp(value)
+def _share(
+    edges: np.ndarray, q: np.ndarray, c: np.ndarray, lowest: np.ndarray, whole: float
+) -> float:
+    """Factor on the lowest annulus with which the power laws hold the whole mean square height."""
+    from scipy.optimize import brentq
+
+    def excess(factor: float) -> float:
+        return _held(edges, q, np.where(lowest, c * factor, c)) / whole - 1
+
+    if excess(0.2) > 0 or excess(5.0) < 0:
+        return 1.0
+    return float(brentq(excess, 0.2, 5.0, xtol=1e-12, rtol=1e-12))
 
 
 def spectrum(annuli: Annuli, error: np.ndarray) -> xr.Dataset:
-    """Return the annuli as a spectrum with its band."""
-    q, c = on_nodes(annuli.edges, annuli.mean)
-    c = _conserving(annuli.edges, annuli.power, q, c)
-    low, high = confidence_band(c, 1 / error**2)
+    """Put the annuli on nodes, with their band.
+
+    What the power laws between the nodes hold more or less than the annuli, at most some per
+    cent and mostly beside the roll-off, the lowest annulus takes up: it is the least certain.
+    """
+    q, c, owner = _node_values(annuli)
+    whole = float(annuli.power.sum())
+    if q.size > 2:
+        c = np.where(owner == 0, c * _share(annuli.edges, q, c, owner == 0, whole), c)
+    low, high = confidence_band(c, 1 / error[owner] ** 2)
     result = xr.Dataset(
         {
             "psd_2d": ("wavenumber", c),
             "psd_2d_low": ("wavenumber", low),
             "psd_2d_high": ("wavenumber", high),
-            "mean_square_height": ("wavenumber", annuli.power),
             "origin": ("wavenumber", np.zeros(q.size, np.int8)),
         },
-        {
-            "wavenumber": q,
-            "wavenumber_low": ("wavenumber", annuli.edges[:-1]),
-            "wavenumber_high": ("wavenumber", annuli.edges[1:]),
-        },
+        {"wavenumber": q},
     )
-    held = 2 * np.pi * bin_integrals(*_with_edges(annuli.edges, q, c), 1).sum() if q.size > 1 else 0
-    return result.assign_attrs(parseval_error_binned=abs(float(held / annuli.power.sum()) - 1))
+    held = _held(annuli.edges, q, c) if q.size > 1 else whole
+    return result.assign_attrs(parseval_error_binned=abs(held / whole - 1))

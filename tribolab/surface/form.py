@@ -211,9 +211,7 @@ def _circle(
 
 def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
     height = scans.height.transpose("y", "x")
-    x, y = (
-        (c - c.mean()) / max(np.ptp(c) / 2, 1e-300) for c in (scans.x.values, scans.y.values)
-    )
+    x, y = ((c - c.mean()) / max(np.ptp(c) / 2, 1e-300) for c in (scans.x.values, scans.y.values))
     vander = np.polynomial.legendre.legvander
     terms = [
         np.outer(vander(y, order)[:, i], vander(x, order)[:, j]).ravel()
