@@ -169,7 +169,7 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _log_error(psd: xr.Dataset) -> np.ndarray | None:
-    """Standard error of ln C, from the width of the 95 % band."""
+    """Read the standard error of ln C from the width of the 95 % band."""
     if "psd_2d_low" not in psd:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -9,9 +9,9 @@ from tribolab.errors import AnalysisError
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface import abel
-from tribolab.surface.binning import log_bins, shape
 from tribolab.surface.annuli import bins_of, confidence_band, join, spectrum
 from tribolab.surface.areal import psd_2d_of_map
+from tribolab.surface.binning import log_bins, shape
 from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.fourier import binned_power, fast_length, hann
 from tribolab.surface.reliability import trusted_band
@@ -182,10 +182,12 @@ def psd_2d(
         scans = psd_1d(scans, form=form, bins_per_decade=bins_per_decade, tip_radius=tip_radius)
     profile = scans.isel(wavenumber=scans.trusted.values == 1)
     if profile.wavenumber.size < 4:
+        at = scans.attrs
         raise AnalysisError(
-            f"psd_2d: {profile.wavenumber.size} trusted wavenumbers are too few for an inverse Abel transform; "
-            f"they end at {scans.attrs['trusted_high_1_m']:.3g} 1/m because of the "
-            f"{scans.attrs['trusted_high_limited_by']}: take longer or finer scans"
+            f"psd_2d: {profile.wavenumber.size} wavenumbers can be trusted, four are the least; "
+            f"{at['trusted_low_limited_by']} allows those above {at['trusted_low_1_m']:.3g} 1/m, "
+            f"{at['trusted_high_limited_by']} those below {at['trusted_high_1_m']:.3g} 1/m: take "
+            "longer or finer scans"
         )
     bins, relative = bins_of(profile)
     annuli, error = join(abel.invert(bins), relative)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
 from tribolab.units import to_si
 
 # A sphere that traces profiles of the reference surfaces loses less than 5 % of C_1D as long as
@@ -84,12 +83,7 @@ def trusted_band(
     -------
     tuple of numpy.ndarray and dict
         1 where the whole bin lies in the trusted band, else 0, and attributes that say what
-        limits the band on either side.
-
-    Raises
-    ------
-    AnalysisError
-        If no bin can be trusted.
+        limits the band on either side. In noise no bin can be trusted.
     """
     q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
     left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
@@ -108,14 +102,9 @@ def trusted_band(
     low_by, high_by = max(lows, key=lows.get), min(highs, key=highs.get)
     low, high = lows[low_by], highs[high_by]
     trusted = (left >= low * (1 - 1e-9)) & (right <= high * (1 + 1e-9))
-    if not trusted.any():
-        raise AnalysisError(
-            f"no wavenumber can be trusted: {low_by} allows those above {low:.3g} 1/m, {high_by} "
-            f"those below {high:.3g} 1/m; take longer or finer scans"
-        )
     attrs = {
-        "trusted_low_1_m": float(left[trusted].min()),
-        "trusted_high_1_m": float(right[trusted].max()),
+        "trusted_low_1_m": float(left[trusted].min()) if trusted.any() else low,
+        "trusted_high_1_m": float(right[trusted].max()) if trusted.any() else high,
         "trusted_low_limited_by": low_by,
         "trusted_high_limited_by": high_by,
     }
