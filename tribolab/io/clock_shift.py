@@ -27,7 +27,8 @@ _DECADES = 5  # slower than this many decades below the fastest is rest
 _BINS = 3  # classes per decade
 _LEAST_EXPLAINED = 0.2
 _LEAST_CONTRAST = 0.1
-_LEAST_SIGNIFICANCE = 10.0  # as an F ratio; a force that only drifts stays far below
+_LEAST_SIGNIFICANCE = 10.0  # as an F ratio
+_SHARP = 0.03  # most that the uncertainty may be, in mean durations of a class
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 
 
@@ -84,7 +85,12 @@ def estimate_clock_shift(
     shift = fine.vertex(shift)
     if fine.significance(shift) < _LEAST_SIGNIFICANCE:
         return None
-    return Estimate(shift, fine.uncertainty(shift), fine.ratio(shift))
+    # a drift is explained by any classes that follow one another, but no shift fits it sharply
+    uncertainty = fine.uncertainty(shift)
+    stretch = np.ptp(motion_time) / len(np.unique(classes))
+    if uncertainty > _SHARP * stretch:
+        return None
+    return Estimate(shift, uncertainty, fine.ratio(shift))
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
@@ -220,7 +226,7 @@ class _Fine:
 
 
 def _correlated(residual: Array) -> float:
-    """Samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
+    """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
     block = -(-len(residual) // _GRID)
     rows = len(residual) // block
     means = residual[: rows * block].reshape(rows, block).mean(axis=1)

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
+from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError
 from tribolab.io.clock import join_clocks, kept_rows, set_time
 from tribolab.io.dialects import Dialect, known_dialects, load_dialect, recognise
-from tribolab.io.merge import merge
 from tribolab.io.pieces import Content, read_content
 from tribolab.io.signature import peek
 from tribolab.io.values import single_values, step_values
@@ -93,6 +94,8 @@ def read(
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
+        from tribolab.io.merge import merge
+
         return merge(run, _run(companions), shift)
     dialect = main[0][1]
     if pair and dialect.pair is not None:
@@ -271,7 +274,7 @@ def _run(logs: Logs) -> xr.Dataset:
     attrs |= _attributes(contents, dialect, origin, left_out)
     data = xr.Dataset(
         {name: ("time", values) for name, values in columns.items()},
-        coords={"time": ("time", time)},
+        coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),
         attrs=attrs,
     )
     return stamp(data)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 import io
 from collections import deque
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -18,8 +17,9 @@ from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
 
-BLOCK = 4 << 20  # bytes: two of them in work fit the cache and keep both cores busy
+BLOCK = 1 << 20  # bytes: few enough that memory is used again before it is given back
 _WORKERS = 2
+_ONE_PIECE = 1 << 19  # arrow's own block: its intermediate results stay in the cache
 _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA", "--"]
 
 
@@ -29,18 +29,23 @@ class Hasher:
     def __init__(self) -> None:
         self._digest = hashlib.sha256()
         self._thread = ThreadPoolExecutor(1)
-        self._waiting: deque[Future] = deque()
 
-    def update(self, data: bytes) -> None:
-        """Add bytes; waits if the thread is far behind, so that blocks do not pile up."""
-        self._waiting.append(self._thread.submit(self._digest.update, data))
-        if len(self._waiting) > 2 * _WORKERS:
-            self._waiting.popleft().result()
+    def update(self, data: bytes | memoryview) -> Future:
+        """Add bytes; they may be overwritten when the future is done."""
+        return self._thread.submit(self._digest.update, data)
 
     def hexdigest(self) -> str:
         """Return the sum of all that was added."""
         self._thread.shutdown(wait=True)
         return self._digest.hexdigest()
+
+
+class _Work(NamedTuple):
+    """A block in work: its buffer is used again when both are done."""
+
+    buffer: bytearray
+    parsed: Future
+    hashed: Future | None
 
 
 def read_table(
@@ -76,52 +81,62 @@ def read_table(
     """
     parser = _Parser(raw, table, signals, dialect)
     columns = _Columns(signals, table.stop - table.start)
-    waiting: deque[Future] = deque()
-    with ThreadPoolExecutor(_WORKERS) as workers:
-        for place, block, last in _blocks(raw, table, hasher):
-            waiting.append(workers.submit(parser.parse, block, place, last))
-            if len(waiting) > _WORKERS:
-                columns.take(waiting.popleft().result())
-        while waiting:
-            columns.take(waiting.popleft().result())
+    try:
+        with _opened(raw) as file, ThreadPoolExecutor(_WORKERS) as workers:
+            if hasher:
+                hasher.update(file.read(table.start))
+            _pump(file, table, parser, columns, workers, hasher)
+            while hasher and (rest := file.read(BLOCK)):
+                hasher.update(rest).result()
+    except OSError as error:
+        raise ReadError(f"{raw.file.path}: the file cannot be read any more: {error}") from error
     return columns.finished(), parser.incomplete
 
 
-def _blocks(raw: RawText, table: Table, hasher: Hasher | None) -> Iterator[tuple[int, bytes, bool]]:
-    """Whole lines of a table: offset, bytes, and whether they are the last."""
-    if raw.memory is not None:
-        yield from _cut(io.BytesIO(raw.memory), table, None)
-        return
-    try:
-        with raw.file.path.open("rb") as file:
-            if hasher:
-                hasher.update(file.read(table.start))
-            yield from _cut(file, table, hasher)
-            while hasher and (rest := file.read(BLOCK)):
-                hasher.update(rest)
-    except OSError as error:
-        raise ReadError(f"{raw.file.path}: the file cannot be read any more: {error}") from error
+def _opened(raw: RawText) -> BinaryIO:
+    return raw.file.path.open("rb", buffering=0) if raw.memory is None else io.BytesIO(raw.memory)
 
 
-def _cut(file: BinaryIO, table: Table, hasher: Hasher | None) -> Iterator[tuple[int, bytes, bool]]:
+def _pump(
+    file: BinaryIO,
+    table: Table,
+    parser: _Parser,
+    columns: _Columns,
+    workers: ThreadPoolExecutor,
+    hasher: Hasher | None,
+) -> None:
+    """Pass a table on in blocks of whole lines, in a few buffers that are used in turn."""
     file.seek(table.start)
     place, left, rest = table.start, table.stop - table.start, b""
+    free: list[bytearray] = []
+    waiting: deque[_Work] = deque()
+
+    def finish_one() -> None:
+        work = waiting.popleft()
+        columns.take(work.parsed.result())
+        if work.hashed is not None:
+            work.hashed.result()
+        free.append(work.buffer)
+
     while left > 0:
-        data = file.read(min(BLOCK, left))
-        if not data:
-            break
-        left -= len(data)
-        if hasher:
-            hasher.update(data)
-        cut = data.rfind(b"\n") + 1 if left else len(data)
-        if cut:
-            block = rest + data[:cut] if rest else data[:cut]
-            yield place, block, left == 0
-            place, rest = place + len(block), data[cut:]
-        else:
-            rest += data
-    if rest:
-        yield place, rest, True
+        wanted = min(BLOCK, left)
+        buffer = free.pop() if free else bytearray(len(rest) + BLOCK)
+        if len(buffer) < len(rest) + wanted:
+            buffer = bytearray(len(rest) + wanted)
+        view = memoryview(buffer)
+        view[: len(rest)] = rest
+        got = file.readinto(view[len(rest) : len(rest) + wanted])
+        left = left - got if got else 0
+        full = len(rest) + got
+        hashed = hasher.update(view[len(rest) : full]) if hasher else None
+        cut = buffer.rfind(b"\n", 0, full) + 1 if left else full
+        rest = bytes(view[cut:full])
+        waiting.append(_Work(buffer, workers.submit(parser.parse, view[:cut], place, not left), hashed))
+        place += cut
+        if len(waiting) > _WORKERS:
+            finish_one()
+    while waiting:
+        finish_one()
 
 
 class _Parser:
@@ -135,30 +150,32 @@ class _Parser:
         self.incomplete = 0
         self._parse = {"delimiter": "\t" if delimiter == "whitespace" else delimiter}
         self._read = arrow_csv.ReadOptions(
-            column_names=names, block_size=2 * BLOCK, use_threads=False
+            column_names=names, block_size=_ONE_PIECE, use_threads=False
         )
         self._convert: dict[str, Any] = {
             "include_columns": list(dict.fromkeys(self._wanted)),
-            "null_values": [*_NO_VALUE, *dialect.text.missing],
+            "null_values": ["", *dialect.text.missing],
             "decimal_point": dialect.text.decimal,
             "check_utf8": False,
         }
 
-    def parse(self, block: bytes, place: int, last: bool) -> list[list[np.ndarray]]:
+    def parse(self, view: memoryview, place: int, last: bool) -> list[list[np.ndarray]]:
         """Numbers of one block: for each signal its pieces, still in the file's unit."""
         types = {name: pa.float64() for name in self._wanted}
+        if not view:  # a line longer than a block: it goes on in the next
+            return [[] for _ in self._wanted]
         try:
-            table = self._arrow(block, types)
+            table = self._arrow(view, types)
         except pa.ArrowInvalid as error:
-            table = self._second_try(block, place, last, types, error)
+            table = self._second_try(bytes(view), place, last, types, error)
         return [
             [piece.to_numpy(zero_copy_only=False) for piece in table[name].chunks]
             for name in self._wanted
         ]
 
-    def _arrow(self, block: bytes, types: dict[str, Any]) -> pa.Table:
+    def _arrow(self, block: bytes | memoryview, types: dict[str, Any]) -> pa.Table:
         return arrow_csv.read_csv(
-            pa.BufferReader(block),
+            pa.BufferReader(pa.py_buffer(block)),
             read_options=self._read,
             parse_options=arrow_csv.ParseOptions(**self._parse),
             convert_options=arrow_csv.ConvertOptions(**self._convert, column_types=types),
@@ -189,7 +206,7 @@ class _Parser:
         path = self._raw.file.path
         before = self._lines_before(place)
         lines = block.decode("utf-8", errors="replace").splitlines()
-        delimiter, missing = self._parse["delimiter"], set(self._convert["null_values"])
+        delimiter, missing = self._parse["delimiter"], {*_NO_VALUE, *self._convert["null_values"]}
         for number, line in enumerate(lines):
             if not line.strip():
                 continue
@@ -240,6 +257,8 @@ class _Columns:
     def take(self, pieces: list[list[np.ndarray]]) -> None:
         """Append one block's pieces."""
         rows = sum(len(piece) for piece in pieces[0])
+        if rows == 0:
+            return
         self._make_room(rows)
         for signal, array, chunks in zip(self._signals, self._arrays, pieces, strict=True):
             at = self._used
