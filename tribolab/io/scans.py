@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import glob
 from collections.abc import Sequence
 from pathlib import Path
@@ -108,8 +109,9 @@ def _is_scan(dialect: Dialect) -> bool:
     return {"x", "height"} <= {column.quantity for column in dialect.column}
 
 
-def _scan_dialects() -> list[Dialect]:
-    return [d for d in map(load_dialect, known_dialects()) if _is_scan(d)]
+@functools.cache  # the descriptions do not change while a program runs
+def _scan_dialects() -> tuple[Dialect, ...]:
+    return tuple(d for d in map(load_dialect, known_dialects()) if _is_scan(d))
 
 
 def _read(
