@@ -90,12 +90,12 @@ def psd_2d_of_map(
         },
         {"wavenumber": node[known]},
     )
-    return stamp(
-        data,
+    attrs = {
         **scan.attrs,
-        convention="<h^2> = 2 pi int q C dq",
-        scans=1,
-        mean_square_height_m2=whole,
-        anisotropy=float(np.sqrt(along_y / along_x)),
-        parseval_error=abs(float(power.sum() * scale * cell) / whole - 1),
-    )
+        "convention": "<h^2> = 2 pi int q C dq",
+        "scans": 1,
+        "mean_square_height_m2": whole,
+        "anisotropy": float(np.sqrt(along_y / along_x)),
+        "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
+    }
+    return stamp(data.assign_attrs(attrs))

@@ -137,21 +137,19 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    return stamp(
-        data,
+    attrs = {
         **kept,
-        hurst_exponent=-0.5 * law.slope - 1,
-        hurst_exponent_standard_error=0.5 * law.slope_error,
-        fit_low_1_m=decade[0],
-        fit_high_1_m=decade[1],
-        rolloff_wavenumber_1_m=rolloff,
-        rolloff=(
-            "seen in the spectrum"
-            if seen
-            else f"not reached: C(q) still rises towards {q[0]:.3g} 1/m, so the plateau below is "
-            "an assumption; longer scans would show it"
-        ),
-    )
+        "hurst_exponent": -0.5 * law.slope - 1,
+        "hurst_exponent_standard_error": 0.5 * law.slope_error,
+        "fit_low_1_m": decade[0],
+        "fit_high_1_m": decade[1],
+        "rolloff_wavenumber_1_m": rolloff,
+        "rolloff": "seen in the spectrum"
+        if seen
+        else f"not reached: C(q) still rises towards {q[0]:.3g} 1/m, so the plateau below is an "
+        "assumption; longer scans would show it",
+    }
+    return stamp(data.assign_attrs(attrs))
 
 
 def origin_flags() -> dict[str, str | list[int]]:

@@ -46,7 +46,9 @@ def hann(points: int) -> np.ndarray:
     return window / np.sqrt(np.mean(window**2))
 
 
-def binned_power(height: np.ndarray, window: np.ndarray, bins: Bins, length: int) -> Power:
+def binned_power(
+    height: np.ndarray, window: np.ndarray, bins: Bins, length: int, workers: int = 1
+) -> Power:
     """Sum of ``|H_k|^2`` over the lines of each bin and over all scans.
 
     Parameters
@@ -59,6 +61,8 @@ def binned_power(height: np.ndarray, window: np.ndarray, bins: Bins, length: int
         Bins of the lines 1 ... length // 2.
     length
         Length of the transform; the heights are padded with zeros.
+    workers
+        Threads of the transform.
 
     Notes
     -----
@@ -78,7 +82,7 @@ def binned_power(height: np.ndarray, window: np.ndarray, bins: Bins, length: int
         np.multiply(part, window, out=tapered[:, :points])
         flat = tapered.ravel()
         heights += float(flat @ flat)
-        squares = scipy.fft.rfft(tapered, axis=-1).view(float)
+        squares = scipy.fft.rfft(tapered, axis=-1, workers=workers).view(float)
         np.multiply(squares, squares, out=squares)
         lines += float(squares[:, :2].sum()) - float(squares[:, last:].sum())
         total += np.add.reduceat(squares, 2 * bins.starts, axis=-1).sum(0)

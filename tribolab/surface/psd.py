@@ -25,6 +25,7 @@ def psd_1d(
     form: str = "auto",
     bins_per_decade: float = 12,
     tip_radius: str | float | None = None,
+    workers: int = 1,
 ) -> xr.Dataset:
     """One-dimensional power spectrum of profiles, averaged over the scans, with its band.
 
@@ -39,6 +40,8 @@ def psd_1d(
         Width of the bins on the logarithmic axis; at small k a bin holds at least four lines.
     tip_radius
         Radius of the stylus [m] or text; by default what the scans' file says.
+    workers
+        Threads of the Fourier transform.
 
     Returns
     -------
@@ -81,7 +84,7 @@ def psd_1d(
     length = fast_length(points)
     taken = removed_order(scans)
     bins = log_bins(length // 2, taken + 2, bins_per_decade)
-    power = binned_power(heights.data, hann(points), bins, length)
+    power = binned_power(heights.data, hann(points), bins, length, workers)
     if not np.isfinite(power.heights):
         raise AnalysisError(
             "psd_1d: the heights hold NaN or infinity; fill the dropouts with fill_dropouts()"
@@ -113,17 +116,17 @@ def psd_1d(
     trusted, limits = trusted_band(data, scans, tip_radius, taken + 2)
     data["trusted"] = ("wavenumber", trusted)
     whole = power.heights / (number * points)
-    return stamp(
-        data,
+    attrs = {
         **_inherited(scans, f"1D power spectrum of {number} scans"),
         **limits,
-        convention="two-sided: <h^2> = 2 int_0^inf C_1D dk",
-        scans=number,
-        pitch_m=pitch,
-        length_m=pitch * (points - 1),
-        mean_square_height_m2=whole,
-        parseval_error=abs(power.lines / power.heights - 1),
-    )
+        "convention": "two-sided: <h^2> = 2 int_0^inf C_1D dk",
+        "scans": number,
+        "pitch_m": pitch,
+        "length_m": pitch * (points - 1),
+        "mean_square_height_m2": whole,
+        "parseval_error": abs(power.lines / power.heights - 1),
+    }
+    return stamp(data.assign_attrs(attrs))
 
 
 def psd_2d(
@@ -191,10 +194,10 @@ def psd_2d(
         )
     bins, relative = bins_of(profile)
     annuli, error = join(abel.invert(bins), relative)
+    inherited = _inherited(scans, "2D power spectrum by the inverse Abel transform")
+    found = spectrum(annuli, error)
     return stamp(
-        spectrum(annuli, error),
-        **_inherited(scans, "2D power spectrum by the inverse Abel transform"),
-        convention="<h^2> = 2 pi int q C dq",
+        found.assign_attrs({**inherited, **found.attrs, "convention": "<h^2> = 2 pi int q C dq"})
     )
 
 

@@ -18,7 +18,7 @@ def roughness_parameters(
     *,
     lambda_c: str | float | None = "auto",
     lambda_s: str | float | None = "auto",
-    sampling_lengths: bool = False,
+    sampling_lengths: bool = True,
 ) -> xr.Dataset:
     """Ra, Rq, Rz, Rsk, Rku and Rdq of profiles, after the standard Gaussian filter.
 
@@ -33,8 +33,9 @@ def roughness_parameters(
     lambda_s
         Short-wave cut-off; None leaves short waves in. ``"auto"``: nothing.
     sampling_lengths
-        True: Ra, Rq, Rsk, Rku are means over whole sampling lengths of one lambda_c (ISO 4287);
-        False: they are taken over the whole evaluation length (ISO 21920).
+        True: Ra, Rq, Rsk, Rku are means over whole sampling lengths of one lambda_c (ISO 4287,
+        what most instruments show); False: they are taken over the whole evaluation length
+        (ISO 21920). Without lambda_c there are no sampling lengths.
 
     Returns
     -------
@@ -50,8 +51,9 @@ def roughness_parameters(
     Notes
     -----
     The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
-    where the filter runs in, is left out. Rz is the mean over sampling lengths of the height
-    from the deepest valley to the highest peak. Rdq is taken from the six-point formula of
+    where the filter runs in, is left out. Heights count from the mean line; only
+    without lambda_c from their mean. Rz is the mean over sampling lengths of the height
+    from the deepest valley to the highest peak. Rdq is taken from the seven-point formula of
     ISO 4287.
 
     References
@@ -91,8 +93,9 @@ def roughness_parameters(
     lengths = 5 if cut is None else max(1, int(round(rows.shape[-1] * pitch / cut - 0.25)))
     size = rows.shape[-1] // lengths
     parts = rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
-    over = parts if sampling_lengths else rows[..., None, :]
-    deviation = over - over.mean(-1, keepdims=True)
+    deviation = parts if sampling_lengths and cut is not None else rows[..., None, :]
+    if cut is None:  # else the filter's mean line is the zero of the profile
+        deviation = deviation - deviation.mean(-1, keepdims=True)
     square = np.mean(deviation**2, -1)
     if not (square > 0).all():
         raise AnalysisError("roughness_parameters: all heights are equal, the profile is level")
