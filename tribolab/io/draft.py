@@ -1,4 +1,4 @@
-"""Draft a dialect from an unknown raw file: what it is, how it is written, what its columns hold."""
+"""Draft a dialect from an unknown raw file: how it is written and what its columns hold."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import OutputError, ReadError, TribolabError
+from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError
 from tribolab.io.dialect_model import Dialect
-from tribolab.io.dialects import load_dialect, recognise
+from tribolab.io.dialects import recognise
 from tribolab.io.draft_columns import Kind, Understood, first_cells_of, understand
 from tribolab.io.draft_layout import Layout, examine
 from tribolab.io.draft_toml import FILL_IN, dialect_toml
@@ -128,7 +128,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     >>> draft.kind, [c.quantity for c in draft.understood.columns]
     ('run', ['time', 'friction_force', 'position'])
     >>> draft.to_fill_in
-    {20: 'the unit of \'Weg\' (position), e.g. "m"'}
+    {27: 'the unit of \'Weg\' (position), e.g. "m"'}
     """
     file = peek(path)
     if file.format != "text":
@@ -154,7 +154,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
         known=_known(file),
     )
     if toml:
-        _validated(draft)
+        _validate(draft)
     return draft
 
 
@@ -163,19 +163,21 @@ def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:
 
     Raises
     ------
+    ConfigError
+        If there is such a file already, or its name does not end in ``.toml``.
     OutputError
-        If there is such a file already, it cannot be written, or the draft has no dialect.
+        If it cannot be written, or the draft has no dialect.
     """
     path = Path(path)
     if not draft.toml:
         raise OutputError(f"{path}: not written, {draft.path.name} has no dialect: {draft.answer}")
     if path.suffix != ".toml":
-        raise OutputError(f"{path}: the name of a dialect's file ends in .toml")
+        raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
     try:
         with path.open("w" if force else "x", encoding="utf-8", newline="\n") as handle:
             handle.write(draft.toml)
     except FileExistsError as error:
-        raise OutputError(
+        raise ConfigError(
             f"{path}: there is such a file already; --force replaces it, --output names another"
         ) from error
     except OSError as error:
@@ -200,9 +202,9 @@ def _known(file: File) -> str:
         return ""
 
 
-def _validated(draft: Draft) -> None:
+def _validate(draft: Draft) -> None:
     try:
-        assert draft.dialect is not None
+        Dialect.model_validate(tomllib.loads(draft.toml))
     except (ValueError, TribolabError) as error:
         raise ReadError(
             f"{draft.path}: the file was understood, but no dialect can say it: {error}"
@@ -251,6 +253,3 @@ def _results(file: File, name: str) -> Draft:
         cells=tuple(tuple(row) for row in rows[:_SHOWN]),
         known="",
     )
-
-
-__all__ = ["Draft", "dialect_name", "draft_dialect", "load_dialect", "save_draft"]

@@ -11,7 +11,7 @@ from tribolab.errors import TribolabError
 from tribolab.units import conversion
 
 if TYPE_CHECKING:
-    from tribolab.io.draft_layout import Grammar
+    from tribolab.io.draft_text import Grammar
 
 _ABOVE = 8  # lines above the first row that are looked at
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")

@@ -11,21 +11,10 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io.draft_header import Heading, escaped, find_heading, first_cells
-from tribolab.io.headers import split_row
+from tribolab.io.draft_text import DELIMITERS, Grammar, find_encoding, find_grammar, find_line_ends
 from tribolab.io.signature import HEAD, File
 
 _TAIL = 1 << 14
-_VOTERS = 300  # lines at the start and at the end that decide on the delimiter
-_NAMES = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
-_NUMBER = {
-    ".": r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?",
-    ",": r"[+-]?(?:\d+,?\d*|,\d+)(?:[eE][+-]?\d+)?",
-}
-# dates, times of day, and what instruments write where a value should stand
-_NO_NUMBER = re.compile(
-    r"(?i)nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none|"
-    r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|\d{1,2}:\d\d(?::\d\d(?:[.,]\d+)?)?"
-)
 
 
 class Block(NamedTuple):
@@ -63,48 +52,11 @@ class Layout(NamedTuple):
     @property
     def delimiter_name(self) -> str:
         """The delimiter in a word."""
-        return _NAMES[self.delimiter]
+        return DELIMITERS[self.delimiter]
 
     def rows(self) -> list[str]:
         """Lines of numbers of all blocks."""
         return [self.lines[index] for block in self.blocks for index in block.rows]
-
-
-class Grammar:
-    """One way to read lines: a delimiter and a decimal mark."""
-
-    def __init__(self, delimiter: str, decimal: str):
-        self.delimiter, self.decimal = delimiter, decimal
-        number = _NUMBER[decimal]
-        self._number = re.compile(number)
-        gap = r"\s+" if delimiter == "whitespace" else re.escape(delimiter)
-        cell = f"(?:{number})" if delimiter == "whitespace" else f" *(?:{number})? *"
-        self._plain = re.compile(f"{cell}(?:{gap}{cell})*")
-
-    def cells(self, line: str) -> list[str]:
-        """Cells of a line."""
-        return split_row(line, self.delimiter)
-
-    def is_number(self, cell: str) -> bool:
-        """Whether a cell is a number."""
-        return self._number.fullmatch(cell) is not None
-
-    def merit(self, line: str) -> tuple[int, int]:
-        """Return the number of cells, and by how much numbers outweigh text (0: not a row)."""
-        cells = self.cells(line)
-        filled = [cell for cell in cells if cell]
-        numbers = sum(map(self.is_number, filled))
-        text = sum(1 for c in filled if not self.is_number(c) and not _NO_NUMBER.fullmatch(c))
-        is_row = numbers > 0 and 2 * (len(filled) - text) > len(filled)
-        return len(cells), max(numbers - text, 1) if is_row else 0
-
-    def width(self, line: str) -> int:
-        """Return the number of cells of a row of numbers; 0 for any other line."""
-        stripped = line.strip() if self.delimiter == "whitespace" else line
-        if self._plain.fullmatch(stripped) and any(map(str.isdigit, stripped)):
-            return len(self.cells(line))
-        width, merit = self.merit(line)
-        return width if merit else 0
 
 
 def examine(file: File) -> Layout:
@@ -120,11 +72,11 @@ def examine(file: File) -> Layout:
     ReadError
         If it holds no table of numbers.
     """
-    encoding, guesses = _encoding(file.head)
+    encoding, guesses = find_encoding(file.head)
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
     lines = tuple(re.sub(r"\r+\n|\r", "\n", text).split("\n"))
-    grammar = _grammar(lines)
+    grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
             f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
@@ -151,7 +103,7 @@ def examine(file: File) -> Layout:
     return Layout(
         file=file,
         encoding=encoding,
-        line_ends=_line_ends(raw),
+        line_ends=find_line_ends(raw),
         delimiter=grammar.delimiter,
         decimal=grammar.decimal,
         width=first.width,
@@ -168,45 +120,6 @@ def examine(file: File) -> Layout:
         whole=file.size <= HEAD,
         guesses=tuple(guesses),
     )
-
-
-def _encoding(head: bytes) -> tuple[str, list[str]]:
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16", []
-    try:
-        # the head may end inside a character
-        head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
-    except UnicodeDecodeError:
-        name = "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
-        return name, [f"the encoding is {name}: the file is not UTF-8"]
-    return "utf-8", []
-
-
-def _line_ends(raw: bytes) -> str:
-    counts = Counter(re.findall(rb"\r+\n|\r|\n", raw))
-    names = {b"\n": "LF", b"\r\n": "CR LF", b"\r": "CR", b"\r\r\n": "CR CR LF"}
-    found = [f"{names.get(end, 'CR ... LF')}" for end, _ in counts.most_common()]
-    return " and ".join(dict.fromkeys(found)) or "none"
-
-
-def _grammar(lines: tuple[str, ...]) -> Grammar | None:
-    """Return the delimiter and decimal mark that make most numbers of the lines."""
-    filled = [line for line in lines if line.strip()]
-    voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
-    best, highest = None, 0
-    for delimiter in _NAMES:
-        for decimal in (".", ","):
-            if delimiter == decimal:
-                continue
-            grammar = Grammar(delimiter, decimal)
-            votes: Counter[int] = Counter()
-            for line in voters:
-                width, merit = grammar.merit(line)
-                votes[width] += merit
-            top = max(votes.values(), default=0)
-            if top > highest:  # in the order of _NAMES: a tab is also a blank
-                best, highest = grammar, top
-    return best
 
 
 def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:

@@ -1,4 +1,4 @@
-"""A drafted dialect as TOML for people: what was guessed and what is missing is said in comments."""
+"""A drafted dialect as TOML for people: comments say what was guessed and what is missing."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.io.draft_columns import DraftColumn, Understood
 from tribolab.io.draft_layout import Layout
+from tribolab.quantities import quantity
 
 FILL_IN = "FILL IN"
 
@@ -33,7 +34,12 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
     parts += [_time_table(understood), _speed_table(understood.kind, used)]
-    parts += [_column(column, understood.numbers[:, column.place - 1]) for column in columns]
+    numbers = understood.numbers
+    parts += [_column(column, numbers[:, column.place - 1]) for column in used]
+    wanted = [column for column in columns if column.fill_in]
+    parts += [_column(column, numbers[:, column.place - 1]) for column in wanted]
+    rest = [column for column in columns if not column.used and not column.fill_in]
+    parts.append(_unused(rest, numbers))
     return "\n".join(part for part in parts if part)
 
 
@@ -104,10 +110,27 @@ def _speed_table(kind: str, used: list[DraftColumn]) -> str:
     return f'[speed]\nsource = "{source}"\n'
 
 
+def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:
+    """Return columns that nothing is known of; the empty ones among them in one line."""
+    filled = np.isfinite(numbers).any(axis=0)
+    empty = [
+        str(c.place) for c in columns if not c.label and not filled[c.place - 1] and not c.note
+    ]
+    others = [column for column in columns if str(column.place) not in empty]
+    parts = []
+    if others:
+        parts.append(
+            "# Not used. To use a column remove the '#' before it and put in what is '?'.\n"
+        )
+    parts += [_column(column, numbers[:, column.place - 1]) for column in others]
+    if empty:
+        parts.append(f"# Empty: column {', '.join(empty)}\n")
+    return "\n".join(parts)
+
+
 def _column(column: DraftColumn, values: np.ndarray) -> str:
     """Return one column; what is not used stands there as a comment, ready to be filled in."""
     lines = ["[[column]]"]
-    unknown = column.quantity is None
     lines.append(f'quantity = "{column.quantity or "?"}"')
     if column.name is None:
         lines.append(f"position = {column.place}")
@@ -117,7 +140,7 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
             lines.append(f"occurrence = {column.occurrence}")
     if column.unit is not None:
         lines.append(f"unit = {_text(column.unit)}")
-    elif column.file_unit is None and (column.fill_in or unknown or column.name is None):
+    elif column.file_unit is None and not column.used and not _has_no_unit(column):
         lines.append('unit = "?"')
     if column.sign < 0:
         lines.append("sign = -1")
@@ -134,6 +157,10 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
     else:
         about = [f"# {label}: {_range(values)}; {_comment(column.note or 'not used')}"]
     return "\n".join([*about, *(f"# {line}" for line in lines)]) + "\n"
+
+
+def _has_no_unit(column: DraftColumn) -> bool:
+    return column.quantity is not None and quantity(column.quantity).unit == "1"
 
 
 def _range(values: np.ndarray) -> str:
