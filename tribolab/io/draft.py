@@ -67,7 +67,11 @@ class Draft(NamedTuple):
         """What was guessed, in the order of the file."""
         if self.layout is None or self.understood is None:
             return ()
-        columns = [guess for column in self.understood.columns for guess in column.guessed]
+        columns = [
+            f"column {column.place}" + (f" '{column.label}': " if column.label else ": ") + guess
+            for column in self.understood.columns
+            for guess in column.guessed
+        ]
         return (*self.layout.guesses, *self.understood.guesses, *columns)
 
     @property

@@ -67,7 +67,7 @@ def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn
     x_unit, z_unit = _scan_units(part, 2)
     units = (x_unit, x_unit, z_unit)
     found = [
-        column._replace(quantity=q, unit=u, used=True, guessed=(f"{q} is in {u}",))
+        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
         for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
     ]
     return found, ["it is a map: columns 1 and 2 fill a grid"]
@@ -75,7 +75,7 @@ def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn
 
 def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
     found = [
-        column._replace(quantity=q, unit=u, used=True, guessed=(f"{q} is in {u}",))
+        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
         for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
     ]
     return found, ["it is a profile: two columns, the first rises in even steps"]
@@ -87,7 +87,7 @@ def _run(
     from tribolab.io.draft_columns import _time_unit
 
     unit = _time_unit(part[:, time])
-    why = f"column {time + 1} is time in {unit}: it rises in every row"
+    why = f"it is time in {unit}: it rises in every row"
     result = list(columns)
     result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
     others = [i for i in range(part.shape[1]) if i != time]
@@ -99,7 +99,7 @@ def _run(
         note = f"the same signal as column {', '.join(same)}" if same else "without a name"
         result[i] = columns[i]._replace(note=note)
     if position is not None:
-        why = f"column {position + 1} is the position in mm: it runs smoothly to and fro"
+        why = "it is the position in mm: it runs smoothly to and fro"
         result[position] = columns[position]._replace(
             quantity="position", unit="mm", used=True, guessed=(why,)
         )

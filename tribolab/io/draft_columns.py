@@ -194,7 +194,7 @@ def _assigned(
             continue
         unit = bare[index][1]
         if unit is not None and not found[index]:
-            same = [q for q in _SIGNALS if converts(unit, quantity(q).unit)]
+            same = [q for q in _SIGNALS if _told_by(unit, quantity(q).unit)]
             hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
             result[index] = column._replace(note=hint or "the name is not known")
         elif not found[index]:
@@ -211,6 +211,11 @@ def _assigned(
                 note = f"also looks like {name}; column {winner + 1} is used"
                 result[index] = columns[index]._replace(quantity=name, note=note)
     return result
+
+
+def _told_by(unit: str, si_unit: str) -> bool:
+    """Whether a unit tells something of the quantity: a number without a unit may be anything."""
+    return si_unit != "1" and converts(unit, si_unit)
 
 
 def _preferred(
@@ -244,9 +249,9 @@ def _column(
     si_unit = quantity(option.quantity).unit
     guessed = []
     if option.score < _SURE:
-        guessed.append(f"'{column.label}' is the {quantity(option.quantity).long_name}")
+        guessed.append(f"the name means {quantity(option.quantity).long_name}")
     if several:
-        guessed.append(f"of several columns for {option.quantity} this one is meant")
+        guessed.append(f"of several columns for {option.quantity} it is the one meant")
     written = unit if say_unit else None
     if option.unit:
         written = option.unit

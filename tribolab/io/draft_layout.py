@@ -139,6 +139,8 @@ def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
         if not line.strip():
             continue
         found = grammar.width(line)
+        if not found and rows and grammar.goes_on(line, width):
+            found = width
         if found != width and not (rows and index == last and 0 < found < width):
             close()
             width = found

@@ -119,20 +119,15 @@ def _remark(column: DraftColumn) -> str:
 
 
 def _rows_table(draft: Draft) -> Table:
+    """First rows in SI, a line for each quantity: names are longer than numbers."""
     rows = draft.first_rows()
-    headings = [f"{name}\n{_si(name)}" for name in rows]
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold", title_justify="left")
-    table.title = "first rows in SI"
-    for heading in headings:
-        table.add_column(escape(heading), justify="right", overflow="fold")
-    for values in zip(*rows.values(), strict=True):
-        table.add_row(*("" if np.isnan(value) else f"{value:.6g}" for value in values))
+    shown = max((len(values) for values in rows.values()), default=0)
+    table = _table("first rows in SI", "", *(f"row {number + 1}" for number in range(shown)))
+    for name, values in rows.items():
+        unit = quantity(name).unit
+        cells = ["" if np.isnan(value) else f"{value:.6g}" for value in values]
+        table.add_row(name, "" if unit == "1" else unit, *cells)
     return table
-
-
-def _si(name: str) -> str:
-    unit = quantity(name).unit
-    return f"[{unit}]" if unit not in ("", "1") else ""
 
 
 def _cells_table(draft: Draft) -> Table:

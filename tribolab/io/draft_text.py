@@ -58,6 +58,13 @@ class Grammar:
         width, merit = self.merit(line)
         return width if merit else 0
 
+    def goes_on(self, line: str, width: int) -> bool:
+        """Whether a line can be a row in the midst of others: half of it may be error codes."""
+        cells = self.cells(line)
+        numbers = sum(map(self.is_number, cells))
+        filled = sum(1 for cell in cells if cell)
+        return len(cells) == width and self.is_number(cells[0]) and 2 * numbers >= filled
+
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
     """Return the encoding, and what was guessed of it."""

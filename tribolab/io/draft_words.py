@@ -153,13 +153,15 @@ def split_unit(label: str) -> tuple[str, str | None]:
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
     """
     known = {symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols}
-    found = re.fullmatch(r"(.*\w)\s*(?:[\s_/,]|\bin\b)\s*([^\s_/,]+(?:/\w+)?)", label.strip())
-    if not found or squeezed(label) in known:
+    if squeezed(label) in known:
         return label, None
-    name, unit = found[1].removesuffix(" in").strip(), found[2]
-    for text in (unit, unit.lower() if len(unit) > 3 else unit):
-        if is_unit(text) or text in _WEIGHTS:
-            return name, text
+    for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
+        name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
+        for text in (unit, unit.lower() if len(unit) > 3 else unit):
+            # what has no dimension is part of the name: the N/N of F_N/N
+            unitless = converts(text, "1") and text != "%"
+            if name and not unitless and (is_unit(text) or text in _WEIGHTS):
+                return name, text
     return label, None
 
 

@@ -64,9 +64,10 @@ class Violations(NamedTuple):
             if len(one.rows) == 0:
                 value = one.values[0] if len(one.values) else None
                 found.append(Violation(None, one.column, value, one.constraint, one.limit))
+                continue
             for row, value in zip(one.rows[:share].tolist(), one.values[:share], strict=True):
                 found.append(Violation(row, one.column, value, one.constraint, one.limit))
-        return found
+        return found[:number]
 
     def table(self) -> pd.DataFrame:
         """Return every violation as a row: row, column, value, constraint, limit."""
