@@ -276,6 +276,56 @@ def test_names_are_understood_in_two_languages(header, quantities, tmp_path):
     assert data.sizes["time"] == 2
 
 
+@pytest.mark.parametrize(
+    ("unit", "rad_s"), [("1/min", 0.1047198), ("U/min", 0.1047198), ("Hz", 6.2831853)]
+)
+def test_turns_are_not_taken_for_radians(unit, rad_s, tmp_path):
+    file = tmp_path / "turns.csv"
+    file.write_text(f"Zeit [s];Drehzahl [{unit}];Last [N]\n0;1;9\n1;1;9\n2;1;9\n")
+    data, draft = drafted(file, tmp_path)
+    np.testing.assert_allclose(data.rotation_speed.values, rad_s, rtol=1e-6)
+    assert any(unit in guess for guess in draft.guesses)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Time [s]  Normal force [N]  Fx [mN]\n  0.0   31  2.0\n  0.1   31  2.5\n 0.2 31 3.0\n",
+        "# t[s] Fz[N] Fx[mN]\n0.0 31 2.0\n0.1 31 2.5\n0.2 31 3.0\n",
+        "Time,Load,Friction\nsec,N,mN\nch 1,ch 2,ch 3\n0.0,31,2.0\n0.1,31,2.5\n0.2,31,3\n",
+        "sep=;\nTime [s];Load [N];Friction [mN]\n0,0;31;2,0\n0,1;31;2,5\n0,2;31;3,0\n",
+        '"Time [s]","Load [N]","Friction [mN]"\n"0","31","2.0"\n"0.1","31","2.5"\n"0.2","31","3"\n',
+        "Time [s]\tLoad [N]\tFriction [mN]\t\n0\t31\t2.0\t\n0.1\t31\t2.5\t\n0.2\t31\t3\t\n",
+        "Time [s],Load [N],Friction [mN]\n0,31,2.0\n0.1,31,2.5\n0.2,31,3\n0.3,31",
+    ],
+    ids=["blanks", "comment", "third line", "sep=", "quotes", "trailing", "cut off"],
+)
+def test_headers_in_many_forms_say_the_same(text, tmp_path):
+    file = tmp_path / "form.txt"
+    file.write_text(text)
+    data, draft = drafted(file, tmp_path)
+    np.testing.assert_allclose(data.friction_force.values, [2e-3, 2.5e-3, 3e-3])
+    np.testing.assert_allclose(data.normal_force.values, 31)
+    np.testing.assert_allclose(data.time.values, [0, 0.1, 0.2])
+    assert not draft.to_fill_in
+
+
+def test_names_that_say_nothing_leave_it_to_the_numbers(tmp_path):
+    file = tmp_path / "channels.csv"
+    rows = "\n".join(f"{10 * i},{i % 7},{(3 * i) % 5}" for i in range(50))
+    file.write_text(f"Channel 1,Channel 2,Channel 3\n{rows}\n")
+    data, draft = drafted(file, tmp_path)
+    assert draft.kind == "run" and data.time.values[-1] == pytest.approx(0.49)
+    assert "it is time in ms" in draft.guesses[0]
+
+
+def test_what_cannot_be_read_is_refused_with_the_cure(tmp_path):
+    file = tmp_path / "quoted.csv"
+    file.write_text('"Zeit [s]","Kraft [N]"\n"0,0","1,0"\n"0,1","1,1"\n')
+    with pytest.raises(ReadError, match="semicolon"):
+        draft_dialect(file)
+
+
 @pytest.mark.parametrize("bad", ["OVL", "Err110", "***.**um", "#N/A", "kaputt"])
 def test_words_for_no_value_are_found(bad, tmp_path):
     file = tmp_path / "gaps.csv"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -222,7 +223,9 @@ def _answer(file: File, understood: Understood) -> str:
     labels = [column.label for column in understood.columns if column.label]
     if not labels:
         try:
-            scan = read_foreign(file.path)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # what is no scan makes it divide by zero
+                scan = read_foreign(file.path)
         except TribolabError:
             return (
                 "numbers without names, of which no column proceeds like time or a position; give "

@@ -77,14 +77,16 @@ def understand(layout: Layout) -> Understood:
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)
     guesses: list[str] = []
-    if any(column.label for column in columns):
+    if _say_something(columns):
         kind, columns = _by_name(columns, numbers)
     else:
         from tribolab.io.draft_behaviour import by_behaviour
 
         kind, columns, guesses = by_behaviour(columns, numbers)
     columns = [
-        column._replace(used=False, fill_in="", note=f"not a number: '{text[column.place - 1]}'")
+        column._replace(
+            used=False, guessed=(), fill_in="", note=f"not a number: '{text[column.place - 1]}'"
+        )
         if text[column.place - 1]
         else column
         for column in columns
@@ -138,7 +140,7 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     columns, seen = [], {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
-        if unit is not None and not is_unit(unit) and unit not in ("g", "kg"):
+        if unit is not None and not is_unit(unit):
             unit = None  # brackets around something else
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None
@@ -155,6 +157,12 @@ def _bare(column: DraftColumn) -> tuple[str, str | None, bool]:
         return name, column.file_unit, column.name is None
     name, unit = split_unit(name)
     return name, unit, unit is not None
+
+
+def _say_something(columns: list[DraftColumn]) -> bool:
+    """Whether the header says more than 'Channel 1, Channel 2'."""
+    bare = [_bare(column)[:2] for column in columns if column.label]
+    return any(unit is not None or matches(name, unit) for name, unit in bare)
 
 
 def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, list[DraftColumn]]:

@@ -18,6 +18,8 @@ _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
 _DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Pa s", "N/m", "m/s**2", "N m")
+# weights for forces, and turns as Germans write them: what they mean depends on the quantity
+_UNITS = {"g", "kg", "U/min", "rev/min", "r/min"}
 
 
 class Heading(NamedTuple):
@@ -54,16 +56,16 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
             break
         if lines[index].strip():
             above.append(index)
-    for place, index in enumerate(above[:3]):
-        cells, aligned = _cells(lines[index], grammar, width)
-        if not _fits(lines[index], cells, grammar, width):
-            continue
-        if _are_units(cells) and place + 1 < len(above) and above[place + 1] == index - 1:
-            names, named = _cells(lines[index - 1], grammar, width)
-            if _fits(lines[index - 1], names, grammar, width):
-                return Heading(index - 1, index, names, cells, aligned and named)
-        return Heading(index, None, cells, (), aligned)
-    return None
+    split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
+    fitting = {i: c for i, c in split.items() if _fits(lines[i], c[0], grammar, width)}
+    for index, (cells, aligned) in fitting.items():
+        if _are_units(cells) and index - 1 in fitting:
+            names, named = fitting[index - 1]
+            return Heading(index - 1, index, names, cells, aligned and named)
+    if not fitting:
+        return None
+    index, (cells, aligned) = next(iter(fitting.items()))
+    return Heading(index, None, cells, (), aligned)
 
 
 def first_cells(line: str, delimiter: str) -> str:
@@ -85,7 +87,7 @@ def is_unit(text: str) -> bool:
     >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
     (True, True, False, False)
     """
-    return any(converts(text, dimension) for dimension in _DIMENSIONS)
+    return text in _UNITS or any(converts(text, dimension) for dimension in _DIMENSIONS)
 
 
 @functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
@@ -131,5 +133,5 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
 
 def _are_units(cells: Sequence[str]) -> bool:
     filled = [cell.strip("[]() ") for cell in cells if cell]
-    units = sum(1 for cell in filled if is_unit(cell) or cell in ("g", "kg", "-"))
+    units = sum(1 for cell in filled if is_unit(cell) or cell == "-")
     return units >= 0.6 * len(filled)

@@ -82,6 +82,11 @@ def examine(file: File) -> Layout:
             f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
             "at least one row of numbers"
         )
+    if grammar.delimiter == "," and any(re.match(r'"[+-]?\d+,\d+",', line) for line in lines):
+        raise ReadError(
+            f"{file.path}: numbers with a decimal comma stand in quotes, and commas part them too; "
+            "that cannot be read: export with another delimiter, e.g. a semicolon"
+        )
     blocks = _blocks(lines, grammar)
     main, others = _main(blocks)
     first = main[0]

@@ -70,6 +70,8 @@ def _written(draft: Draft) -> list[str]:
     rows = sum(len(block.rows) for block in layout.blocks)
     more = "" if layout.whole else ", and more: only the first megabyte was looked at"
     tables = f" in {len(layout.blocks)} tables" if len(layout.blocks) > 1 else ""
+    if layout.others:
+        tables += f"; {layout.others} more in the file, which are not read"
     marks = f"numbers parted by {layout.delimiter_name}, decimal "
     marks += "comma" if layout.decimal == "," else "point"
     if layout.heading is None:

@@ -125,8 +125,12 @@ SCAN_WORDS = (
 )
 
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "µ": "mu", "μ": "mu"})
-_FORCES = {"N"}
-_WEIGHTS = {"g": "gf", "kg": "kgf"}
+# what a unit means for a quantity in this SI unit: weights for forces, turns for radians
+_MEANT = {
+    "N": {"g": "gf", "kg": "kgf"},
+    "rad/s": {"Hz": "turn/s", "1/s": "turn/s", "s-1": "turn/s"}
+    | dict.fromkeys(("1/min", "/min", "min-1", "min^-1", "U/min", "rev/min", "r/min"), "rpm"),
+}
 
 
 class Match(NamedTuple):
@@ -160,7 +164,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
             # what has no dimension is part of the name: the N/N of F_N/N
             unitless = converts(text, "1") and text != "%"
-            if name and not unitless and (is_unit(text) or text in _WEIGHTS):
+            if name and not unitless and is_unit(text):
                 return name, text
     return label, None
 
@@ -189,8 +193,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     for word in SCAN_WORDS if scan else RUN_WORDS:
         score = _score(text, word)
         si_unit = quantity(word.quantity).unit
-        read_as = _WEIGHTS.get(unit or "") if si_unit in _FORCES else None
-        if score and (unit is None or _converts(read_as or unit, si_unit)):
+        read_as = _MEANT.get(si_unit, {}).get(unit or "")
+        if score and (unit is None or converts(read_as or unit, si_unit)):
             found.append(Match(word.quantity, score, read_as))
     return sorted(found, key=lambda match: -match.score)
 
@@ -200,8 +204,3 @@ def _score(text: str, word: Word) -> float:
         return 1.0 - 0.01 * word.symbols.index(text)
     covered = max((len(stem) for stem in word.stems if stem in text), default=0)
     return covered / len(text) if covered else 0.0
-
-
-def _converts(unit: str, si_unit: str) -> bool:
-    # pint takes 1 Hz for 1 rad/s, which is off by 2 pi
-    return converts(unit, si_unit) and not (si_unit == "rad/s" and unit.endswith("Hz"))
