@@ -335,6 +335,37 @@ def test_words_for_no_value_are_found(bad, tmp_path):
     np.testing.assert_array_equal(data.friction_force.values, [1, np.nan, 3, 4])
 
 
+def uncommented(toml, heading):
+    """The TOML with every commented-out table of a kind made active, as a person would do it."""
+    blocks = toml.split("\n\n")
+    for number, block in enumerate(blocks):
+        if f"# {heading}" in block:
+            before, after = block.split(f"# {heading}")
+            blocks[number] = before + heading + after.replace("\n# ", "\n")
+    return "\n\n".join(blocks)
+
+
+def test_single_values_are_proposed_and_work_when_they_are_taken(shared_data, tmp_path):
+    file = tmp_path / "pmma_31N_01.csv"
+    file.write_text(
+        "# Rig 7\n# rate: 10 Hz\n# tip radius = 2.5 um\n# operator: Weber\nRun no;4\n"
+        "Time [s];Fx [N]\n0;1\n1;2\n"
+    )
+    draft = draft_dialect(file)
+    assert draft.dialect.value == ()
+    toml = tmp_path / "rig.toml"
+    toml.write_text(uncommented(draft.toml, "[[value]]"))
+    attrs = read(file, instrument=toml).attrs
+    assert attrs["set_normal_force_N"] == 31 and attrs["tip_radius_m"] == 2.5e-6
+    assert attrs["rate_1_s"] == 10 and attrs["run_no"] == "4"
+
+    real = shared_data / f"{PCS}/demo_5.txt"
+    toml.write_text(uncommented(draft_dialect(real).toml, "[[value]]"))
+    attrs = read(real, instrument=toml).attrs
+    assert attrs["disc_track_radius_used_for_this_step_m"] == pytest.approx(21.232e-3)
+    assert attrs["zero_traction_force_N"] == 0.1467
+
+
 def test_a_footer_ends_the_table(tmp_path):
     file = tmp_path / "footer.txt"
     file.write_text("Time [s]\tFx [N]\n0\t1\n1\t2\n2\t3\nEnd of test, 3 samples\n")

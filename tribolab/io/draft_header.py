@@ -17,7 +17,7 @@ _ABOVE = 8  # lines above the first row that are looked at
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
-_DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Pa s", "N/m", "m/s**2", "N m")
+DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Pa s", "N/m", "m/s**2", "N m")
 # weights for forces, and turns as Germans write them: what they mean depends on the quantity
 _UNITS = {"g", "kg", "U/min", "rev/min", "r/min"}
 
@@ -87,7 +87,7 @@ def is_unit(text: str) -> bool:
     >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
     (True, True, False, False)
     """
-    return text in _UNITS or any(converts(text, dimension) for dimension in _DIMENSIONS)
+    return text in _UNITS or any(converts(text, dimension) for dimension in DIMENSIONS)
 
 
 @functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere

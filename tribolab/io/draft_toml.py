@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.io.draft_columns import DraftColumn, Understood
 from tribolab.io.draft_layout import Layout
+from tribolab.io.draft_values import DraftValue, find_values
 from tribolab.quantities import quantity
 
 FILL_IN = "FILL IN"
@@ -40,6 +41,7 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     parts += [_column(column, numbers[:, column.place - 1]) for column in wanted]
     rest = [column for column in columns if not column.used and not column.fill_in]
     parts.append(_unused(rest, numbers))
+    parts.append(_values(find_values(layout)))
     return "\n".join(part for part in parts if part)
 
 
@@ -157,6 +159,24 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
     else:
         about = [f"# {label}: {_range(values)}; {_comment(column.note or 'not used')}"]
     return "\n".join([*about, *(f"# {line}" for line in lines)]) + "\n"
+
+
+def _values(values: list[DraftValue]) -> str:
+    """Return proposals for single values, as comments."""
+    if not values:
+        return ""
+    parts = ["# Single values that the file states. To keep one, remove the '#' before it.\n"]
+    for value in values:
+        lines = ["[[value]]", f"name = {_text(value.name)}"]
+        if value.source != "preamble":
+            lines.append(f"source = {_text(value.source)}")
+        lines.append(f"pattern = {_pattern(value.pattern)}")
+        if value.unit is not None:
+            lines.append(f"unit = {_text(value.unit)}")
+        if value.to is not None:
+            lines.append(f"to = {_text(value.to)}")
+        parts.append("\n".join([f"# {_comment(value.text)}", *(f"# {x}" for x in lines)]) + "\n")
+    return "\n".join(parts)
 
 
 def _has_no_unit(column: DraftColumn) -> bool:
