@@ -188,3 +188,21 @@ def test_files_are_grouped_by_the_names_that_the_dialects_state(tmp_path):
     ]
     assert sum(map(len, group_files(paths, "cetr_umt2"))) == len(names)
     assert all(len(group) == 1 for group in group_files(paths, "cetr_umt2"))
+
+
+def test_the_rigs_clocks_are_brought_together_although_friction_turns_over_slowly(tmp_path):
+    import json
+
+    from tribolab.rig.campaign import simulate_campaign
+
+    simulate_campaign(tmp_path, seed=5, small=True)
+    truth = json.loads((tmp_path / "truth/truth.json").read_text())["runs"]
+    assert len(truth) >= 4
+    for name, true in truth.items():
+        run = tl.read(tmp_path / f"raw/friction/{name}_force.csv")
+        assert run.attrs["clock_shift_source"] == "estimated"
+        # one clock runs faster than the other, and the shift is that at the fast strokes
+        drift = abs(true["clock_rate"]) * float(run["time"][-1])
+        error = abs(run.attrs["clock_shift_s"] - true["clock_shift_at_middle_s"])
+        assert error < 2 * run.attrs["clock_shift_uncertainty_s"] + drift / 2
+        assert run.attrs["clock_shift_uncertainty_s"] < 0.011

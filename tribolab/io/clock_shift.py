@@ -1,14 +1,16 @@
 """How far apart two clocks are, told from the signals: friction differs by the speed of sliding.
 
-Shift the motion log by s, sort the samples of the friction force into classes of velocity (sign and
-third of a decade), and ask how much of the force's variance the classes explain. It is most where
+Shift the motion log by s, sort the samples of the friction force (its ranks: so slow strokes with
+much friction do not outweigh the fast ones, which tell the time) into classes of velocity (sign
+and third of a decade), and ask how much of the variance the classes explain. It is most where
 starts, stops and reversals of the table meet those of the force:
 
     R^2(s) = [sum_k S_k^2 / N_k - S^2 / N] / [Q - S^2 / N],
 
 with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
 squares of all. Every s of a coarse grid at once by FFT (each term is a cross-correlation), then
-finer from cumulative sums between the moments at which the class changes.
+finer from cumulative sums between the moments at which the class changes, and last by the
+beginnings of the fast strokes (`tribolab.io.clock_onset`).
 """
 
 from __future__ import annotations
@@ -19,9 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from tribolab.io.clock_onset import refine_by_onsets
+
 Array = NDArray[np.float64]
 
 _GRID = 1 << 16  # cells of the coarse grid over the longer log
+_NEAR = 30.0  # s: clocks that run are seldom further apart, but may be
+_NEARLY = 0.8  # as good a match as that, near what is expected, goes before any further off
 _OVERLAP = 0.6  # least part of the largest possible overlap
 _DECADES = 5  # slower than this many decades below the fastest is rest
 _BINS = 3  # classes per decade
@@ -29,7 +35,7 @@ _LEAST_EXPLAINED = 0.2
 _LEAST_CONTRAST = 0.1
 _LEAST_SIGNIFICANCE = 10.0  # as an F ratio
 _SHARP = 0.03  # most that the uncertainty may be, in mean durations of a class
-_TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
+_TIE = 1e-6  # peaks as high as that; the one nearest to what is expected is taken
 
 
 class Estimate(NamedTuple):
@@ -61,8 +67,8 @@ def estimate_clock_shift(
 
     Notes
     -----
-    The uncertainty is the shift at which the explained sum of squares falls by four residual
-    variances (times their correlation), at least half a sample period of the fastest region.
+    The uncertainty is the shift beside which the fit is significantly worse, at least one sample
+    period of the fastest region.
     """
     good = np.isfinite(force)
     force_time, force = force_time[good], force[good]
@@ -71,12 +77,12 @@ def estimate_clock_shift(
     classes = velocity_classes(velocity)
     if classes.min() == classes.max():
         return None
-    force = (force - force.mean()) / force.std()
-    coarse = _coarse(force_time, force, motion_time, classes, expected)
+    ranks = _ranks(force)
+    coarse = _coarse(force_time, ranks, motion_time, classes, expected)
     if coarse is None:
         return None
     shift, half = coarse
-    fine = _Fine(force_time, force, motion_time, classes)
+    fine = _Fine(force_time, ranks, motion_time, classes)
     period = fine.period
     while half > 0.2 * period:
         shifts = shift + half * np.linspace(-1.0, 1.0, 33)
@@ -85,12 +91,14 @@ def estimate_clock_shift(
     shift = fine.vertex(shift)
     if fine.significance(shift) < _LEAST_SIGNIFICANCE:
         return None
+    explained, uncertainty = fine.ratio(shift), fine.uncertainty(shift)
+    onset = refine_by_onsets(force_time, force, motion_time, velocity, shift, fine.period)
+    if onset is not None:
+        shift, uncertainty = onset
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
-    uncertainty = fine.uncertainty(shift)
-    stretch = np.ptp(motion_time) / len(np.unique(classes))
-    if uncertainty > _SHARP * stretch:
+    elif uncertainty > _SHARP * np.ptp(motion_time) / len(np.unique(classes)):
         return None
-    return Estimate(shift, uncertainty, fine.ratio(shift))
+    return Estimate(shift, max(uncertainty, fine.period), explained)
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
@@ -107,6 +115,13 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
     rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
     return rank * np.sign(np.nan_to_num(velocity)).astype(np.int64) + _BINS * _DECADES
+
+
+def _ranks(force: Array) -> Array:
+    """Ranks with mean 0 and variance 1: strokes with little friction weigh as much as others."""
+    ranks = np.empty(len(force))
+    ranks[np.argsort(force, kind="stable")] = np.arange(len(force))
+    return (ranks - ranks.mean()) / ranks.std()
 
 
 def _coarse(
@@ -144,8 +159,12 @@ def _coarse(
     usual = np.median(explained[enough])
     if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
         return None
+    near = np.abs(shifts - expected) <= _NEAR
+    if (explained[near] >= usual + _NEARLY * (best - usual)).any():
+        explained = np.where(near, explained, -np.inf)
+        best = explained.max()
     peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
-    good = shifts[peak & (explained >= usual + _TIE * (best - usual))]
+    good = shifts[peak & (explained >= best - _TIE)]
     return float(good[np.argmin(np.abs(good - expected))]), 2.0 * cell
 
 

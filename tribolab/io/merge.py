@@ -99,7 +99,7 @@ def _shift(
                     "clock_shift_explained": estimate.explained,
                 },
             )
-    return expected, "none", {"clock_shift_uncertainty_s": float("nan")}
+    return float(expected), "none", {"clock_shift_uncertainty_s": float("nan")}
 
 
 def _velocity(motion: xr.Dataset, clock: np.ndarray) -> np.ndarray | None:
