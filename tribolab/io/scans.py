@@ -20,6 +20,8 @@ from tribolab.provenance import CONVENTIONS, history_line, sha256_of_file
 from tribolab.quantities import stamp
 
 PathLike = str | Path
+# where the scans of a surface differ, the one that shows least counts for all
+_WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
 
 
@@ -227,6 +229,8 @@ def _common(attrs: list[dict]) -> dict:
             result[key] = "; ".join("" if value is None else str(value) for value in values)
         elif key in ("pitch_m", "length_m"):
             result[key] = values[0]
+        elif key in _WORST:
+            result[key] = _WORST[key](values)
         else:
             result[key] = "; ".join(f"{value:.9g}" for value in values)
     return result

@@ -179,9 +179,9 @@ def psd_2d(
     >>> surface.psd_2d.attrs["units"]
     'm4'
     """
-    if "height" in scans and "y" in scans.height.dims:
+    if isinstance(scans, xr.Dataset) and "height" in scans and "y" in scans.height.dims:
         return psd_2d_of_map(scans, form=form, bins_per_decade=bins_per_decade)
-    if "psd_1d" not in scans:
+    if not isinstance(scans, xr.Dataset) or "psd_1d" not in scans:
         scans = psd_1d(scans, form=form, bins_per_decade=bins_per_decade, tip_radius=tip_radius)
     profile = scans.isel(wavenumber=scans.trusted.values == 1)
     if profile.wavenumber.size < 4:
@@ -203,6 +203,11 @@ def psd_2d(
 
 def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
     """One dimension ``scan``, form removed, and a clear word about what cannot be used."""
+    if not isinstance(scans, xr.Dataset):
+        raise AnalysisError(
+            "psd_1d: one dataset with scans of equal pitch and length is wanted, got a "
+            f"{type(scans).__name__}; scans that differ have a spectrum each"
+        )
     if "height" not in scans or "x" not in scans.height.dims:
         raise AnalysisError(
             "psd_1d: scans with 'height' (scan, x) are wanted; read them with read_scans()"
