@@ -87,6 +87,14 @@ _ROWS = [
     ("work_of_adhesion", "\\gamma", "J/m2", "work of adhesion"),
     ("effective_work_of_adhesion", "\\gamma_eff", "J/m2", "effective work of adhesion"),
     ("magnification", "\\zeta", "1", "magnification"),
+    # contact: gaps and line contacts
+    ("gap", "u", "m", "local interfacial gap"),
+    ("gap_density", "P(u)", "1/m", "probability density of the gap"),
+    ("gap_weight", "P(u) du", "1", "quadrature weight of the gap"),
+    ("gap_scale", "", "1", "factor that makes the mean gap the mean separation"),
+    ("max_pressure", "p_max", "Pa", "maximum contact pressure"),
+    ("contact_width", "2a", "m", "width of the nominal contact"),
+    ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}

@@ -231,7 +231,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
 
 
 def _area(pressure: np.ndarray, stiffness: np.ndarray | float) -> np.ndarray:
-    """Erf(p / stiffness), where stiffness 0 is a smooth surface: contact at any pressure above 0."""
+    """Erf(p / stiffness); stiffness 0 is a smooth surface, in contact at any pressure above 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(pressure == 0, 0.0, erf(pressure / stiffness))
 
@@ -264,7 +264,7 @@ def like(values: np.ndarray, given: str | Pressure, name: str) -> Pressure:
 def with_dimension(
     values: np.ndarray, given: str | ArrayLike | xr.DataArray, last: xr.DataArray, name: str
 ) -> xr.DataArray:
-    """Return values over the dims of the argument and one more; a bare array's dim is `pressure`."""
+    """Return values over the dims of the argument and one more."""
     over = as_array(given)
     coords = {**over.coords, last.name: last}
     return _stamped(xr.DataArray(values, coords, (*over.dims, last.name)), name)

@@ -59,7 +59,7 @@ class Separation:
 
     @functools.cached_property
     def _ends(self) -> tuple[float, float, float, float, float]:
-        """ln p at the far end, slope d ln p/du there; p, u and -d ln u/d(p^2) at the near end."""
+        """Logarithm of p at the far end, slope d ln p/du there; p, u, -d ln u/d(p^2) at the near."""
         far, near = self._curve.x[[-1, 0]]
         slope = self._curve(far, 1) * self._chain(self.table_separation[0])
         pressure, separation = self.table_pressure[-1], self.table_separation[-1]
