@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from tribolab.errors import TribolabError, nearest
+from tribolab.units import to_si
 
 
 class Quantity(NamedTuple):
@@ -160,3 +163,52 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
         variable.attrs.update(units=known.unit, long_name=known.long_name)
     result.attrs.update(attrs)
     return result
+
+
+def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
+    """Return the array under the quantity's name with its ``units`` and ``long_name`` only."""
+    known = quantity(name)
+    result = data.rename(name)
+    result.attrs = {"units": known.unit, "long_name": known.long_name}
+    return result
+
+
+def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
+    """Return a quantity as a DataArray of floats, whichever way it was given.
+
+    Parameters
+    ----------
+    value
+        Text with a unit, a number, a one-dimensional array (it becomes its own coordinate) or a
+        DataArray (any dims), in the quantity's SI unit.
+    name
+        The quantity.
+
+    Raises
+    ------
+    TribolabError
+        If an array has two or more dimensions and no names for them.
+
+    Examples
+    --------
+    >>> labelled([1e4, 1e5], "pressure").dims
+    ('pressure',)
+    """
+    if isinstance(value, xr.DataArray):
+        return value.astype(float)
+    number = to_si(value, quantity(name).unit, name=name) if isinstance(value, str) else value
+    values = np.asarray(number, dtype=float)
+    if values.ndim > 1:
+        raise TribolabError(
+            f"{name}: an array with two or more dimensions must be a DataArray that names them"
+        )
+    dims = (name,)[: values.ndim]
+    data = xr.DataArray(values, coords={dim: values for dim in dims}, dims=dims)
+    return stamp_array(data, name)
+
+
+def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str):
+    """Return values the way an argument was given: a float, an array or a stamped DataArray."""
+    if isinstance(given, xr.DataArray):
+        return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
+    return values[()] if np.ndim(values) else float(values)

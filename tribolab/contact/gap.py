@@ -10,11 +10,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
-from tribolab.contact.geometry import positive
-from tribolab.contact.persson import ROOT_PI, as_array, mean_separation, tail
+from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, tail
 from tribolab.errors import AnalysisError, nearest
-from tribolab.quantities import stamp
+from tribolab.quantities import labelled, stamp
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
+from tribolab.units import positive
 
 Variant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
@@ -93,8 +93,8 @@ def gap_distribution(
     if variant not in ("flow", "plain"):
         raise AnalysisError(f"variant: '{variant}' is none{nearest(variant, ['flow', 'plain'])}")
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
-    over = as_array(pressure)
-    values = over.values.ravel()
+    over = labelled(pressure, "pressure")
+    values = pressure_values(over).ravel()
     if not np.all((values > 0) & (values < np.inf)):
         raise AnalysisError(
             "pressure: the gap has a distribution only at pressures above zero and finite; got "
@@ -182,7 +182,7 @@ def gap_averages(
 def _openings(
     stiffness: np.ndarray, q: np.ndarray, spectrum: np.ndarray, gamma: float
 ) -> tuple[_Openings, np.ndarray]:
-    """What opens between neighbouring magnifications, and the area that stays closed.
+    """Find what opens between neighbouring magnifications, and the area that stays closed.
 
     On a panel of wavenumbers 1/q is its mean over the slope there, from exact moments, so a coarse
     grid of magnifications loses nothing of a noisy spectrum.
@@ -238,7 +238,7 @@ def _folded_mean(openings: _Openings) -> np.ndarray:
     share, gap, height = openings
     with np.errstate(divide="ignore", invalid="ignore"):
         z = np.nan_to_num(gap / (np.sqrt(2) * height), posinf=np.inf)
-    folded = np.sqrt(2 / np.pi) * height * np.exp(-np.minimum(z, 27.0) ** 2) + gap * erf(z)
+    folded = np.sqrt(2 / np.pi) * height * np.exp(-(np.minimum(z, 27.0) ** 2)) + gap * erf(z)
     return (share * folded).sum(axis=-1)
 
 

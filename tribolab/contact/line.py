@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 from scipy.linalg import lu_factor, lu_solve
 
-from tribolab.contact.geometry import LineContact, positive
+from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
+from tribolab.units import positive
 
 # The paper does not say how it measured its widths; where pressure falls to this part of its
 # maximum, both of them come out.
@@ -75,12 +76,12 @@ def rough_line_contact(
     >>> import numpy as np, xarray as xr
     >>> q = np.array([423.0, 9e4, 3e9])
     >>> psd = xr.Dataset(
-    ...     {"psd_2d": ("wavenumber", [1.6e-22, 1.6e-22, 5e-42])}, coords={"wavenumber": q}
+    ...     {"psd_2d": ("wavenumber", [1.63e-22, 1.63e-22, 4e-42])}, coords={"wavenumber": q}
     ... )
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> rough = rough_line_contact("310 N/m", contact, psd)
     >>> f"{1e-6 * rough.max_pressure:.4f} MPa"
-    '0.0526 MPa'
+    '0.0527 MPa'
     """
     force = positive(load, "N/m", "load")
     if points < 21 or points % 2 == 0:
@@ -115,7 +116,7 @@ def rough_line_contact(
 
 
 def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> np.ndarray:
-    """Displacement [m/Pa] at x_i from unit pressure in cell j, by the logarithmic kernel of Eq. (9).
+    """Displacement [m/Pa] at x_i from unit pressure in cell j, by the log kernel of Eq. (9).
 
     Parameters
     ----------
@@ -213,8 +214,8 @@ def _line_search(
 ) -> float:
     """Find how far to go along a Newton step: to where the energy stops falling, at most 1.
 
-    The energy's derivative along the step is ``sum (p - p_cont(u)) du``; it is negative at the start
-    and grows steadily, so a few secant steps inside a bracket find its zero.
+    The energy's derivative along the step is ``sum (p - p_cont(u)) du``; it is negative at the
+    start and grows steadily, so a few secant steps inside a bracket find its zero.
     """
     falling = du < 0
     limit = 0.99 * np.min(-u[falling] / du[falling]) if falling.any() else np.inf
