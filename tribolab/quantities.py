@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.errors import TribolabError, nearest
+from tribolab.errors import AnalysisError, TribolabError, nearest
 from tribolab.units import to_si
 
 
@@ -186,7 +186,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
 
     Raises
     ------
-    TribolabError
+    AnalysisError
         If an array has two or more dimensions and no names for them.
 
     Examples
@@ -199,7 +199,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
     number = to_si(value, quantity(name).unit, name=name) if isinstance(value, str) else value
     values = np.asarray(number, dtype=float)
     if values.ndim > 1:
-        raise TribolabError(
+        raise AnalysisError(
             f"{name}: an array with two or more dimensions must be a DataArray that names them"
         )
     dims = (name,)[: values.ndim]

@@ -21,7 +21,7 @@ _PER_DECADE = 20  # magnifications
 _COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
 _LUMP = 1e-4  # cut-offs under which gaps are counted in one cell
-_PANELS, _POINTS = 2, 12  # panels per decade of u, Gauss-Legendre points on each
+_PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
 
 
 class _Openings(NamedTuple):

@@ -126,9 +126,9 @@ class Separation:
         slope = np.where(u > u_far, slope_far, slope)
         pressure = np.exp(log_p)
         if np.any(u < u_near):
-            with np.errstate(divide="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
                 near = np.sqrt(p_near**2 + np.log(u_near / u.clip(0, u_near)) / steep)
-                rate = -1 / (2 * steep * near**2 * u)
+                rate = np.where(u > 0, -1 / (2 * steep * near**2 * u), -np.inf)
             pressure = np.where(u < u_near, near, pressure)
             slope = np.where(u < u_near, rate, slope)
         with np.errstate(invalid="ignore"):

@@ -12,8 +12,8 @@ from tribolab.quantities import labelled, stamp
 from tribolab.rubber.modulus import Modulus
 from tribolab.surface.moments import bin_integrals, cumulative, refined, spectrum_arrays
 
-_PER_DECADE = 20  # wavenumbers, where the spectrum has no more nodes than that
-_ANGLES = 40  # Gauss-Legendre points on a quarter of a turn
+_PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
+_ANGLES = 24  # Gauss-Legendre points on a quarter of a turn
 
 
 def viscoelastic_friction(
