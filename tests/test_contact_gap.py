@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from tribolab.contact.gap import gap_averages, gap_distribution
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.errors import AnalysisError
-from tribolab.surface.moments import rms_roughness
+from tribolab.surface.moments import rms_roughness, rms_slope
 
 VARIANTS = ("flow", "plain")
 # up to A/A0 of about 0.8
@@ -93,7 +93,16 @@ def test_any_surface_has_a_distribution(hurst, slope, area, variant):
     assert mean == pytest.approx(float(gaps.separation), rel=1e-3)
     assert square >= mean**2
     assert cube >= mean**3
-    assert 0.5 < float(gaps.gap_scale) < 1.1
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("name", SURFACES)
+def test_where_little_touches_the_distribution_has_the_right_mean_by_itself(name, variant):
+    psd = reference_psd(name)
+    p = 1e-2 * E_STAR * rms_slope(psd) * np.sqrt(np.pi / 8)  # A/A0 = 0.01
+    found = gap_distribution([1e-3 * p, 0.1 * p, p], psd, E_STAR, variant)
+    np.testing.assert_allclose(found.contact_area_ratio[-1], 0.01, rtol=1e-3)
+    np.testing.assert_allclose(found.gap_scale, 1.0, atol=0.02)
 
 
 def test_the_cutoff_leaves_out_what_lies_under_it():
