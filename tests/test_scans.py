@@ -101,7 +101,11 @@ def test_map_as_rows_of_xyz_is_put_on_its_grid(shared_data):
 
 @pytest.mark.parametrize(
     ("name", "ra", "rq", "rz"),
-    [("12A11003", 3.246, 4.335, 32.701), ("12A11004", 2.991, 3.318, 9.517), ("8A2", 0.07, 0.09, 0.512)],
+    [
+        ("12A11003", 3.246, 4.335, 32.701),
+        ("12A11004", 2.991, 3.318, 9.517),
+        ("8A2", 0.07, 0.09, 0.512),
+    ],
 )
 def test_results_files_of_the_paper_s_profilometer(shared_data, name, ra, rq, rz):
     path = shared_data / "mitutoyo_sj410_res_MIT" / f"{name}.TXT"

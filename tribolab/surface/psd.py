@@ -66,9 +66,9 @@ def psd_1d(
     window has unit mean square. With it neighbouring lines are not independent: a bin of m lines
     holds about m/1.35 independent values a scan, and with a full Hann window m/1.94. The flanks
     of the default reach over half of the profile: they suppress leakage as k^-6 like Hann's, and
-    use more of the profile, so that h_rms of three scans of 25 mm scatters a fifth less. A bin's mean is carried to its node along
-    the local power law. The band is that of a chi-square variable with two degrees of freedom
-    for each independent value [1]_.
+    use more of the profile, so that h_rms of three scans of 25 mm scatters a fifth less. A bin's
+    mean is carried to its node along the local power law. The band is that of a chi-square
+    variable with two degrees of freedom for each independent value [1]_.
 
     References
     ----------
