@@ -7,28 +7,34 @@ import pandas as pd
 import xarray as xr
 from hypothesis import settings
 
+from tribolab.contact.geometry import LineContact
+from tribolab.studies import xu2026
+from tribolab.surface.moments import rms_slope
+from tribolab.surface.self_affine import psd_2d
+
 # Same cases on every run, and no clock: the machine that runs the tests may be busy.
 properties = settings(deadline=None, derandomize=True, max_examples=60)
 
 E_STAR = 2.0e6  # Pa: 1.5 MPa with Poisson's ratio 0.5
+CONTACT = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
 SURFACES = ("Smooth", "Sb-S", "Sb-R")
-
-# H, roll-off [1/m], plateau [m4]: the stand-ins for the paper's measured spectra.
-_SPECTRA = {
-    "Smooth": (1.090, 4.666116e4, 1.435334e-22),
-    "Sb-S": (1.155, 9.053363e4, 1.629575e-22),
-    "Sb-R": (1.190, 2.804894e4, 5.461285e-20),
-}
 
 
 def reference_psd(name: str, points: int | None = None) -> xr.Dataset:
     """Plateau and power law; three nodes hold it exactly, `points` puts it on a log grid."""
-    hurst, rolloff, plateau = _SPECTRA[name]
-    q = np.array([423.0, rolloff, np.pi / 1e-9])
+    spectrum = xu2026.surface(name).spectrum
+    q = np.array([spectrum.low, spectrum.rolloff, spectrum.high])
     if points:
         q = np.union1d(q, np.geomspace(q[0], q[-1], points))
-    c = plateau * np.maximum(q / rolloff, 1.0) ** (-2 * (1 + hurst))
-    return xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    return xr.Dataset({"psd_2d": ("wavenumber", psd_2d(spectrum, q))}, {"wavenumber": q})
+
+
+def self_affine(hurst: float, slope: float) -> xr.Dataset:
+    """A spectrum with the roll-off at 1e4 1/m and the rms slope asked for."""
+    q = np.array([1e3, 1e4, 1e9])
+    c = np.array([1.0, 1.0, 1e5 ** (-2 * (1 + hurst))])
+    psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    return psd * (slope / rms_slope(psd)) ** 2
 
 
 def target(shared: Path, quantity: str, surface: str, condition: str = "") -> float:

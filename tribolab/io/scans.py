@@ -20,6 +20,8 @@ from tribolab.provenance import CONVENTIONS, history_line, sha256_of_file
 from tribolab.quantities import stamp
 
 PathLike = str | Path
+# where the scans of a surface differ, the one that shows least counts for all
+_WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
 
 
@@ -87,7 +89,7 @@ def read_scans(
             f"those that do are {scanning}"
         )
     scans = [_read(file, dialect, x_unit, height_unit) for file in files]
-    return _stacked(files, scans) if stack else scans
+    return _stacked(files, scans) if stack else [stamp(scan) for scan in scans]
 
 
 def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
@@ -128,8 +130,7 @@ def _read(
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
     x = scan.x.values
-    return stamp(
-        scan,
+    return scan.assign_attrs(
         source=path.name,
         source_sha256=sha256,
         history=history_line(f"read {path.name}"),
@@ -190,7 +191,7 @@ def _stacked(files: list[Path], scans: list[xr.Dataset]) -> xr.Dataset:
             f"{maps[0]}: a map cannot be stacked with other scans; read them with stack=False"
         )
     if maps:
-        return scans[0]
+        return stamp(scans[0])
     first = scans[0]
     for file, scan in zip(files[1:], scans[1:], strict=True):
         points, pitch = first.sizes["x"], first.attrs["pitch_m"]
@@ -227,6 +228,8 @@ def _common(attrs: list[dict]) -> dict:
             result[key] = "; ".join("" if value is None else str(value) for value in values)
         elif key in ("pitch_m", "length_m"):
             result[key] = values[0]
+        elif key in _WORST:
+            result[key] = _WORST[key](values)
         else:
             result[key] = "; ".join(f"{value:.9g}" for value in values)
     return result

@@ -52,6 +52,11 @@ class PowerLaws:
         return 0.5 * self.power / (left * np.log(right / left) * growth)
 
     @property
+    def last(self) -> float:
+        """C_1D at the right edge of the last bin [m3], where the tail begins."""
+        return float(self.level[-1] * (self.edges[-1] / self.edges[-2]) ** self.slope[-1])
+
+    @property
     def exponent(self) -> float:
         """Exponent s of the tail, ``C_1D ~ k^-s``."""
         if self.tail is None:
@@ -144,17 +149,15 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
         )
     at = np.concatenate([[0.0], profile.edges if edges is None else np.asarray(edges, float)])
     sensitivity = _pieces(profile, at)
-    end = profile.edges[-1]
-    last = profile.level[-1] * (end / profile.edges[-2]) ** profile.slope[-1]
-    tail_power, by_exponent = _tail(end, last, exponent, at)
+    tail_power, by_exponent = _tail(profile.edges[-1], profile.last, exponent, at)
     sensitivity[:, -1] += tail_power
     above = sensitivity.sum(1)
     if profile.slope_weights is not None:
         step = 1e-4
-        parts = [
-            _pieces(replace(profile, slope=profile.slope + sign * step), at) for sign in (-1, 1)
-        ]
-        sensitivity += (parts[1] - parts[0]) / (2 * step) @ profile.slope_weights
+        down, up = (replace(profile, slope=profile.slope + shift) for shift in (-step, step))
+        by_slope = (_pieces(up, at) - _pieces(down, at)) / (2 * step)
+        by_slope[:, -1] += tail_power * np.log(up.last / down.last) / (2 * step)
+        sensitivity += by_slope @ profile.slope_weights
     if profile.tail is not None:
         sensitivity -= by_exponent[:, None] * profile.tail
     return Annuli(

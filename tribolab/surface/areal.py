@@ -8,9 +8,8 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
 from tribolab.surface.annuli import confidence_band
-from tribolab.surface.binning import hann_correlation, log_bins
+from tribolab.surface.binning import correlation, log_bins, window
 from tribolab.surface.form import remove_form
-from tribolab.surface.fourier import hann
 
 _FEWEST = 16
 
@@ -59,7 +58,7 @@ def psd_2d_of_map(
     if not np.ptp(height) > 0:
         raise AnalysisError("psd_2d: all heights are equal, there is no roughness to transform")
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
-    tapered = height * np.outer(hann(height.shape[0]), hann(height.shape[1]))
+    tapered = height * np.outer(window(height.shape[0]), window(height.shape[1]))
     power = np.abs(np.fft.fft2(tapered)) ** 2
     scale = steps[0] * steps[1] / (4 * np.pi**2 * height.size)
     ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(height.shape, steps, strict=True))
@@ -73,7 +72,7 @@ def psd_2d_of_map(
     lines = np.bincount(index, minlength=bins.starts.size)
     mean = np.bincount(index, power.ravel()[inside], bins.starts.size) * scale / lines
     node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
-    correlated = (1 + 2 * float(np.sum(hann_correlation(np.array([1, 2]))))) ** 2
+    correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = np.maximum(0.5 * lines / correlated, 1.0)
     low, high = confidence_band(mean, independent)
     known = np.arange(node.size) > 0  # the first annulus is what form and window take

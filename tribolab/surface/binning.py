@@ -1,4 +1,4 @@
-"""Logarithmic bins of Fourier lines, and how many independent values each bin holds."""
+"""Windows, logarithmic bins of Fourier lines, and how many independent values a bin holds."""
 
 from __future__ import annotations
 
@@ -63,24 +63,43 @@ def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> B
     return Bins(np.array(starts), lines + 1)
 
 
-def hann_correlation(shift: np.ndarray | float) -> np.ndarray:
-    """Squared correlation of two lines of a Hann-windowed transform, `shift` lines apart.
+def window(points: int, flanks: float = 1.0) -> np.ndarray:
+    """Window of unit mean square whose ends rise and fall like a Hann window.
+
+    Parameters
+    ----------
+    points
+        Number of points; the window is zero one half step beyond the ends.
+    flanks
+        Share of the length in the two flanks; 1 is the Hann window itself.
+    """
+    ends = np.minimum((np.arange(points) + 0.5) / points, 0.5)
+    ends = np.minimum(np.minimum(ends, ends[::-1]) / flanks, 0.5)
+    taper = np.sin(np.pi * ends) ** 2
+    return taper / np.sqrt(np.mean(taper**2))
+
+
+def correlation(shift: float, flanks: float = 1.0) -> float:
+    """Squared correlation of two lines of a windowed transform, `shift` lines apart.
 
     Notes
     -----
     For Gaussian heights the power of two lines correlates as ``|W(shift) / W(0)|^2``, with W the
-    transform of the squared window: 4/9 and 1/36 one and two lines apart.
+    transform of the squared window: for Hann 4/9 and 1/36 one and two lines apart.
+
+    Examples
+    --------
+    >>> [round(correlation(d) * 36, 6) for d in (1, 2, 3)]
+    [16.0, 1.0, 0.0]
     """
-    d = np.asarray(shift, dtype=float)
-    transform = (
-        np.sinc(d) * 3 / 8
-        + (np.sinc(d - 1) + np.sinc(d + 1)) / 4
-        + (np.sinc(d - 2) + np.sinc(d + 2)) / 16
-    )
-    return (transform / (3 / 8)) ** 2
+    points = 4096
+    t = (np.arange(points) + 0.5) / points - 0.5
+    return float(np.mean(window(points, flanks) ** 2 * np.cos(2 * np.pi * shift * t)) ** 2)
 
 
-def shape(bins: Bins, slope: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+def shape(
+    bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
     """How the mean over a bin stands to its node, and how many independent values it holds.
 
     Parameters
@@ -91,6 +110,8 @@ def shape(bins: Bins, slope: np.ndarray, spacing: float) -> tuple[np.ndarray, np
         ``d ln C_1D / d ln k`` of the spectrum in each bin (bin,).
     spacing
         Distance of two lines in units of the unpadded ones (1 without zero padding).
+    flanks
+        Flanks of the window.
 
     Returns
     -------
@@ -107,9 +128,9 @@ def shape(bins: Bins, slope: np.ndarray, spacing: float) -> tuple[np.ndarray, np
     owner = np.repeat(np.arange(here.size), bins.counts)
     power = (k / bins.nodes[owner]) ** slope[owner]
     correlated = power**2
-    for lag in (1, 2):
+    for lag in range(1, 5):
         same = owner[lag:] == owner[:-lag]
         pairs = np.where(same, power[lag:] * power[:-lag], 0.0)
-        correlated[lag:] += 2 * hann_correlation(lag * spacing) * pairs
+        correlated[lag:] += 2 * correlation(lag * spacing, flanks) * pairs
     total = np.add.reduceat(power, here)
     return total / bins.counts, total**2 / np.add.reduceat(correlated, here)

@@ -34,6 +34,24 @@ class PowerLaw(NamedTuple):
         return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
 
 
+class _Part(NamedTuple):
+    """A stretch of a spectrum; the band is relative to the values (2, wavenumber)."""
+
+    wavenumber: np.ndarray
+    value: np.ndarray
+    spread: np.ndarray
+    origin: int
+
+    def between(self, low: float, high: float) -> _Part:
+        """Cut at two wavenumbers, with nodes there if they lie inside."""
+        q = self.wavenumber
+        ends = np.array([end for end in (low, high) if q[0] < end < q[-1] and end not in q])
+        nodes = np.unique(np.concatenate([q[(q >= low) & (q <= high)], ends]))
+        near = np.minimum(np.searchsorted(q, nodes), q.size - 1)
+        value = np.where(q[near] == nodes, self.value[near], at_wavenumber(nodes, q, self.value))
+        return _Part(nodes, value, self.spread[:, near], self.origin)
+
+
 def extrapolate(
     psd: xr.Dataset,
     *,
@@ -93,45 +111,31 @@ def extrapolate(
         )
     if not (c > 0).any():
         raise AnalysisError("extrapolate: the spectrum is zero everywhere")
-    error = _log_error(psd)
-    law, decade, rolloff = _fit(q, c, error, fit_decade)
-    ratio = (
-        np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values]) / np.where(c > 0, c, np.nan)
-        if "psd_2d_low" in psd
-        else np.ones((2, q.size))
-    )
-    inside = (q >= low) & (q <= high)
-    parts = [(q[inside], c[inside], ratio[:, inside], MEASURED)]
+    law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
+    measured = _Part(q, c, _relative_band(psd, c), MEASURED)
+    parts = [measured.between(low, high)]
     if low < q[0]:
-        grid = _grid(low, q[0])[:-1]
-        parts.insert(
-            0, (grid, np.full(grid.size, c[0]), np.repeat(ratio[:, :1], grid.size, 1), TO_SMALL)
-        )
-    elif low not in q:
-        here = at_wavenumber(np.array([low]), q, c)
-        near = ratio[:, [min(int(np.searchsorted(q, low)), q.size - 1)]]
-        parts.insert(0, (np.array([low]), here, near, MEASURED))
+        grid = _grid(low, min(high, float(q[0])))
+        grid = grid[:-1] if high >= q[0] else grid
+        level, spread = np.full(grid.size, c[0]), np.repeat(measured.spread[:, :1], grid.size, 1)
+        parts.insert(0, _Part(grid, level, spread, TO_SMALL))
     if high > q[-1]:
-        grid = _grid(q[-1], high)[1:]
+        grid = _grid(max(low, float(q[-1])), high)
+        grid = grid[1:] if low <= q[-1] else grid
         log_c, log_error = law.at(grid)
         spread = np.exp(_NORMAL * np.stack([-log_error, log_error]))
-        parts.append((grid, np.exp(log_c), spread, TO_LARGE))
-    elif high not in q:
-        here = at_wavenumber(np.array([high]), q, c)
-        near = ratio[:, [min(int(np.searchsorted(q, high)), q.size - 1)]]
-        parts.append((np.array([high]), here, near, MEASURED))
-    wave = np.concatenate([part[0] for part in parts])
-    value = np.concatenate([part[1] for part in parts])
-    spread = np.concatenate([part[2] for part in parts], axis=1)
-    origin = np.concatenate([np.full(part[0].size, part[3], np.int8) for part in parts])
+        parts.append(_Part(grid, np.exp(log_c), spread, TO_LARGE))
+    value = np.concatenate([part.value for part in parts])
+    below, above = np.concatenate([part.spread for part in parts], axis=1) * value
+    origin = np.concatenate([np.full(part.wavenumber.size, part.origin, np.int8) for part in parts])
     data = xr.Dataset(
         {
             "psd_2d": ("wavenumber", value),
-            "psd_2d_low": ("wavenumber", value * np.nan_to_num(spread[0], nan=1.0)),
-            "psd_2d_high": ("wavenumber", value * np.nan_to_num(spread[1], nan=1.0)),
+            "psd_2d_low": ("wavenumber", below),
+            "psd_2d_high": ("wavenumber", above),
             "origin": ("wavenumber", origin, origin_flags()),
         },
-        {"wavenumber": wave},
+        {"wavenumber": np.concatenate([part.wavenumber for part in parts])},
     )
     action = f"extrapolated to {low:.4g} ... {high:.4g} 1/m"
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
@@ -164,6 +168,14 @@ def _grid(low: float, high: float) -> np.ndarray:
     grid = np.geomspace(low, high, max(2, int(np.ceil(_PER_DECADE * np.log10(high / low))) + 1))
     grid[0], grid[-1] = low, high
     return grid
+
+
+def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
+    """Lower and upper end of the band over C; 1 where there is none."""
+    if "psd_2d_low" not in psd:
+        return np.ones((2, c.size))
+    band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
+    return np.divide(band, c, out=np.ones_like(band), where=c > 0)
 
 
 def _log_error(psd: xr.Dataset) -> np.ndarray | None:

@@ -11,7 +11,7 @@ from tribolab.quantities import stamp
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.
 FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
-_STEPS = 12
+_STEPS = 60
 _CHUNK = 1 << 20  # heights that are worked on at a time
 
 
@@ -205,6 +205,11 @@ def _circle(
         known = known + step
         if (np.abs(step) @ [1, scale, scale**2] <= 1e-11 * scale).all():
             break
+    else:
+        raise AnalysisError(
+            "remove_form: the fit of a circle does not settle; its radius is hardly larger than "
+            "the scan is long. Check the unit of x, or take form='polynomial'"
+        )
     tilt = known[:, 1] / np.sqrt(1 - known[:, 1] ** 2)
     return residual, np.stack([tilt, known[:, 2]], axis=-1)
 

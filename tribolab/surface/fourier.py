@@ -39,13 +39,6 @@ def fast_length(points: int) -> int:
     return best
 
 
-def hann(points: int) -> np.ndarray:
-    """Hann window of unit mean square; symmetric, and zero one half step beyond the ends."""
-    t = (np.arange(points) + 0.5) / points
-    window = np.sin(np.pi * t) ** 2
-    return window / np.sqrt(np.mean(window**2))
-
-
 def binned_power(
     height: np.ndarray, window: np.ndarray, bins: Bins, length: int, workers: int = 1
 ) -> Power:

@@ -11,9 +11,9 @@ from tribolab.quantities import stamp
 from tribolab.surface import abel
 from tribolab.surface.annuli import bins_of, confidence_band, join, spectrum
 from tribolab.surface.areal import psd_2d_of_map
-from tribolab.surface.binning import log_bins, shape
+from tribolab.surface.binning import log_bins, shape, window
 from tribolab.surface.form import remove_form, removed_order
-from tribolab.surface.fourier import binned_power, fast_length, hann
+from tribolab.surface.fourier import binned_power, fast_length
 from tribolab.surface.reliability import trusted_band
 
 _FEWEST_POINTS = 64
@@ -25,6 +25,7 @@ def psd_1d(
     form: str = "auto",
     bins_per_decade: float = 12,
     tip_radius: str | float | None = None,
+    flanks: float = 0.5,
     workers: int = 1,
 ) -> xr.Dataset:
     """One-dimensional power spectrum of profiles, averaged over the scans, with its band.
@@ -40,6 +41,9 @@ def psd_1d(
         Width of the bins on the logarithmic axis; at small k a bin holds at least four lines.
     tip_radius
         Radius of the stylus [m] or text; by default what the scans' file says.
+    flanks
+        Share of the profile over which the window rises and falls as a Hann window does; 1 is
+        the Hann window itself.
     workers
         Threads of the Fourier transform.
 
@@ -58,11 +62,13 @@ def psd_1d(
 
     Notes
     -----
-    Two-sided: ``<h^2> = int_{-inf}^{inf} C_1D dk``, twice the integral over positive k. Hann
-    window of unit mean square; with it neighbouring lines are not independent, and a bin of m
-    lines holds about m/1.94 independent values a scan. A bin's mean is carried to its node along
-    the local power law. The band is that of a chi-square variable with two degrees of freedom
-    for each independent value [1]_.
+    Two-sided: ``<h^2> = int_{-inf}^{inf} C_1D dk``, twice the integral over positive k. The
+    window has unit mean square. With it neighbouring lines are not independent: a bin of m lines
+    holds about m/1.35 independent values a scan, and with a full Hann window m/1.94. The flanks
+    of the default reach over half of the profile: they suppress leakage as k^-6 like Hann's, and
+    use more of the profile, so that h_rms of three scans of 25 mm scatters a fifth less. A bin's
+    mean is carried to its node along the local power law. The band is that of a chi-square
+    variable with two degrees of freedom for each independent value [1]_.
 
     References
     ----------
@@ -84,7 +90,7 @@ def psd_1d(
     length = fast_length(points)
     taken = removed_order(scans)
     bins = log_bins(length // 2, taken + 2, bins_per_decade)
-    power = binned_power(heights.data, hann(points), bins, length, workers)
+    power = binned_power(heights.data, window(points, flanks), bins, length, workers)
     if not np.isfinite(power.heights):
         raise AnalysisError(
             "psd_1d: the heights hold NaN or infinity; fill the dropouts with fill_dropouts()"
@@ -95,7 +101,7 @@ def psd_1d(
     mean = power.bins / (bins.counts * number) * pitch / (2 * np.pi * points)
     q = bins.nodes * spacing
     slope = np.gradient(np.log(np.maximum(mean, 1e-300)), np.log(q)) if q.size > 2 else 0 * q
-    ratio, independent = shape(bins, np.clip(slope, -6, 1), points / length)
+    ratio, independent = shape(bins, np.clip(slope, -6, 1), points / length, flanks)
     value = mean / ratio
     low, high = confidence_band(value, number * independent)
     edges = bins.edges * spacing
@@ -122,6 +128,7 @@ def psd_1d(
         "convention": "two-sided: <h^2> = 2 int_0^inf C_1D dk",
         "scans": number,
         "pitch_m": pitch,
+        "window_flanks": flanks,
         "length_m": pitch * (points - 1),
         "mean_square_height_m2": whole,
         "parseval_error": abs(power.lines / power.heights - 1),
@@ -179,9 +186,9 @@ def psd_2d(
     >>> surface.psd_2d.attrs["units"]
     'm4'
     """
-    if "height" in scans and "y" in scans.height.dims:
+    if isinstance(scans, xr.Dataset) and "height" in scans and "y" in scans.height.dims:
         return psd_2d_of_map(scans, form=form, bins_per_decade=bins_per_decade)
-    if "psd_1d" not in scans:
+    if not isinstance(scans, xr.Dataset) or "psd_1d" not in scans:
         scans = psd_1d(scans, form=form, bins_per_decade=bins_per_decade, tip_radius=tip_radius)
     profile = scans.isel(wavenumber=scans.trusted.values == 1)
     if profile.wavenumber.size < 4:
@@ -203,6 +210,11 @@ def psd_2d(
 
 def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
     """One dimension ``scan``, form removed, and a clear word about what cannot be used."""
+    if not isinstance(scans, xr.Dataset):
+        raise AnalysisError(
+            "psd_1d: one dataset with scans of equal pitch and length is wanted, got a "
+            f"{type(scans).__name__}; scans that differ have a spectrum each"
+        )
     if "height" not in scans or "x" not in scans.height.dims:
         raise AnalysisError(
             "psd_1d: scans with 'height' (scan, x) are wanted; read them with read_scans()"

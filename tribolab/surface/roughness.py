@@ -51,10 +51,9 @@ def roughness_parameters(
     Notes
     -----
     The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
-    where the filter runs in, is left out. Heights count from the mean line; only
-    without lambda_c from their mean. Rz is the mean over sampling lengths of the height
-    from the deepest valley to the highest peak. Rdq is taken from the seven-point formula of
-    ISO 4287.
+    where the filter runs in, is left out. Heights count from the mean line; only without
+    lambda_c from their mean. Rz is the mean over sampling lengths of the height from the deepest
+    valley to the highest peak. Rdq is taken from the seven-point formula of ISO 4287.
 
     References
     ----------
