@@ -217,6 +217,55 @@ def info(
     raise typer.Exit(UNREADABLE if unreadable else 0)
 
 
+@app.command()
+def dialect(
+    file: Annotated[Path, typer.Argument(help="A raw text file of an instrument not known yet.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="The .toml file to write.",
+            show_default="the dialect's name, in this folder",
+        ),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of the dialect: small letters, digits, _.",
+            show_default="from the file's name",
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the .toml file if there is one.")
+    ] = False,
+    debug: Debug = False,
+) -> None:
+    """Draft the description of an unknown instrument's files from one of them.
+
+    Shows the file as it was understood and what was guessed, writes the description (TOML), and
+    says which of its lines want to be filled in. The raw file is only read.
+
+        tribolab dialect odd.txt
+
+        tribolab dialect odd.txt --output instruments/my_tribometer.toml
+    """
+    with _reported(debug):
+        from tribolab.io.draft import draft_dialect, save_draft
+        from tribolab.io.draft_show import print_draft
+        from tribolab.report.terminal import console
+
+        draft = draft_dialect(file, name)
+        target = output or Path(f"{draft.name}.toml")
+        print_draft(draft, console())
+        if draft.toml:
+            from tribolab.io.draft_show import print_next
+
+            print_next(draft, save_draft(draft, target, force=force), console())
+        else:
+            _fail(f"{file}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+
+
 @contextlib.contextmanager
 def _reported(debug: bool) -> Iterator[None]:
     """Turn an error into one short message on stderr and an exit code."""
