@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.errors import AnalysisError, TribolabError, UnitError
 from tribolab.studies import xu2026
 
 properties = settings(deadline=None, derandomize=True, max_examples=8)
@@ -329,8 +329,9 @@ def test_a_missing_pressure_stays_missing_and_spoils_no_other():
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [
-        ({"pressure": -1.0}, AnalysisError, "pressure"),
-        ({"pressure": np.inf}, AnalysisError, "pressure: it must be finite"),
+        ({"pressure": -1.0}, AnalysisError, "pressure: .* zero or above; got -1 Pa"),
+        ({"pressure": np.ones((2, 2))}, TribolabError, "DataArray that names them"),
+        ({"pressure": np.inf}, AnalysisError, "it must be finite.*got inf"),
         ({"pressure": "1 N"}, UnitError, "pressure"),
         ({"work": -0.01}, AnalysisError, "the liquid wets"),
         ({"work": "51"}, UnitError, "work_of_adhesion.*no unit"),

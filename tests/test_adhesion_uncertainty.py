@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from contact_cases import E_STAR, SURFACES, reference_psd
 
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
 from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
 from tribolab.contact.persson import contact_area_ratio
@@ -30,6 +30,22 @@ def test_value_and_bounds_are_areas_at_the_works_of_adhesion_stated(surface):
             expected = adhesion(PRESSURE, psd, E_STAR, work).contact_area_ratio
             got = spread[f"contact_area_ratio{ending}"].sel(medium=medium)
             np.testing.assert_allclose(got, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("surface", ["Smooth", "Sb-S"])
+def test_the_verdict_on_pull_off_is_given_over_the_bounds(surface):
+    psd = reference_psd(surface)
+    spread = adhesion_uncertainty(1e5, psd, E_STAR)
+    for ending in ("", "_low", "_high"):
+        for medium in ("dry", "wet"):
+            work = float(spread[f"work_of_adhesion{ending}"].sel(medium=medium))
+            expected = macroscopic_work_of_adhesion(psd, E_STAR, work).macroscopic_work_of_adhesion
+            got = spread[f"macroscopic_work_of_adhesion{ending}"].sel(medium=medium)
+            assert float(got) == pytest.approx(float(expected), rel=1e-9, abs=1e-15)
+    if surface == "Smooth":  # at the lowest wet work that literature allows it would not stick
+        wet = spread.sel(medium="wet")
+        assert float(wet.macroscopic_work_of_adhesion_low) == 0
+        assert float(wet.macroscopic_work_of_adhesion) > 0
 
 
 def test_the_deviation_is_that_of_draws_solved_one_by_one():

@@ -8,9 +8,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
-from tribolab.contact.persson import as_array
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
+from tribolab.quantities import labelled, stamp
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 
@@ -72,8 +71,9 @@ def adhesion(
     `nodes` from 200 changes areas by less than 0.1 %.
 
     The residual is the misfit of Eq. (11) at the largest wavenumber, relative to its terms; at the
-    other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa for a smooth rubber
-    contact) is taken as the limit p -> 0: area proportional to p, or constant if gamma_eff(1) > 0.
+    other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa for a
+    smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant if
+    gamma_eff(1) > 0.
 
     References
     ----------
@@ -200,9 +200,13 @@ def macroscopic_work_of_adhesion(
 
 def finite_pressures(pressure: str | Pressure) -> xr.DataArray:
     """Return pressures as a DataArray, none of them infinite or negative."""
-    over = as_array(pressure)
-    if np.isinf(over.values).any():
-        raise AnalysisError("pressure: it must be finite; at least one value is infinite")
+    over = labelled(pressure, "pressure")
+    wrong = over.values[(over.values < 0) | np.isinf(over.values)]
+    if wrong.size:
+        raise AnalysisError(
+            f"pressure: it must be finite, and zero or above; got {wrong[0]:g} Pa. Contact under a "
+            "pull (negative pressure) is not described here"
+        )
     return over
 
 

@@ -18,10 +18,9 @@ import xarray as xr
 from scipy.special import erf, erfcx
 
 from tribolab.contact.first_passage import Diffusion
-from tribolab.contact.geometry import positive
 from tribolab.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
-from tribolab.units import to_si
+from tribolab.units import positive, to_si
 
 # Share of the nodes that is spread evenly in ln q; the others follow the growth of the stress.
 _EVEN_SHARE = 0.2

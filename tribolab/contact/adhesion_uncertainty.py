@@ -46,7 +46,10 @@ def adhesion_uncertainty(
     xarray.Dataset
         ``contact_area_ratio`` [1] (medium, dims of pressure) at the chosen values, ``_low`` and
         ``_high`` at the smallest and largest work of adhesion inside the bounds, ``_std`` over the
-        random draws; the variables of `work_of_adhesion_spread` (medium).
+        random draws; ``macroscopic_work_of_adhesion`` [J/m2] (medium) at vanishing load, with
+        ``_low`` and ``_high``: where the first is zero and the second is not, the surface energies
+        do not decide whether there is a pull-off force; the variables of
+        `work_of_adhesion_spread` (medium).
 
     Raises
     ------
@@ -64,26 +67,32 @@ def adhesion_uncertainty(
     over = finite_pressures(pressure)
     flat = over.values.ravel()
     spread = work_of_adhesion_spread(energies, samples=samples, seed=seed)
-    names = ("work_of_adhesion", "work_of_adhesion_low", "work_of_adhesion_high")
-    works = np.maximum(np.stack([spread[name].values for name in names]), 0.0)
-    drawn = np.maximum(sample_work_of_adhesion(energies, samples, seed), 0.0)
+    endings = ("", "_low", "_high")
+    works = np.stack([spread[f"work_of_adhesion{ending}"].values for ending in endings]).clip(0)
+    drawn = sample_work_of_adhesion(energies, samples, seed).clip(0)
     curve = np.union1d(works, np.linspace(works.min(), works.max(), 13))
-    pushed = np.maximum(flat, surface.small_pressure)
+
+    # the limit p -> 0 is solved beside the pressures asked for
+    pushed = np.append(np.maximum(flat, surface.small_pressure), surface.small_pressure)
     solved = balance(
-        surface, np.tile(pushed, curve.size), np.repeat(curve, flat.size), max_iterations
+        surface, np.tile(pushed, curve.size), np.repeat(curve, pushed.size), max_iterations
     )
-    share = np.where(solved.start > 0, 1.0, np.tile(flat / pushed, curve.size))
-    area = (solved.area[:, -1] * share).reshape(curve.size, flat.size)
-    reads = PchipInterpolator(curve, area, axis=0) if curve.size > 1 else None
+    table = (curve.size, pushed.size)
+    sticks = solved.start.reshape(table)[:, :-1] > 0
+    area = solved.area[:, -1].reshape(table)[:, :-1] * np.where(sticks, 1.0, flat / pushed[:-1])
+    macroscopic = solved.binding[:, 0].reshape(table)[:, -1]
+
+    def read(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+        if curve.size == 1:
+            return np.broadcast_to(values[0], (*at.shape, *values.shape[1:]))
+        return PchipInterpolator(curve, values, axis=0)(at)
+
     dims = ("medium", *over.dims)
-
-    def at(work: np.ndarray) -> np.ndarray:
-        return reads(work) if reads else np.broadcast_to(area, (*work.shape, flat.size))
-
-    for name, work in zip(("", "_low", "_high"), works, strict=True):
-        spread[f"contact_area_ratio{name}"] = (dims, at(work).reshape(2, *over.shape))
-    spread["contact_area_ratio_std"] = (
-        dims,
-        at(drawn).std(axis=1, ddof=1).reshape(2, *over.shape),
-    )
+    for ending, work in zip(endings, works, strict=True):
+        areas = read(area, work).reshape(2, *over.shape)
+        spread[f"contact_area_ratio{ending}"] = (dims, areas)
+        at_rest = macroscopic[np.searchsorted(curve, work)]
+        spread[f"macroscopic_work_of_adhesion{ending}"] = ("medium", at_rest)
+    deviation = read(area, drawn).std(axis=1, ddof=1).reshape(2, *over.shape)
+    spread["contact_area_ratio_std"] = (dims, deviation)
     return stamp(spread.assign_coords(pressure_coords(over)), **parameters(surface))

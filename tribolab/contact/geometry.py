@@ -1,33 +1,11 @@
-"""The line contact: a rigid cylinder on an elastic flat, and how its parameters may be written."""
+"""The line contact: a rigid cylinder on an elastic flat."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from tribolab.errors import AnalysisError
-from tribolab.units import to_si
-
-
-def positive(value: str | float, unit: str, name: str) -> float:
-    """Return text with a unit, or an SI number, as an SI float above zero.
-
-    Raises
-    ------
-    UnitError
-        If the text has no unit or one of the wrong dimension.
-    AnalysisError
-        If the number is not positive and finite.
-
-    Examples
-    --------
-    >>> positive("2 MPa", "Pa", "effective_modulus")
-    2000000.0
-    """
-    number = to_si(value if isinstance(value, str) else float(value), unit, name=name)
-    if not 0 < number < math.inf:
-        raise AnalysisError(f"{name}: a positive, finite value in {unit} is wanted; got {number:g}")
-    return number
+from tribolab.units import positive, to_si
 
 
 @dataclass(frozen=True)

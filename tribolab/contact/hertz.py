@@ -98,7 +98,7 @@ def jkr_smallest_load(contact: LineContact, work_of_adhesion: str | float) -> fl
     --------
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> f"{jkr_smallest_load(contact, '64 mJ/m^2'):.2f} N/m"
-    '-14.45 N/m'
+    '-14.49 N/m'
     """
     w = _work(work_of_adhesion)
     return float(

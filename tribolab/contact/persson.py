@@ -11,13 +11,11 @@ from typing import TypeVar
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 from scipy.special import erf, exp1
 
-from tribolab.contact.geometry import positive
 from tribolab.errors import AnalysisError
-from tribolab.quantities import quantity
+from tribolab.quantities import labelled, like, stamp_array
 from tribolab.surface.moments import (
     at_wavenumber,
     cumulative,
@@ -25,7 +23,7 @@ from tribolab.surface.moments import (
     refined,
     spectrum_arrays,
 )
-from tribolab.units import to_si
+from tribolab.units import positive, to_si
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 ROOT_PI = np.sqrt(np.pi)
@@ -73,7 +71,7 @@ def contact_area_ratio(
     >>> q = np.array([1e3, 1e9])
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-2 * q**-4.0)}, coords={"wavenumber": q})
     >>> f"{contact_area_ratio('0.1 MPa', psd, '2 MPa'):.4f}"
-    '0.0857'
+    '0.0855'
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     slope = cumulative(*spectrum_arrays(psd), 3)[-1]
@@ -103,9 +101,13 @@ def apparent_contact_area_ratio(
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     stiffness = modulus * np.sqrt(np.pi * cumulative(*spectrum_arrays(psd), 3))
     values = pressure_values(pressure)
-    return with_dimension(
-        _area(values[..., None], stiffness), pressure, psd["wavenumber"], "contact_area_ratio"
+    over, q = labelled(pressure, "pressure"), psd["wavenumber"]
+    area = xr.DataArray(
+        _area(values[..., None], stiffness),
+        coords={**over.coords, "wavenumber": q},
+        dims=(*over.dims, "wavenumber"),
     )
+    return stamp_array(area, "contact_area_ratio")
 
 
 def mean_separation(
@@ -231,7 +233,7 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
 
 
 def _area(pressure: np.ndarray, stiffness: np.ndarray | float) -> np.ndarray:
-    """Erf(p / stiffness), where stiffness 0 is a smooth surface: contact at any pressure above 0."""
+    """Erf(p / stiffness); stiffness 0 is a smooth surface, in contact at any pressure above 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(pressure == 0, 0.0, erf(pressure / stiffness))
 
@@ -252,37 +254,3 @@ def pressure_values(pressure: str | Pressure) -> np.ndarray:
             " Pa"
         )
     return values
-
-
-def like(values: np.ndarray, given: str | Pressure, name: str) -> Pressure:
-    """Return values the way the argument was given, stamped with the quantity's unit."""
-    if not isinstance(given, xr.DataArray):
-        return values[()] if isinstance(given, np.ndarray | list | tuple) else float(values)
-    return _stamped(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
-
-
-def with_dimension(
-    values: np.ndarray, given: str | ArrayLike | xr.DataArray, last: xr.DataArray, name: str
-) -> xr.DataArray:
-    """Return values over the dims of the argument and one more; a bare array's dim is `pressure`."""
-    over = as_array(given)
-    coords = {**over.coords, last.name: last}
-    return _stamped(xr.DataArray(values, coords, (*over.dims, last.name)), name)
-
-
-def as_array(pressure: str | ArrayLike | xr.DataArray) -> xr.DataArray:
-    """Pressures as a DataArray; a bare one-dimensional array becomes its own coordinate."""
-    values = pressure_values(pressure)
-    if isinstance(pressure, xr.DataArray):
-        return pressure.astype(float)
-    if values.ndim > 1:
-        raise AnalysisError(
-            "pressure: an array with two or more dimensions must be a DataArray that names them"
-        )
-    dims = ("pressure",)[: values.ndim]
-    return _stamped(xr.DataArray(values, coords=dict.fromkeys(dims, values), dims=dims), "pressure")
-
-
-def _stamped(data: xr.DataArray, name: str) -> xr.DataArray:
-    known = quantity(name)
-    return data.rename(name).assign_attrs(units=known.unit, long_name=known.long_name)

@@ -9,19 +9,18 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicHermiteSpline, PPoly
 
-from tribolab.contact.geometry import positive
 from tribolab.contact.persson import (
     ROOT_PI,
     Pressure,
-    like,
     pressure_values,
     slope_quadrature,
     tail,
     tail_slope,
 )
 from tribolab.errors import AnalysisError
+from tribolab.quantities import like
 from tribolab.surface.moments import rms_roughness, spectrum_arrays
-from tribolab.units import to_si
+from tribolab.units import positive, to_si
 
 _MORE_THAN_EPS = 1e-14
 
@@ -59,7 +58,7 @@ class Separation:
 
     @functools.cached_property
     def _ends(self) -> tuple[float, float, float, float, float]:
-        """ln p at the far end, slope d ln p/du there; p, u and -d ln u/d(p^2) at the near end."""
+        """Far end: ln p, d ln p/du; near end: p, u, -d ln u/d(p^2)."""
         far, near = self._curve.x[[-1, 0]]
         slope = self._curve(far, 1) * self._chain(self.table_separation[0])
         pressure, separation = self.table_pressure[-1], self.table_separation[-1]
