@@ -8,6 +8,7 @@ from adhesion_cases import flat_then_power, random_walk, relaxed
 from contact_cases import E_STAR, SURFACES, reference_psd, target
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad
 
 from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
@@ -15,7 +16,7 @@ from tribolab.contact.persson import contact_area_ratio
 from tribolab.errors import AnalysisError, TribolabError, UnitError
 from tribolab.studies import xu2026
 
-properties = settings(deadline=None, derandomize=True, max_examples=8)
+properties = settings(deadline=None, derandomize=True, max_examples=5)
 
 NOMINAL = xu2026.system.nominal_pressure(31.0)  # 0.0417 MPa; the paper prints 0.042
 MEDIA = {"adhesion in glycerol": 51e-3, "adhesion dry": 64e-3}
@@ -82,6 +83,24 @@ def test_the_printed_pressure_and_the_exact_one_differ_by_less_than_the_toleranc
     for surface in SURFACES:
         exact, printed = area(surface, np.array([NOMINAL, 0.042e6]), 64e-3)
         assert 0 < printed / exact - 1 < 0.01
+
+
+@pytest.mark.parametrize(("surface", "work"), [("Smooth", 64e-3), ("Sb-S", 51e-3)])
+def test_the_result_obeys_eq_11_as_printed(surface, work):
+    psd = reference_psd(surface, points=20_000)
+    result = adhesion(NOMINAL, psd, E_STAR, work)
+    q, c = psd.wavenumber.values, psd.psd_2d.values
+    nodes, seen = result.wavenumber.values, result.apparent_contact_area_ratio.values
+    p = np.interp(np.log(q), np.log(nodes), seen)
+    xi = np.sqrt(2 * np.pi * np.trapezoid(q**3 * c, q))
+    gain = quad(lambda x: np.sqrt(1 + xi**2 * x) * np.exp(-x), 0, 60)[0]
+    stored = q**2 * p * (0.4 + 0.6 * p**2) * c
+    below = np.concatenate([[0.0], np.cumsum(np.diff(q) * (stored[1:] + stored[:-1]) / 2)])
+    delta = 4 * work / E_STAR
+    right = work * (p[-1] * gain - 2 * np.pi / delta * (below[-1] - below))
+    right = np.interp(np.log(nodes), np.log(q), right)
+    left = result.effective_work_of_adhesion.values * seen
+    np.testing.assert_allclose(left, np.maximum(right, 0), atol=2e-3 * work * p[-1])
 
 
 # --- limits --------------------------------------------------------------------------------------
@@ -194,7 +213,7 @@ def test_relaxation_goes_in_circles_where_adhesion_lifts_off_and_the_root_does_n
 
 @pytest.mark.parametrize("surface", SURFACES)
 def test_doubling_the_nodes_changes_areas_by_less_than_a_thousandth(surface):
-    pressure = np.array([1e3, NOMINAL, 1e5])
+    pressure = np.array([1e3, NOMINAL])
     for work in MEDIA.values():
         usual, double = (area(surface, pressure, work, nodes=n) for n in (200, 400))
         np.testing.assert_allclose(usual, double, rtol=1e-3)

@@ -20,40 +20,35 @@ PRESSURE = np.array([0.0417e6, 0.1e6])
 
 
 @pytest.mark.parametrize("surface", SURFACES)
-def test_value_and_bounds_are_areas_at_the_works_of_adhesion_stated(surface):
+def test_values_and_bounds_are_those_at_the_works_of_adhesion_stated(surface):
     psd = reference_psd(surface)
     spread = adhesion_uncertainty(PRESSURE, psd, E_STAR)
     assert spread.contact_area_ratio.dims == ("medium", "pressure")
-    for ending in ("", "_low", "_high"):
-        for medium in ("dry", "wet"):
-            work = float(spread[f"work_of_adhesion{ending}"].sel(medium=medium))
-            expected = adhesion(PRESSURE, psd, E_STAR, work).contact_area_ratio
-            got = spread[f"contact_area_ratio{ending}"].sel(medium=medium)
-            np.testing.assert_allclose(got, expected, rtol=1e-9)
+    for ending, medium in (("", "wet"), ("_low", "wet"), ("_high", "dry")):
+        part = spread.sel(medium=medium)
+        work = float(part[f"work_of_adhesion{ending}"])
+        expected = adhesion(PRESSURE, psd, E_STAR, work).contact_area_ratio
+        np.testing.assert_allclose(part[f"contact_area_ratio{ending}"], expected, rtol=1e-9)
+        expected = macroscopic_work_of_adhesion(psd, E_STAR, work).macroscopic_work_of_adhesion
+        got = float(part[f"macroscopic_work_of_adhesion{ending}"])
+        assert got == pytest.approx(float(expected), rel=1e-9, abs=1e-15)
 
 
-@pytest.mark.parametrize("surface", ["Smooth", "Sb-S"])
-def test_the_verdict_on_pull_off_is_given_over_the_bounds(surface):
-    psd = reference_psd(surface)
-    spread = adhesion_uncertainty(1e5, psd, E_STAR)
-    for ending in ("", "_low", "_high"):
-        for medium in ("dry", "wet"):
-            work = float(spread[f"work_of_adhesion{ending}"].sel(medium=medium))
-            expected = macroscopic_work_of_adhesion(psd, E_STAR, work).macroscopic_work_of_adhesion
-            got = spread[f"macroscopic_work_of_adhesion{ending}"].sel(medium=medium)
-            assert float(got) == pytest.approx(float(expected), rel=1e-9, abs=1e-15)
-    if surface == "Smooth":  # at the lowest wet work that literature allows it would not stick
-        wet = spread.sel(medium="wet")
-        assert float(wet.macroscopic_work_of_adhesion_low) == 0
-        assert float(wet.macroscopic_work_of_adhesion) > 0
+def test_literature_bounds_leave_the_pull_off_in_glycerol_open_for_the_smooth_surface_only():
+    for surface in SURFACES:
+        spread = adhesion_uncertainty(1e5, reference_psd(surface), E_STAR)
+        low = spread.macroscopic_work_of_adhesion_low > 0
+        high = spread.macroscopic_work_of_adhesion_high > 0
+        expected = ([True, False], [True, True]) if surface == "Smooth" else ([False] * 2,) * 2
+        np.testing.assert_array_equal([low, high], expected)
 
 
 def test_the_deviation_is_that_of_draws_solved_one_by_one():
     psd = reference_psd("Smooth")
-    spread = adhesion_uncertainty(0.0417e6, psd, E_STAR, samples=60, seed=5)
-    drawn = sample_work_of_adhesion(PDMS_PMMA_GLYCEROL, 60, seed=5)[1]
+    spread = adhesion_uncertainty(0.0417e6, psd, E_STAR, samples=40, seed=5)
+    drawn = sample_work_of_adhesion(PDMS_PMMA_GLYCEROL, 40, seed=5)[1]
     surface = rough_interface(psd, E_STAR, 0.4, 1.0, 200)
-    areas = surface.solve(np.full(60, 0.0417e6), drawn, 100).area[:, -1]
+    areas = surface.solve(np.full(40, 0.0417e6), drawn, 100).area[:, -1]
     expected = np.std(areas, ddof=1)
     assert float(spread.contact_area_ratio_std.sel(medium="wet")) == pytest.approx(
         expected, rel=5e-3

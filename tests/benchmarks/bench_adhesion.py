@@ -2,7 +2,8 @@
 
 Both solve Eqs. (11) and (12) on the same 200 nodes with the same first-passage equation: here as
 one bracketed root for each pressure, there by turns between gamma_eff and P, relaxed by one half,
-until gamma_eff changes by less than 1e-10. Run it as::
+until gamma_eff changes by less than 1e-10. The two are about as fast; the root is there because the
+relaxation does not settle where gamma_eff(1) is about to lift off from zero. Run it as::
 
     OPENBLAS_NUM_THREADS=1 python tests/benchmarks/bench_adhesion.py
 """

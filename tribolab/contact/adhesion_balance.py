@@ -135,8 +135,8 @@ class Interface:
         height = -np.sqrt(np.maximum(start, 0.0) * stiffness[0])
         for i in range(n - 1):
             before, stored = area[i], self.reduced(area[i])
-            # guess P at the next node by its last ratio; once corrected, the guess leaves no trace
-            # above 1e-8
+            # P at the next node is guessed by its last ratio and corrected once, which is enough:
+            # a second correction changes areas by 1e-8
             guess = before * np.maximum(before / area[i - 1], 0.5) if i else before
             for _ in range(2):
                 grown = energy[i] + self.elastic[i] * (stored + self.reduced(guess)) / 2
