@@ -225,7 +225,7 @@ def _speeds_above(axes: Axes, start, stop, speeds) -> None:
             groups.append((a, b, speed, text))
     ends = [6.0, 0.0]  # mm up to which each of the two rows is taken; the letter stands in one
     for a, b, _, text in groups:
-        need = len(text) * 1.27 + 1.0  # mm at 7 pt
+        need = len(text) * 1.35 + 2.0  # mm at 7 pt
         middle = (np.clip(a, low, high) + np.clip(b, low, high)) / 2
         at = (middle - low) / (high - low) * _WIDTH
         room = (b - a) / (high - low) * _WIDTH
