@@ -150,7 +150,7 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     return flags
 
 
-def saturation(values: np.ndarray, excess: float = 3.0, fewest: int = 5) -> np.ndarray:
+def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.ndarray:
     """Flag samples that lie at the end of the range because the signal was cut off there.
 
     Parameters
@@ -161,7 +161,8 @@ def saturation(values: np.ndarray, excess: float = 3.0, fewest: int = 5) -> np.n
         How many times more samples lie on the outermost value than on the next level of the
         quantised signal; the tail of a signal that is not cut off thins out.
     fewest
-        Smallest number of samples on the outermost value, with at least two in a row.
+        Smallest number of samples on the outermost value; where the signal is quantised, at
+        least two of them in a row.
 
     Returns
     -------
@@ -180,6 +181,6 @@ def saturation(values: np.ndarray, excess: float = 3.0, fewest: int = 5) -> np.n
         depth = sign * (end - known)
         below = int(((depth > 0) & (depth <= step)).sum())
         in_a_row = bool((at_end[1:] & at_end[:-1]).any())
-        if count >= fewest and in_a_row and count > excess * below:
+        if count >= fewest and (in_a_row or step == 0) and count > excess * below:
             flags[at_end] = SUSPECT
     return flags
