@@ -1,1 +1,29 @@
-"""The virtual rig: raw files like a lab's, with the truth beside them."""
+"""The virtual rig: signals and files with known truth, for the demo, the tests and teaching."""
+
+from tribolab.rig.campaign import simulate_campaign
+from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
+from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
+from tribolab.rig.runs import SimulatedRun, simulate_run
+from tribolab.rig.scans import scans
+from tribolab.rig.truth import Truth, read_truth
+
+__all__ = [
+    "Clocks",
+    "DryLaw",
+    "Encoder",
+    "ForceCell",
+    "Loggers",
+    "Protocol",
+    "Rig",
+    "Scatter",
+    "SimulatedRun",
+    "StickSlip",
+    "StribeckLaw",
+    "Truth",
+    "friction_law",
+    "read_truth",
+    "scans",
+    "simulate_campaign",
+    "simulate_run",
+    "stick_slip",
+]

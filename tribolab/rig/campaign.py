@@ -1,0 +1,268 @@
+"""A whole simulated campaign on disk: raw files, campaign.toml and the truth beside them."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+import shutil
+import tempfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import ConfigError
+from tribolab.rig.files import force_file, motion_file, scan_file
+from tribolab.rig.parameters import Rig
+from tribolab.rig.runs import run_name, simulate_run
+from tribolab.rig.scans import scans
+from tribolab.studies import xu2026
+
+_FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
+_SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
+
+
+@dataclass(frozen=True)
+class _Condition:
+    surface: str
+    medium: str
+    normal_force: float
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One file or pair of files to make: picklable, so that another process can."""
+
+    folder: Path
+    seed: int
+    rig: Rig
+    condition: _Condition
+    number: int  # of the repeat; 0: the surface's scans
+    scans: int
+    date: dt.datetime
+
+
+def simulate_campaign(
+    folder: str | Path,
+    seed: int = 0,
+    *,
+    small: bool = False,
+    surfaces: Sequence[str] | None = None,
+    loads: Sequence[float] | None = None,
+    n_repeats: int = 2,
+    n_scans: int | None = None,
+    rig: Rig | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+    jobs: int = 1,
+) -> Path:
+    """Write a campaign as the virtual rig measures it: every surface at every load, in repeats.
+
+    Parameters
+    ----------
+    folder
+        Where to; must not exist, or be empty.
+    seed
+        The same seed gives the same bytes, whatever `jobs` is.
+    small
+        A few runs at three speeds, for a first look and for tests.
+    surfaces, loads
+        Names and normal forces [N]; default all of Xu et al. In glycerol at every load, dry at
+        the lowest.
+    n_repeats, n_scans
+        Runs per condition, scans per surface.
+    rig
+        Protocol and sensors.
+    progress
+        Called as ``progress(stage, done, total)``.
+    jobs
+        Number of processes.
+
+    Returns
+    -------
+    pathlib.Path
+        The ``campaign.toml``. Beside it lie ``raw/friction``, ``raw/profiles`` and ``truth``.
+
+    Raises
+    ------
+    ConfigError
+        If the folder holds anything already.
+    """
+    target = Path(folder)
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise ConfigError(
+            f"{target} exists and is not an empty folder; name a new one, nothing is overwritten"
+        )
+    rig = rig or Rig()
+    if small:
+        surfaces, loads = surfaces or ("Smooth", "Sb-R"), loads or xu2026.system.loads[:1]
+        n_scans = n_scans or 1
+        if rig.protocol.speeds == xu2026.SPEEDS:
+            rig = replace(rig, protocol=replace(rig.protocol, speeds=_SMALL_SPEEDS))
+    names = [xu2026.surface(name).name for name in surfaces or xu2026.surfaces]
+    forces = sorted(float(load) for load in loads or xu2026.system.loads)
+    conditions = [
+        *(_Condition(name, "glycerol", force) for name in names for force in forces),
+        *(_Condition(name, "dry", forces[0]) for name in names),
+    ]
+    n_scans = n_scans or xu2026.profilometer.scans
+
+    target.parent.mkdir(parents=True, exist_ok=True)
+    # made aside and moved into place: a killed simulation leaves no half campaign
+    aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    try:
+        for room in ("raw/friction", "raw/profiles", "truth"):
+            (aside / room).mkdir(parents=True)
+        work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
+        facts = _run_all(work, jobs, progress)
+        _write_facts(aside, seed, rig, names, facts)
+        (aside / "campaign.toml").write_text(
+            campaign_text(names, conditions), encoding="utf-8", newline="\n"
+        )
+        aside.chmod(0o755)
+        if target.exists():
+            target.rmdir()
+        aside.rename(target)
+    except BaseException:
+        shutil.rmtree(aside, ignore_errors=True)
+        raise
+    return target / "campaign.toml"
+
+
+def _jobs(
+    folder: Path,
+    seed: int,
+    rig: Rig,
+    names: Iterable[str],
+    conditions: Iterable[_Condition],
+    n_repeats: int,
+    n_scans: int,
+) -> Iterator[_Job]:
+    made = 0
+    for condition in conditions:
+        for number in range(1, n_repeats + 1):
+            yield _Job(folder, seed, rig, condition, number, n_scans, _date(made))
+            made += 1
+    for name in names:
+        yield _Job(folder, seed, rig, _Condition(name, "", 0.0), 0, n_scans, _date(made))
+
+
+def _date(made: int) -> dt.datetime:
+    """When a run began: eight a day."""
+    day, turn = divmod(made, 8)
+    return _FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
+
+
+def _run_all(
+    work: list[_Job], jobs: int, progress: Callable[[str, int, int], None] | None
+) -> dict[str, dict[str, Any]]:
+    """Do the jobs here or in other processes; facts of the runs, in the order of the jobs."""
+    facts: dict[str, dict[str, Any]] = {}
+
+    def collect(results: Iterable[tuple[str, dict[str, Any]]]) -> None:
+        for done, (name, fact) in enumerate(results, start=1):
+            if fact:
+                facts[name] = fact
+            if progress:
+                progress("simulate", done, len(work))
+
+    if jobs <= 1:
+        collect(map(_do, work))
+    else:
+        import multiprocessing
+        from concurrent.futures import ProcessPoolExecutor
+
+        # spawn: a forked child would inherit locks of the parent's threads
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+            collect(pool.map(_do, work))
+    return facts
+
+
+def _do(job: _Job) -> tuple[str, dict[str, Any]]:
+    """Make one run's two files and its truth, or the scans of one surface."""
+    c = job.condition
+    if not job.number:
+        stem = c.surface.lower()
+        data = scans(c.surface, job.scans, seed=_generator(job.seed, stem))
+        for number, height in enumerate(data.height.values, start=1):
+            path = job.folder / "raw/profiles" / f"{stem}_{number}.csv"
+            path.write_bytes(scan_file(data.x.values, height))
+        return stem, {}
+    name = run_name(c.surface, c.medium, c.normal_force, job.number)
+    run = simulate_run(
+        c.surface,
+        c.medium,
+        c.normal_force,
+        job.number,
+        seed=_generator(job.seed, name),
+        rig=job.rig,
+    )
+    raw = job.folder / "raw/friction"
+    (raw / f"{name}_force.csv").write_bytes(force_file(run.force_log, job.date))
+    (raw / f"{name}_motion.csv").write_bytes(motion_file(run.motion_log, job.date))
+    table = run.segments.to_csv(index=False, lineterminator="\n", float_format="%.10g")
+    (job.folder / "truth" / f"{name}.csv").write_text(table, encoding="utf-8", newline="\n")
+    return name, run.facts
+
+
+def _generator(seed: int, name: str) -> np.random.Generator:
+    """Each run has its own stream, whichever process makes it and whatever else is made."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode())])
+
+
+def _write_facts(
+    folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, dict[str, Any]]
+) -> None:
+    from tribolab import __version__
+
+    text = json.dumps(
+        {
+            "schema_version": 1,
+            "tribolab_version": __version__,
+            "seed": seed,
+            "system": asdict(xu2026.system),
+            "rig": asdict(rig),
+            "surfaces": {
+                name: {"origin": xu2026.STAND_IN, **asdict(xu2026.surface(name))} for name in names
+            },
+            "references": xu2026.CITATION,
+            "runs": facts,
+        },
+        indent=1,
+        allow_nan=False,
+    )
+    (folder / "truth" / "truth.json").write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str:
+    """Write the campaign file for these surfaces and conditions."""
+    s = xu2026.system
+    parts = [
+        "# Simulated by the virtual rig of tribolab; the truth lies in truth/.\n"
+        f"# After {xu2026.CITATION}.\n"
+        "[campaign]\n"
+        'name = "PMMA on PDMS, dry and in glycerol (virtual rig)"\n'
+        'raw = "raw"\n',
+        "[contact]\n"
+        f'radius = "{100 * s.radius:g} cm"\n'
+        f'length = "{100 * s.length:g} cm"\n'
+        f'youngs_modulus = "{s.youngs_modulus / 1e6:g} MPa"\n'
+        f"poisson_ratio = {s.poisson_ratio:g}\n",
+        f'[medium.glycerol]\nviscosity = "{s.viscosity:g} Pa s"\nwork_of_adhesion = "51 mJ/m^2"\n',
+        '[medium.dry]\nwork_of_adhesion = "64 mJ/m^2"\n',
+        "[segments]\ntrim = 0.10\n",
+    ]
+    parts += [
+        f'[[surface]]\nname = "{name}"\nscans = "profiles/{name.lower()}_*.csv"\n' for name in names
+    ]
+    for c in conditions:
+        stem = run_name(c.surface, c.medium, c.normal_force, 1).removesuffix("01")
+        parts.append(
+            f'[[run]]\nfiles = "friction/{stem}*.csv"\nsurface = "{c.surface}"\n'
+            f'medium = "{c.medium}"\nnormal_force = "{c.normal_force:g} N"\n'
+            'instrument = "linear_slider"\n'
+        )
+    return "\n".join(parts)

@@ -1,0 +1,174 @@
+"""How the virtual rig's friction depends on speed: simple stated laws, of the paper's magnitude."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribolab.errors import AnalysisError, nearest
+from tribolab.studies import xu2026
+
+MEDIA = ("glycerol", "dry")
+
+# Effective shear stress of the dry contact [Pa], for the area with adhesion: of the magnitude of
+# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the values stand in a figure only.
+_DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
+
+
+@dataclass(frozen=True)
+class DryLaw:
+    """Weakly rising friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``."""
+
+    level: float
+    slope: float = 0.03
+
+    def __call__(self, speed: ArrayLike) -> np.ndarray:
+        """Friction coefficient at sliding speeds [m/s]."""
+        return self.level * (1 + self.slope * np.log10(np.asarray(speed, dtype=float) / 1e-4))
+
+
+@dataclass(frozen=True)
+class StribeckLaw:
+    """Boundary plateau, mixed transition, hydrodynamic rise.
+
+    Parameters
+    ----------
+    boundary
+        Plateau at low speed.
+    transition_speed, exponent
+        The solid part is ``boundary * exp(-(v/transition_speed)^exponent)`` [m/s].
+    drag
+        The viscous part is ``drag * (v / 1 cm/s)^0.4``.
+    """
+
+    boundary: float
+    transition_speed: float
+    exponent: float
+    drag: float
+
+    def __call__(self, speed: ArrayLike) -> np.ndarray:
+        """Friction coefficient at sliding speeds [m/s]."""
+        v = np.asarray(speed, dtype=float)
+        solid = self.boundary * np.exp(-((v / self.transition_speed) ** self.exponent))
+        return solid + self.drag * (v / 1e-2) ** 0.4
+
+
+@dataclass(frozen=True)
+class StickSlip:
+    """Stick-slip of one surface in one medium, by speed.
+
+    Parameters
+    ----------
+    form
+        ``"sawtooth"`` (slow linear rise, abrupt drop), ``"rounded"`` (near a sine) or ``"none"``.
+    wavelength, wavelength_exponent
+        ``wavelength * (v / 1 um/s) ** -wavelength_exponent`` [m] of sliding per period.
+    drop, drop_exponent
+        From peak to valley, relative to the friction coefficient:
+        ``drop * (v / 1 um/s) ** -drop_exponent``.
+    fade_start, fade_stop
+        From the first speed [m/s] on it fades linearly in log v, and from the second on it is gone.
+    """
+
+    form: str = "none"
+    wavelength: float = math.nan
+    wavelength_exponent: float = 0.0
+    drop: float = 0.0
+    drop_exponent: float = 0.0
+    fade_start: float = math.inf
+    fade_stop: float = math.inf
+
+    def at(self, speed: float) -> tuple[str, float, float]:
+        """Form, wavelength [m] and relative drop at one speed [m/s]."""
+        left = 1.0
+        if speed > self.fade_start:
+            span = math.log(self.fade_stop / self.fade_start)
+            left = math.log(self.fade_stop / speed) / span if span > 0 else 0.0
+        if self.form == "none" or speed >= self.fade_stop * (1 - 1e-9) or left <= 0:
+            return "none", math.nan, 0.0
+        v = speed / 1e-6
+        drop = left * self.drop * v**-self.drop_exponent
+        return self.form, self.wavelength * v**-self.wavelength_exponent, drop
+
+
+def _film_thickness(speed: float, normal_force: float) -> float:
+    """Smooth soft line contact: ``h/R = 3.05 (eta U/E'R)^0.6 (W/E'R)^-0.2``, U = v/2, E' = 2E*."""
+    s = xu2026.system
+    stiffness = 2 * s.effective_modulus * s.radius
+    entrainment = s.viscosity * speed / 2 / stiffness
+    return 3.05 * s.radius * entrainment**0.6 * (normal_force / s.length / stiffness) ** -0.2
+
+
+def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw:
+    """Friction coefficient against speed for a surface of Xu et al. at a load.
+
+    Parameters
+    ----------
+    surface, medium
+        ``"Smooth"``, ``"Sb-S"``, ``"Sb-R"``; ``"glycerol"`` or ``"dry"``.
+    normal_force
+        [N]
+
+    Returns
+    -------
+    DryLaw or StribeckLaw
+        A function of speed [m/s]. Anything that can be called so can take its place in
+        `simulate_run`.
+
+    Notes
+    -----
+    Boundary level of the rough surfaces: ``sigma_f A/(A0 p)`` with the paper's fitted shear
+    stress and A/A0 of Eqs. (6) and (7), which needs the rms slope only. Smooth slides by
+    instabilities: its level takes the paper's adhesive area and area-corrected stress (Sec. 7).
+    The solid part fades as the soft-EHL film grows through h_rms; on Smooth, as the paper
+    reports and its theory does not give, it holds to about 10 um/s, where forced wetting sets in.
+
+    Examples
+    --------
+    >>> law = friction_law("Sb-S", "glycerol", 31.0)
+    >>> round(float(law(1e-9)), 2)
+    1.39
+    """
+    if medium not in MEDIA:
+        raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, MEDIA)}")
+    s, known = xu2026.system, xu2026.surface(surface)
+    pressure = s.nominal_pressure(normal_force)
+    # adhesion pulls Smooth into nearly full contact at every load; elsewhere area goes with load
+    reference = pressure if known.name == "Smooth" else s.nominal_pressure(s.loads[0])
+    if medium == "dry":
+        level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference
+        return DryLaw(level)
+    forces, stresses = zip(*known.shear_stress, strict=True)
+    stress = float(np.interp(normal_force, forces, stresses))
+    drag = s.viscosity * 1e-2 * 2 * s.half_width(normal_force)
+    drag /= _film_thickness(1e-2, normal_force) * normal_force / s.length
+    if known.name == "Smooth":
+        boundary = stress * known.area_ratio / reference  # 0.224 times 0.5 is 0.876 times 0.127
+        return StribeckLaw(boundary, transition_speed=3e-5, exponent=1.5, drag=drag)
+    area = math.erf(math.sqrt(2) * pressure / (s.effective_modulus * known.rms_slope))
+    transition = 1e-2 * (known.rms_roughness / _film_thickness(1e-2, normal_force)) ** (1 / 0.6)
+    return StribeckLaw(stress * area / pressure, transition, exponent=0.6, drag=drag)
+
+
+def stick_slip(surface: str, medium: str) -> StickSlip:
+    """Stick-slip as Sec. 6 to 8 describe it: on Smooth only.
+
+    Dry it is a sawtooth, alike at 1 and 3 um/s; in glycerol rounder and longer, much weaker and
+    shorter at 3 than at 1 um/s, and gone at 10 um/s. The paper prints no numbers: wavelengths and
+    drops are assumptions, and so is the fading of the dry sawtooth above 0.1 mm/s.
+    """
+    if xu2026.surface(surface).name != "Smooth":
+        return StickSlip()
+    if medium == "dry":
+        return StickSlip("sawtooth", wavelength=22e-6, drop=0.18, fade_start=1e-4, fade_stop=1e-3)
+    return StickSlip(
+        "rounded",
+        wavelength=40e-6,
+        wavelength_exponent=0.4,
+        drop=0.20,
+        drop_exponent=1.1,
+        fade_stop=1e-5,
+    )

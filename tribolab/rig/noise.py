@@ -1,0 +1,50 @@
+"""Random processes of the virtual rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+
+def slow_noise(
+    rng: np.random.Generator, span: float, correlation: float
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Draw a stationary process of unit variance that can be asked at any moment of the span.
+
+    Parameters
+    ----------
+    rng
+        Generator.
+    span, correlation
+        Length of the record and correlation length, in one unit.
+
+    Returns
+    -------
+    callable
+        The process at given moments: a first-order autoregression on knots an eighth of the
+        correlation length apart, linear in between.
+    """
+    from scipy.signal import lfilter
+
+    step = correlation / 8
+    knots = int(np.ceil(span / step)) + 2
+    memory = np.exp(-1 / 8)
+    kicks = rng.standard_normal(knots)
+    kicks[1:] *= np.sqrt(1 - memory**2)
+    values = lfilter([1.0], [1.0, -memory], kicks)
+    grid = step * np.arange(knots)
+    return lambda moments: np.interp(moments, grid, values)
+
+
+def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Draw a smooth drift of unit size: three cosines of one half to three halves of a period."""
+    amplitudes = rng.standard_normal(3) * np.sqrt(2 / 3)
+    phases = rng.uniform(0, 2 * np.pi, 3)
+    turns = np.array([0.5, 1.0, 1.5]) * 2 * np.pi / span
+
+    def drift(moments: np.ndarray) -> np.ndarray:
+        start = np.cos(phases) @ amplitudes  # the zero offset is a thing of its own
+        return np.cos(np.multiply.outer(moments, turns) + phases) @ amplitudes - start
+
+    return drift

@@ -1,0 +1,166 @@
+"""What the virtual rig is made of: protocol, sensors, loggers, clocks; all SI, all frozen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tribolab.studies import xu2026
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """One run: rest, load, forward and backward strokes at each speed, unload, rest.
+
+    Parameters
+    ----------
+    speeds
+        Set speeds [m/s], in the order in which they are run.
+    stroke, stroke_exponent
+        A stroke at v is ``stroke * (v / 1 um/s) ** stroke_exponent`` long [m]: long enough for
+        ten stick-slip periods at the lowest speed, short enough at the highest for a short slab.
+    unloaded_rest, loading, loaded_rest, rest
+        Durations [s]: without load at both ends, of the load ramp, under load before the first
+        stroke, between strokes.
+    ramp_fraction, shortest_ramp, longest_ramp
+        An acceleration ramp takes this part of a stroke's time, within these limits [s].
+    build_up, run_in, overshoot
+        Friction turns over in the first `build_up` of a stroke and has a start-up peak, `overshoot`
+        high relative to the steady value, that is gone after `run_in` of the stroke.
+    relaxation_time, relaxed_part
+        At rest the friction force relaxes with this time [s] to this part of its last value.
+    """
+
+    speeds: tuple[float, ...] = xu2026.SPEEDS
+    stroke: float = 0.45e-3
+    stroke_exponent: float = 1 / 3
+    unloaded_rest: float = 10.0
+    loading: float = 5.0
+    loaded_rest: float = 5.0
+    rest: float = 2.0
+    ramp_fraction: float = 0.03
+    shortest_ramp: float = 0.03
+    longest_ramp: float = 2.0
+    build_up: float = 0.02
+    run_in: float = 0.07
+    overshoot: float = 0.10
+    relaxation_time: float = 1.0
+    relaxed_part: float = 0.4
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """What is real, not an error of a sensor.
+
+    Parameters
+    ----------
+    repeat
+        Standard deviation of the friction level between repeats, relative.
+    fluctuation, fluctuation_length
+        Friction fluctuates by this relative standard deviation along the track, correlated over
+        this part of a stroke.
+    load_control, load_control_time
+        The load controller's error: relative standard deviation and correlation time [s].
+    """
+
+    repeat: float = 0.01
+    fluctuation: float = 0.004
+    fluctuation_length: float = 0.01
+    load_control: float = 0.005
+    load_control_time: float = 20.0
+
+
+@dataclass(frozen=True)
+class ForceCell:
+    """Two-axis force cell with its amplifier and converter; all in N.
+
+    Parameters
+    ----------
+    noise, flicker, flicker_time
+        White noise, and slow noise of this correlation time [s].
+    hum
+        Amplitude of the 50 Hz that is left before the logger averages.
+    offset_friction, offset_normal
+        Standard deviation of the zero offsets between runs.
+    drift
+        Standard deviation of a smooth drift over a run; a fifth of it on the normal force.
+    step
+        One count of the converter: 16 bit over +-500 N.
+    """
+
+    noise: float = 0.04
+    flicker: float = 0.03
+    flicker_time: float = 3.0
+    hum: float = 0.03
+    offset_friction: float = 1.2
+    offset_normal: float = 0.4
+    drift: float = 0.15
+    step: float = 1000 / 2**16
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """Position and velocity of the table.
+
+    Parameters
+    ----------
+    velocity_noise
+        Smallest and largest relative velocity noise; each run draws its own.
+    velocity_floor, velocity_step
+        Noise at rest and resolution of the velocity [m/s].
+    position_noise, position_step
+        Noise and resolution of the position [m].
+    """
+
+    velocity_noise: tuple[float, float] = (0.01, 0.03)
+    velocity_floor: float = 2e-8
+    velocity_step: float = 2e-9
+    position_noise: float = 3e-8
+    position_step: float = 1e-7
+
+
+@dataclass(frozen=True)
+class Loggers:
+    """How often is sampled: ``rate * (v / 1 um/s) ** exponent``, and `rate` at rest.
+
+    Parameters
+    ----------
+    force_rate, motion_rate
+        Rates [Hz] at 1 um/s.
+    exponent
+        How the rate grows with the step's speed: 1/2 makes 10 Hz at 1 um/s 1 kHz at 1 cm/s.
+    jitter
+        Standard deviation of a sample's moment, relative to the sampling interval.
+    """
+
+    force_rate: float = 10.0
+    motion_rate: float = 4.0
+    exponent: float = 0.5
+    jitter: float = 0.02
+
+
+@dataclass(frozen=True)
+class Clocks:
+    """Two loggers, two clocks: ``force time = motion time * (1 + rate) + shift``.
+
+    Parameters
+    ----------
+    largest_shift
+        The shift [s] is drawn between plus and minus this.
+    largest_rate
+        So is the relative difference of the clocks' rates.
+    """
+
+    largest_shift: float = 2.0
+    largest_rate: float = 10e-6
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Everything together."""
+
+    protocol: Protocol = field(default_factory=Protocol)
+    scatter: Scatter = field(default_factory=Scatter)
+    force_cell: ForceCell = field(default_factory=ForceCell)
+    encoder: Encoder = field(default_factory=Encoder)
+    loggers: Loggers = field(default_factory=Loggers)
+    clocks: Clocks = field(default_factory=Clocks)

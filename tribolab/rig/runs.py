@@ -1,0 +1,193 @@
+"""One run of the virtual rig: two logs and the truth behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, is_dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from tribolab.quantities import stamp
+from tribolab.rig.laws import StickSlip, friction_law, stick_slip
+from tribolab.rig.parameters import Rig
+from tribolab.rig.schedule import make_schedule
+from tribolab.rig.sensors import (
+    Errors,
+    draw_errors,
+    motion_clock,
+    read_forces,
+    read_motion,
+    sample_times,
+)
+from tribolab.rig.signals import make_signals
+from tribolab.studies import xu2026
+from tribolab.units import to_si
+
+
+@dataclass(frozen=True)
+class SimulatedRun:
+    """What the loggers wrote, and what was true.
+
+    Parameters
+    ----------
+    name
+        ``<surface>_<medium>_<load>N_<number>``.
+    force_log
+        ``friction_force``, ``normal_force`` [N] over ``time`` [s] on the force clock.
+    motion_log
+        ``position`` [m], ``sliding_velocity``, ``set_speed`` [m/s] over ``time`` on the motion
+        clock.
+    noise_free
+        At the force log's times: the true ``friction_coefficient`` (signed as the force),
+        ``friction_force``, ``normal_force``, ``position``, ``sliding_velocity``.
+    segments
+        One row per constant-speed segment; units stand in the columns' names.
+    facts
+        What was drawn and chosen for this run, ready for JSON.
+    """
+
+    name: str
+    force_log: xr.Dataset
+    motion_log: xr.Dataset
+    noise_free: xr.Dataset
+    segments: pd.DataFrame
+    facts: dict[str, Any]
+
+
+def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
+    """Name of a run, and the stem of its files' names.
+
+    >>> run_name("Sb-R", "glycerol", 31.0, 1)
+    'sb-r_glycerol_31N_01'
+    """
+    return f"{surface.lower()}_{medium}_{normal_force:g}N_{number:02d}"
+
+
+def simulate_run(
+    surface: str = "Sb-S",
+    medium: str = "glycerol",
+    normal_force: str | float = 31.0,
+    number: int = 1,
+    *,
+    seed: int | np.random.Generator = 0,
+    rig: Rig | None = None,
+    law: Callable[[np.ndarray], np.ndarray] | None = None,
+    slip: StickSlip | None = None,
+) -> SimulatedRun:
+    """Simulate one run on the linear slider.
+
+    Parameters
+    ----------
+    surface, medium
+        ``"Smooth"``, ``"Sb-S"``, ``"Sb-R"``; ``"glycerol"`` or ``"dry"``.
+    normal_force
+        [N], or text with a unit.
+    number
+        Number of the repeat; part of the name only.
+    seed
+        Seed or generator; the same seed gives the same run.
+    rig
+        Protocol and sensors; default `Rig`.
+    law
+        Friction coefficient at speeds [m/s]; default `friction_law` of surface, medium and load.
+    slip
+        Stick-slip; default `stick_slip` of surface and medium.
+
+    Returns
+    -------
+    SimulatedRun
+        Both logs, the noise-free signals, and the truth of each segment.
+
+    Raises
+    ------
+    AnalysisError
+        If surface or medium is not known.
+    UnitError
+        If the load's text has no unit of force.
+
+    Examples
+    --------
+    >>> from tribolab.rig.parameters import Protocol
+    >>> run = simulate_run("Sb-R", "dry", "31 N", rig=Rig(Protocol(speeds=(1e-4,))))
+    >>> run.name, len(run.segments)
+    ('sb-r_dry_31N_01', 2)
+    """
+    rig = rig or Rig()
+    force = to_si(normal_force, "N", name="normal_force")
+    surface = xu2026.surface(surface).name
+    law = law or friction_law(surface, medium, force)
+    slip = slip or stick_slip(surface, medium)
+    rng = np.random.default_rng(seed)
+
+    factor = float(1 + rig.scatter.repeat * rng.standard_normal())
+    errors = draw_errors(rig.force_cell, rig.encoder, rig.clocks, rng)
+    schedule = make_schedule(rig.protocol)
+    signals = make_signals(schedule, rig.protocol, rig.scatter, law, slip, force, factor, rng)
+
+    time, interval = sample_times(schedule, rig.loggers.force_rate, rig.loggers, rng)
+    friction, normal = read_forces(signals, time, interval, rig.force_cell, errors, rng)
+    # somebody starts and stops the other logger by hand
+    begin, end = rng.uniform(2.2, 4.0), schedule.end - rng.uniform(0.5, 2.5)
+    moved, _ = sample_times(schedule, rig.loggers.motion_rate, rig.loggers, rng, begin, end)
+    position, velocity, set_speed = read_motion(signals, moved, rig.encoder, errors, rng)
+
+    name = run_name(surface, medium, force, number)
+    true_normal, true_friction = signals.force_normal(time), signals.friction(time)
+    true_position, true_velocity = schedule.motion(time)
+    facts = {
+        "surface": surface,
+        "medium": medium,
+        "normal_force_N": force,
+        "repeat_factor": factor,
+        "law": _named(law),
+        "stick_slip": _named(slip),
+        **_clock_facts(errors, float(moved[0]), float(moved[-1])),
+    }
+    return SimulatedRun(
+        name,
+        _log(time, friction_force=friction, normal_force=normal),
+        _log(
+            motion_clock(moved, errors),
+            position=position,
+            sliding_velocity=velocity,
+            set_speed=set_speed,
+        ),
+        _log(
+            time,
+            friction_coefficient=true_friction,
+            friction_force=true_friction * true_normal,
+            normal_force=true_normal,
+            position=true_position,
+            sliding_velocity=true_velocity,
+        ),
+        signals.truth,
+        facts,
+    )
+
+
+def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
+    data = {name: ("time", values) for name, values in signals.items()}
+    return stamp(xr.Dataset(data, {"time": time}))
+
+
+def _named(thing: Any) -> dict[str, Any]:
+    """Return parameters of a law for the record; a bare function has its name only."""
+    values = asdict(thing) if is_dataclass(thing) else {}
+    finite = {k: v if isinstance(v, str) or np.isfinite(v) else None for k, v in values.items()}
+    return {"kind": getattr(thing, "__name__", type(thing).__name__), **finite}
+
+
+def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
+    """State errors, and the one constant shift that is best over the whole motion log."""
+    middle = motion_clock(np.array([begin, end]), errors).mean()
+    return {
+        "friction_force_offset_N": errors.friction_force_offset,
+        "normal_force_offset_N": errors.normal_force_offset,
+        "velocity_noise": errors.velocity_noise,
+        "clock_shift_s": errors.clock_shift,
+        "clock_rate": errors.clock_rate,
+        "clock_shift_at_middle_s": float(errors.clock_shift + errors.clock_rate * middle),
+    }

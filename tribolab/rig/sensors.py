@@ -1,0 +1,130 @@
+"""What the loggers write down: sampling moments, noise, offsets, drift, resolution, clocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tribolab.rig.noise import slow_noise, smooth_drift
+from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers
+from tribolab.rig.schedule import Schedule
+from tribolab.rig.signals import Signals
+
+_MAINS = 50.0  # Hz
+_TIME_STEP = 1e-5  # s, the resolution of the time stamps
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The systematic errors that one run has drawn.
+
+    Parameters
+    ----------
+    friction_force_offset, normal_force_offset
+        Zero offsets of the force cell [N].
+    clock_shift, clock_rate
+        ``force time = motion time * (1 + clock_rate) + clock_shift`` [s].
+    velocity_noise
+        Relative noise of the velocity.
+    """
+
+    friction_force_offset: float
+    normal_force_offset: float
+    clock_shift: float
+    clock_rate: float
+    velocity_noise: float
+
+
+def draw_errors(
+    cell: ForceCell, encoder: Encoder, clocks: Clocks, rng: np.random.Generator
+) -> Errors:
+    """Draw the systematic errors of one run."""
+    return Errors(
+        friction_force_offset=float(rng.normal(0, cell.offset_friction)),
+        normal_force_offset=float(rng.normal(0, cell.offset_normal)),
+        clock_shift=float(rng.uniform(-clocks.largest_shift, clocks.largest_shift)),
+        clock_rate=float(rng.uniform(-clocks.largest_rate, clocks.largest_rate)),
+        velocity_noise=float(rng.uniform(*encoder.velocity_noise)),
+    )
+
+
+def sample_times(
+    schedule: Schedule,
+    rate: float,
+    loggers: Loggers,
+    rng: np.random.Generator,
+    begin: float = 0.0,
+    end: float = np.inf,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Moments [s, force clock] at which a logger samples, and the interval [s] at each.
+
+    The rate goes with the square root of the step's speed; a phase holds a whole number of
+    samples, so the record is uniform piece by piece, but for the jitter.
+    """
+    speed = np.maximum(schedule.set_speed, 1e-6)
+    wanted = schedule.duration * rate * (speed / 1e-6) ** loggers.exponent
+    count = np.maximum(1, np.round(wanted)).astype(int)
+    interval = np.repeat(schedule.duration / count, count)
+    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    time = np.repeat(schedule.start, count) + number * interval
+    jitter = np.clip(rng.standard_normal(time.size), -5, 5) * loggers.jitter
+    time = np.round((time + jitter * interval) / _TIME_STEP) * _TIME_STEP
+    time[0] = 0.0
+    keep = (time >= begin) & (time <= min(end, schedule.end))
+    return time[keep], interval[keep]
+
+
+def read_forces(
+    signals: Signals,
+    time: np.ndarray,
+    interval: np.ndarray,
+    cell: ForceCell,
+    errors: Errors,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Friction force and normal force [N] as the force cell gives them at the times [s].
+
+    A reading is the mean over its interval as far as mains hum goes; a slow logger hardly sees it.
+    """
+    end = signals.schedule.end
+    normal = signals.force_normal(time)
+    friction = signals.friction(time) * normal
+    hum = cell.hum * np.sinc(_MAINS * interval) * np.sin(2 * np.pi * _MAINS * time)
+    readings = []
+    for true, offset, drift, hummed in (
+        (friction, errors.friction_force_offset, cell.drift, hum),
+        (normal, errors.normal_force_offset, cell.drift / 5, 0.5 * hum),
+    ):
+        reading = true + offset + hummed + drift * smooth_drift(rng, end)(time)
+        reading += cell.flicker * slow_noise(rng, end, cell.flicker_time)(time)
+        reading += cell.noise * rng.standard_normal(time.size)
+        readings.append(np.round(reading / cell.step) * cell.step)
+    return readings[0], readings[1]
+
+
+def read_motion(
+    signals: Signals,
+    time: np.ndarray,
+    encoder: Encoder,
+    errors: Errors,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position [m], velocity and set speed [m/s] as the table's controller gives them."""
+    position, velocity = signals.schedule.motion(time)
+    set_speed = signals.schedule.set_speed[signals.schedule.phase(time)]
+    noise = rng.standard_normal((3, time.size))
+    velocity = velocity * (1 + errors.velocity_noise * noise[0])
+    velocity = velocity + encoder.velocity_floor * noise[1]
+    position = position + encoder.position_noise * noise[2]
+    return (
+        np.round(position / encoder.position_step) * encoder.position_step,
+        np.round(velocity / encoder.velocity_step) * encoder.velocity_step,
+        set_speed,
+    )
+
+
+def motion_clock(time: np.ndarray, errors: Errors) -> np.ndarray:
+    """Translate force-clock time into what the motion logger's clock shows [s]."""
+    shown = (time - errors.clock_shift) / (1 + errors.clock_rate)
+    return np.round(shown / _TIME_STEP) * _TIME_STEP

@@ -1,0 +1,203 @@
+"""The true signals of a run: friction, normal force, motion, before any sensor sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from tribolab.rig.laws import StickSlip
+from tribolab.rig.noise import slow_noise
+from tribolab.rig.parameters import Protocol, Scatter
+from tribolab.rig.schedule import Schedule
+from tribolab.rig.waves import WAVES
+
+TRIM = 0.10  # the paper leaves out this part of a segment at either end (App. C)
+_FINE = 20_000  # points per segment for the averages that the truth states
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Friction along one stroke, at the distance [m] slid since it began; positive is resistance.
+
+    Parameters
+    ----------
+    level
+        Friction coefficient in steady sliding.
+    length
+        Length of the stroke [m].
+    ripple
+        What is added to the level: stick-slip and fluctuation.
+    held
+        What was left of the friction before the stroke, in the direction of this stroke.
+    """
+
+    level: float
+    length: float
+    ripple: Callable[[np.ndarray], np.ndarray]
+    held: float
+    protocol: Protocol
+
+    def __call__(self, distance: np.ndarray) -> np.ndarray:
+        """Friction coefficient at distances [m] from the stroke's start."""
+        done = distance / self.length
+        steady = self.level + self.ripple(distance)
+        built = 1 - (1 - np.clip(done / self.protocol.build_up, 0, 1)) ** 3
+        part = np.clip(done / self.protocol.run_in, 0, 1)
+        peak = 27 / 4 * part * (1 - part) ** 2  # reaches 1 at a third, gone at the end
+        run_in = self.level * self.protocol.overshoot * peak
+        return self.held + (steady - self.held) * built + run_in
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Everything that truly happens in a run, as functions of the time on the force clock [s].
+
+    Parameters
+    ----------
+    schedule
+        Motion and load.
+    strokes
+        Friction along each stroke.
+    normal_force
+        Set load [N].
+    load_error
+        Relative error of the load at a time.
+    truth
+        One row per constant-speed segment.
+    """
+
+    schedule: Schedule
+    strokes: tuple[Stroke, ...]
+    normal_force: float
+    load_error: Callable[[np.ndarray], np.ndarray]
+    truth: pd.DataFrame
+    protocol: Protocol
+
+    def force_normal(self, time: np.ndarray) -> np.ndarray:
+        """Return the normal force [N]; zero while unloaded."""
+        return self.normal_force * self.schedule.load(time) * (1 + self.load_error(time))
+
+    def friction(self, time: np.ndarray) -> np.ndarray:
+        """Friction coefficient with the sign of the force: positive when the table moves to +x."""
+        p, plan = self.protocol, self.schedule
+        phase = plan.phase(time)
+        stroke, moving = plan.stroke[phase], plan.sliding[phase] >= 0
+        position, _ = plan.motion(time)
+        friction = np.zeros(time.shape)
+        first = np.flatnonzero(np.diff(plan.stroke, prepend=-1))  # first phase of each stroke
+        for k, law in enumerate(self.strokes):
+            direction = 1 if k % 2 == 0 else -1
+            ran = np.flatnonzero((stroke == k) & moving)
+            distance = np.abs(position[ran] - plan.position[first[k]])
+            friction[ran] = direction * law(distance)
+            stopped = plan.start[first[k] + 3]
+            rests = np.flatnonzero((stroke == k) & ~moving)
+            last = direction * float(law(np.array([law.length]))[0])
+            friction[rests] = last * _relaxed(p, time[rests] - stopped)
+        return friction
+
+
+def _relaxed(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
+    """Part of the friction force that is left after a time at rest."""
+    left = np.exp(-np.asarray(time) / protocol.relaxation_time)
+    return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
+
+
+def make_signals(
+    schedule: Schedule,
+    protocol: Protocol,
+    scatter: Scatter,
+    law: Callable[[np.ndarray], np.ndarray],
+    slip: StickSlip,
+    normal_force: float,
+    factor: float,
+    rng: np.random.Generator,
+) -> Signals:
+    """Draw the true signals of one run.
+
+    Parameters
+    ----------
+    schedule, protocol, scatter
+        What is done, and how steady it is.
+    law, slip
+        Friction coefficient at speeds [m/s], and stick-slip.
+    normal_force
+        [N]
+    factor
+        This run's friction relative to the law.
+    rng
+        Generator.
+
+    Returns
+    -------
+    Signals
+        Its `truth` states for each segment the level of the law (times `factor`) and the mean of
+        the noise-free friction over the part that trimming by 10 % leaves: the two differ by what
+        stick-slip and fluctuation happen to leave over.
+    """
+    slide = np.flatnonzero(schedule.sliding == 1)
+    strokes: list[Stroke] = []
+    rows = []
+    left = 0.0  # signed friction at the end of the last rest
+    for k, phase in enumerate(slide):
+        direction, speed = 1 if k % 2 == 0 else -1, float(schedule.set_speed[phase])
+        duration, ramp = float(schedule.duration[phase]), float(schedule.duration[phase - 1])
+        level = factor * float(law(np.array([speed]))[0])
+        length = speed * (duration + ramp)
+        form, wavelength, drop = slip.at(speed)
+        # the middle of the small steps of the constant-speed part, from the stroke's start
+        fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
+        ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
+        stroke = Stroke(level, length, ripple, held=left * direction, protocol=protocol)
+        strokes.append(stroke)
+        last = direction * float(stroke(np.array([length]))[0])
+        left = last * float(_relaxed(protocol, protocol.rest))
+        cut = int(TRIM * _FINE)
+        rows.append(
+            {
+                "segment": k,
+                "start_s": schedule.start[phase],
+                "stop_s": schedule.start[phase] + duration,
+                "sliding_speed_m_s": speed,
+                "direction": direction,
+                "friction_coefficient": level,
+                "friction_coefficient_trimmed_mean": stroke(fine[cut:-cut]).mean(),
+                "stick_slip": form,
+                "stick_slip_wavelength_m": wavelength,
+                "stick_slip_drop": drop * level,
+            }
+        )
+    wander = slow_noise(rng, schedule.end, scatter.load_control_time)
+    return Signals(
+        schedule,
+        tuple(strokes),
+        normal_force,
+        lambda time: scatter.load_control * wander(time),
+        pd.DataFrame(rows),
+        protocol,
+    )
+
+
+def _ripple(
+    form: str,
+    length: float,
+    wavelength: float,
+    drop: float,
+    level: float,
+    scatter: Scatter,
+    fine: np.ndarray,
+    rng: np.random.Generator,
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Stick-slip and fluctuation along a stroke, with zero mean over the constant-speed part."""
+    noise = slow_noise(rng, length, scatter.fluctuation_length * length)
+    wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None
+
+    def raw(distance: np.ndarray) -> np.ndarray:
+        value = level * scatter.fluctuation * noise(distance)
+        return value + wave(distance) if wave else value
+
+    mean = float(raw(fine).mean())
+    return lambda distance: raw(distance) - mean

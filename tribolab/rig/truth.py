@@ -1,0 +1,55 @@
+"""What is true of a simulated campaign: kept beside the raw files, never read by the analysis."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from tribolab.errors import ReadError
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The truth of a campaign.
+
+    Parameters
+    ----------
+    facts
+        What stands in ``truth.json``: seed, the rig's parameters, surfaces, and for each run its
+        law, offsets and clocks under ``facts["runs"][name]``.
+    segments
+        For each run's name the table of its constant-speed segments.
+    """
+
+    facts: dict[str, Any]
+    segments: dict[str, pd.DataFrame]
+
+
+def read_truth(folder: str | Path) -> Truth:
+    """Read the truth of a simulated campaign.
+
+    Parameters
+    ----------
+    folder
+        The campaign's folder (the one that holds ``campaign.toml``).
+
+    Raises
+    ------
+    ReadError
+        If there is no truth in the folder.
+    """
+    path = Path(folder) / "truth"
+    if not (path / "truth.json").is_file():
+        raise ReadError(
+            f"{path / 'truth.json'} does not exist; only simulated campaigns have a truth"
+        )
+    facts = json.loads((path / "truth.json").read_text(encoding="utf-8"))
+    segments = {
+        name: pd.read_csv(path / f"{name}.csv", keep_default_na=False, na_values=[""])
+        for name in facts["runs"]
+    }
+    return Truth(facts, segments)

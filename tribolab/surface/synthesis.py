@@ -1,0 +1,80 @@
+"""Random Gaussian profiles with a given isotropic spectrum."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.quantities import stamp
+from tribolab.surface.self_affine import SelfAffine, psd_1d, rms_roughness
+
+
+def synthesise_profiles(
+    spectrum: SelfAffine,
+    *,
+    points: int,
+    pitch: float,
+    profiles: int = 1,
+    rng: np.random.Generator | int | None = None,
+) -> xr.Dataset:
+    """Draw straight profiles of a random Gaussian surface with the given isotropic spectrum.
+
+    Parameters
+    ----------
+    spectrum
+        The surface.
+    points, pitch
+        Number of points of a profile, and their distance [m].
+    profiles
+        How many independent profiles.
+    rng
+        Generator or seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (profile, x), with zero mean, periodic over ``points * pitch``. The
+        attributes state what the band of the profile cannot hold: ``variance_of_spectrum_m2`` is
+        the surface's, ``variance_in_band_m2`` what is expected of these profiles.
+
+    Raises
+    ------
+    AnalysisError
+        If there are fewer than four points or the pitch is not positive.
+
+    Notes
+    -----
+    Waves ``k_j = 2 pi j / length`` up to ``pi / pitch`` get independent normal amplitudes of
+    variance ``2 C_1D(k_j) dk``, with the two-sided C_1D of `self_affine.psd_1d`. Waves longer
+    than the length and shorter than two points are left out.
+
+    Examples
+    --------
+    >>> rough = SelfAffine(hurst=0.8, rolloff=1e4, plateau=1e-20, low=1e3, high=1e9)
+    >>> scans = synthesise_profiles(rough, points=4096, pitch=1e-6, profiles=3, rng=1)
+    >>> scans.height.dims, scans.height.shape
+    (('profile', 'x'), (3, 4096))
+    """
+    if points < 4 or pitch <= 0:
+        raise AnalysisError("synthesise_profiles: at least 4 points and a positive pitch")
+    rng = np.random.default_rng(rng)
+    step = 2 * np.pi / (points * pitch)
+    k = step * np.arange(1, (points - 1) // 2 + 1)
+    variance = 2 * psd_1d(spectrum, k) * step
+    amplitudes = np.zeros((profiles, points // 2 + 1), dtype=complex)
+    normal = rng.standard_normal((2, profiles, k.size))
+    amplitudes[:, 1 : k.size + 1] = (0.5 * points * np.sqrt(variance)) * (
+        normal[0] + 1j * normal[1]
+    )
+    height = np.fft.irfft(amplitudes, points, axis=-1)
+    data = xr.Dataset(
+        {"height": (("profile", "x"), height)}, {"x": pitch * np.arange(points, dtype=float)}
+    )
+    return stamp(
+        data,
+        lowest_wavenumber_1_m=float(k[0]),
+        highest_wavenumber_1_m=float(k[-1]),
+        variance_in_band_m2=float(variance.sum()),
+        variance_of_spectrum_m2=rms_roughness(spectrum) ** 2,
+    )
