@@ -26,6 +26,10 @@ class AnalysisError(TribolabError):
     """The data were read, but the question asked of them has no answer."""
 
 
+class OutputError(TribolabError):
+    """Results could not be written."""
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return a hint naming the known words nearest to `word`, ready to end an error message.
 

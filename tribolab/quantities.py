@@ -48,6 +48,8 @@ _ROWS = [
     ("stop", "t_1", "s", "end of the segment"),
     ("trimmed_start", "t_0'", "s", "start of the trimmed segment"),
     ("trimmed_stop", "t_1'", "s", "end of the trimmed segment"),
+    ("omitted_start", "", "s", "start of a stretch that is no segment"),
+    ("omitted_stop", "", "s", "end of a stretch that is no segment"),
     ("sliding_speed", "v", "m/s", "sliding speed"),
     ("direction", "", "1", "sliding direction"),
     ("sliding_distance", "s", "m", "sliding distance"),

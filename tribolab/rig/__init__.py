@@ -3,8 +3,8 @@
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
+from tribolab.rig.profiles import scans
 from tribolab.rig.runs import SimulatedRun, simulate_run
-from tribolab.rig.scans import scans
 from tribolab.rig.truth import Truth, read_truth
 
 __all__ = [

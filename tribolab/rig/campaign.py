@@ -17,8 +17,8 @@ import numpy as np
 from tribolab.errors import ConfigError
 from tribolab.rig.files import force_file, motion_file, scan_file
 from tribolab.rig.parameters import Rig
+from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
-from tribolab.rig.scans import scans
 from tribolab.studies import xu2026
 
 _FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
@@ -89,6 +89,14 @@ def simulate_campaign(
     ------
     ConfigError
         If the folder holds anything already.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = simulate_campaign(Path(folder) / "demo", small=True, surfaces=["Sb-R"])
+    ...     sorted(item.name for item in path.parent.iterdir())
+    ['campaign.toml', 'raw', 'truth']
     """
     target = Path(folder)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.studies import xu2026
+
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
     r"""Write numbers with fixed decimals, one row per line.
@@ -21,8 +23,9 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
     Notes
     -----
-    All digits of a column are laid out in one byte matrix; leading zeros and absent signs are
-    masked away. Ten times faster than formatting number by number.
+    Loggers write fixed decimals; the fast CSV writers know the shortest form only (``1e-05``). All
+    digits of a column are laid out in one byte matrix; leading zeros and absent signs are masked
+    away.
 
     Examples
     --------
@@ -60,7 +63,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
         "# Linear slider, force log\n"
         f"# date: {date.isoformat()}\n"
         "# sensor: two-axis force cell, +-500 N, 16 bit\n"
-        "# rate: by step, 10 to 1000 Hz\n"
+        "# rate: set by the step\n"
         "Time [s],Fx [N],Fz [N]\n"
     )
     columns = [
@@ -77,7 +80,7 @@ def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
         "# Linear slider, motion log\n"
         f"# date: {date.isoformat()}\n"
         "# encoder: linear, 0.1 um\n"
-        "# rate: by step, 4 to 400 Hz\n"
+        "# rate: set by the step\n"
         "Time [s];Position [mm];Velocity [mm/s];Set speed [mm/s]\n"
     )
     columns = [
@@ -94,7 +97,7 @@ def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
     pitch, length = (x[1] - x[0]) * 1e6, (x[-1] - x[0]) * 1e3
     head = (
         "# Surftest profile\n"
-        "# tip radius: 2 um\n"
+        f"# tip radius: {xu2026.profilometer.tip_radius * 1e6:g} um\n"
         f"# pitch: {pitch:g} um\n"
         f"# length: {length:g} mm\n"
         "x [mm],z [um]\n"

@@ -23,7 +23,7 @@ class DryLaw:
     """Weakly rising friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``."""
 
     level: float
-    slope: float = 0.03
+    slope: float = 0.015
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Friction coefficient at sliding speeds [m/s]."""

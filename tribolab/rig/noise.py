@@ -38,8 +38,11 @@ def slow_noise(
 
 
 def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Draw a smooth drift of unit size: three cosines of one half to three halves of a period."""
-    amplitudes = rng.standard_normal(3) * np.sqrt(2 / 3)
+    """Draw a smooth drift, zero at the start and of unit variance after it.
+
+    Three cosines of one half to three halves of a period over the span.
+    """
+    amplitudes = rng.standard_normal(3) * np.sqrt(1 / 3)
     phases = rng.uniform(0, 2 * np.pi, 3)
     turns = np.array([0.5, 1.0, 1.5]) * 2 * np.pi / span
 

@@ -24,8 +24,9 @@ class Protocol:
     ramp_fraction, shortest_ramp, longest_ramp
         An acceleration ramp takes this part of a stroke's time, within these limits [s].
     build_up, run_in, overshoot
-        Friction turns over in the first `build_up` of a stroke and has a start-up peak, `overshoot`
-        high relative to the steady value, that is gone after `run_in` of the stroke.
+        Friction turns over within the distance `build_up` [m] of a stroke's start, as far as the
+        contact shears before it slides, and has a start-up peak, `overshoot` high relative to the
+        steady value, that is gone after `run_in` [m]: 7 % of the shortest stroke.
     relaxation_time, relaxed_part
         At rest the friction force relaxes with this time [s] to this part of its last value.
     """
@@ -39,9 +40,9 @@ class Protocol:
     rest: float = 2.0
     ramp_fraction: float = 0.03
     shortest_ramp: float = 0.03
-    longest_ramp: float = 2.0
-    build_up: float = 0.02
-    run_in: float = 0.07
+    longest_ramp: float = 0.3
+    build_up: float = 9e-6
+    run_in: float = 31e-6
     overshoot: float = 0.10
     relaxation_time: float = 1.0
     relaxed_part: float = 0.4

@@ -60,7 +60,7 @@ def sample_times(
     """Moments [s, force clock] at which a logger samples, and the interval [s] at each.
 
     The rate goes with the square root of the step's speed; a phase holds a whole number of
-    samples, so the record is uniform piece by piece, but for the jitter.
+    samples, so the record is uniform piece by piece, but for the jitter. Strictly increasing.
     """
     speed = np.maximum(schedule.set_speed, 1e-6)
     wanted = schedule.duration * rate * (speed / 1e-6) ** loggers.exponent
@@ -68,8 +68,10 @@ def sample_times(
     interval = np.repeat(schedule.duration / count, count)
     number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     time = np.repeat(schedule.start, count) + number * interval
+    # of the shorter neighbouring interval, or a slow step could begin before a fast one has ended
+    shorter = np.minimum(interval, np.concatenate([interval[:1], interval[:-1]]))
     jitter = np.clip(rng.standard_normal(time.size), -5, 5) * loggers.jitter
-    time = np.round((time + jitter * interval) / _TIME_STEP) * _TIME_STEP
+    time = np.round((time + jitter * shorter) / _TIME_STEP) * _TIME_STEP
     time[0] = 0.0
     keep = (time >= begin) & (time <= min(end, schedule.end))
     return time[keep], interval[keep]

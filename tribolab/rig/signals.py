@@ -42,10 +42,9 @@ class Stroke:
 
     def __call__(self, distance: np.ndarray) -> np.ndarray:
         """Friction coefficient at distances [m] from the stroke's start."""
-        done = distance / self.length
         steady = self.level + self.ripple(distance)
-        built = 1 - (1 - np.clip(done / self.protocol.build_up, 0, 1)) ** 3
-        part = np.clip(done / self.protocol.run_in, 0, 1)
+        built = 1 - (1 - np.clip(distance / self.protocol.build_up, 0, 1)) ** 3
+        part = np.clip(distance / self.protocol.run_in, 0, 1)
         peak = 27 / 4 * part * (1 - part) ** 2  # reaches 1 at a third, gone at the end
         run_in = self.level * self.protocol.overshoot * peak
         return self.held + (steady - self.held) * built + run_in

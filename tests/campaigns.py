@@ -1,0 +1,31 @@
+"""A small simulated campaign that several test files work on."""
+
+import hashlib
+import shutil
+from pathlib import Path
+
+from tribolab.rig import simulate_campaign
+
+RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")
+
+
+def simulated(folder: Path) -> Path:
+    """Two runs in glycerol and two dry, at three speeds; returns campaign.toml."""
+    return simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=2)
+
+
+def copied(campaign: Path, folder: Path) -> Path:
+    """Copy a campaign so that a test may spoil it; returns its campaign.toml."""
+    return shutil.copytree(campaign.parent, folder / "campaign") / campaign.name
+
+
+def fingerprint(folder: Path) -> dict[str, tuple[str, int]]:
+    """Content and time of change of every file below a folder."""
+    return {
+        str(path.relative_to(folder)): (
+            hashlib.sha256(path.read_bytes()).hexdigest(),
+            path.stat().st_mtime_ns,
+        )
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }

@@ -1,0 +1,188 @@
+"""Made-up results for the tests of figures and report, as the analysis builds them."""
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from tribolab.campaign.config import Campaign
+from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.io.netcdf import write_netcdf
+from tribolab.quantities import stamp
+
+SPEEDS = (1e-6, 4.64e-5, 1e-2)
+
+
+def made_run(speeds=SPEEDS, load=31.0, mu=0.8, seed=0, samples=400, stroke=2e-3, rest=2.0):
+    """Return run, segments and friction of strokes forward and backward at each speed."""
+    rng = np.random.default_rng(seed)
+    time, velocity = [], []
+    now, rows, left_out = 0.0, [], []
+
+    def add(duration, n, v):
+        nonlocal now
+        part = now + np.arange(n) * duration / n
+        time.append(part)
+        velocity.append(np.full(n, v))
+        now += duration
+
+    for number, speed in enumerate(speeds):
+        for direction in (1, -1):
+            left_out.append((now, now + rest, "at rest"))
+            add(rest, 20, 0.0)
+            length = stroke / speed
+            rows.append((now, now + length, speed, direction, number))
+            add(length, samples, direction * speed)
+    left_out.append((now, now + rest, "at rest"))
+    add(rest, 20, 0.0)
+    time, velocity = np.concatenate(time), np.concatenate(velocity)
+    force = np.sign(velocity) * mu * load + rng.normal(0, 0.02 * load, time.size)
+    moved = np.r_[0.0, np.cumsum((velocity[1:] + velocity[:-1]) / 2 * np.diff(time))]
+    run = stamp(
+        xr.Dataset(
+            {
+                "friction_force": ("time", force),
+                "normal_force": ("time", load + rng.normal(0, 0.05, time.size)),
+                "sliding_velocity": ("time", velocity),
+                "position": ("time", moved),
+            },
+            {"time": time},
+        ),
+        source="made.csv",
+        source_sha256="0" * 64,
+        tribolab_version="0.1.0",
+        history="made for a test",
+        instrument="linear_slider",
+        columns_not_used="Temp [C]; Aux",
+    )
+    start, stop, speed, direction, pair = (np.array(c) for c in zip(*rows, strict=True))
+    trim = 0.1 * (stop - start)
+    segments = stamp(
+        xr.Dataset(
+            {
+                "start": ("segment", start),
+                "stop": ("segment", stop),
+                "trimmed_start": ("segment", start + trim),
+                "trimmed_stop": ("segment", stop - trim),
+                "sliding_speed": ("segment", speed),
+                "direction": ("segment", direction.astype("int8")),
+                "sliding_distance": ("segment", 0.8 * speed * (stop - start)),
+                "samples": ("segment", np.full(start.size, int(0.8 * samples))),
+            },
+            {"segment": np.arange(start.size)},
+        ),
+        trim=0.1,
+        velocity_source="recorded",
+    )
+    segments["omitted_start"] = ("omitted", np.array([row[0] for row in left_out]))
+    segments["omitted_stop"] = ("omitted", np.array([row[1] for row in left_out]))
+    segments["omitted_reason"] = ("omitted", np.array([row[2] for row in left_out], dtype=object))
+    ratio = force / np.asarray(run["normal_force"])
+    mean, std = [], []
+    for k in range(start.size):
+        inside = (time >= start[k] + trim[k]) & (time <= stop[k] - trim[k])
+        mean.append(direction[k] * ratio[inside].mean())
+        std.append(ratio[inside].std(ddof=1))
+    mean, std = np.array(mean), np.array(std)
+    effective = np.full(start.size, 0.5 * samples)
+    friction = segments.drop_dims("omitted").assign(
+        friction_coefficient=("segment", mean),
+        friction_coefficient_std=("segment", std),
+        friction_coefficient_sem=("segment", std / np.sqrt(effective)),
+        effective_samples=("segment", effective),
+        autocorrelation_time=("segment", np.full(start.size, 0.1)),
+        trend=("segment", np.full(start.size, 1e-6)),
+        trend_change=("segment", np.full(start.size, 1e-4)),
+        trend_p_value=("segment", np.full(start.size, 0.4)),
+        steady=("segment", np.ones(start.size, "int8")),
+        friction_force=("segment", mean * load),
+        normal_force=("segment", np.full(start.size, load)),
+        friction_force_offset=("segment", np.zeros(start.size)),
+        pair=("segment", pair),
+        half_loop=("segment", mean * load),
+    )
+    return run, segments, stamp(friction, offset="half loop")
+
+
+def made_curve(speeds=SPEEDS, mu=0.8, surface="Sb-R", medium="glycerol", load=31.0):
+    """Return a measured curve."""
+    speeds = np.array(speeds, float)
+    mean = mu * (1 - 0.15 * np.log10(speeds / speeds[0] + 1e-300))
+    curve = xr.Dataset(
+        {
+            "friction_coefficient": ("sliding_speed", mean),
+            "friction_coefficient_std": ("sliding_speed", 0.05 * mean),
+            "friction_coefficient_sem": ("sliding_speed", 0.01 * mean),
+            "friction_coefficient_within": ("sliding_speed", 0.05 * mean),
+            "friction_coefficient_between": ("sliding_speed", 0.02 * mean),
+            "runs": ("sliding_speed", np.full(speeds.size, 3)),
+            "segments": ("sliding_speed", np.full(speeds.size, 6)),
+        },
+        {"sliding_speed": speeds},
+    )
+    return stamp(curve, surface=surface, medium=medium, normal_force_N=load)
+
+
+CAMPAIGN = """[campaign]
+name = {name}
+
+[[run]]
+files = "*.csv"
+"""
+
+
+def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS, samples=400):
+    """Write data files of made runs and return their outcome.
+
+    `runs` has (name, surface, medium, load, mu) of each run, `failed` (name, reason).
+    """
+    campaign_file = folder / "campaign.toml"
+    (folder / "raw").mkdir(parents=True)
+    (folder / "raw" / "made.csv").write_text("t,F\n0,1\n")
+    campaign_file.write_text(CAMPAIGN.format(name=json.dumps(name)), encoding="utf-8")
+    results = folder / "results"
+    (results / "data").mkdir(parents=True)
+    outcomes, groups = [], {}
+    for number, (run_name, surface, medium, load, mu) in enumerate(runs):
+        data_file = f"data/run{number}.nc"
+        parts = made_run(speeds, load or 31.0, mu, seed=number, samples=samples)
+        for group, data in zip(("run", "segments", "friction"), parts, strict=True):
+            write_netcdf(data, results / data_file, group=group)
+        count = parts[1].sizes["segment"]
+        outcomes.append(
+            RunOutcome(
+                run_name,
+                ("raw/made.csv",),
+                surface,
+                medium,
+                load,
+                "done",
+                "",
+                "",
+                data_file,
+                False,
+                0.5,
+                count,
+            )  # fmt: skip
+        )
+        groups.setdefault((surface, medium, load), []).append((run_name, mu))
+    for run_name, reason in failed:
+        outcomes.append(
+            RunOutcome(run_name, ("raw/bad.csv",), "", "", None, "failed", reason, "ReadError")
+        )
+    curves = []
+    for number, ((surface, medium, load), members) in enumerate(groups.items()):
+        data_file = f"data/curve{number}.nc"
+        curve = made_curve(speeds, members[0][1], surface, medium, load or float("nan"))
+        write_netcdf(curve, results / data_file)
+        names = tuple(member for member, _ in members)
+        curves.append(CurveOutcome(f"curve{number}", surface, medium, load, data_file, names))
+    campaign = Campaign(campaign={"name": name}, run=[{"files": "*.csv"}])
+    campaign._file = campaign_file
+    return Outcome(
+        campaign=campaign,
+        folder=results,
+        runs=tuple(outcomes),
+        curves=tuple(curves),
+        sources=(("raw/made.csv", "ab" * 32, 9), ("raw/bad.csv", "", 0)),
+    )

@@ -1,0 +1,263 @@
+"""The campaign file: what is right is read in SI, what is wrong is met with line, key and cure."""
+
+import json
+
+import pytest
+
+from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema, load_campaign
+from tribolab.campaign.plan import plan
+from tribolab.campaign.toml_lines import line_of
+from tribolab.errors import ConfigError
+from tribolab.io.schema_folder import schema_folder
+
+WHOLE = """\
+[campaign]
+name = "PMMA on PDMS in glycerol"
+raw = "raw"
+
+[contact]
+radius = "7 cm"
+length = "10 cm"
+youngs_modulus = "1.5 MPa"
+poisson_ratio = 0.5
+
+[medium.glycerol]
+viscosity = "1.4 Pa s"
+work_of_adhesion = "51 mJ/m^2"
+temperature = "20 °C"
+[medium.dry]
+
+[segments]
+trim = 0.15
+position_range = ["5 mm", "32 mm"]
+
+[[surface]]
+name = "Sb-R"
+scans = "profiles/sb-r_*.csv"
+
+[[run]]
+files = "friction/sb-r_glycerol_31N_*.csv"
+surface = "Sb-R"
+medium = "glycerol"
+normal_force = "31 N"
+instrument = "linear_slider"
+
+[[run]]
+files = ["friction/cycle_*.csv"]
+cycles = true
+[run.segments]
+trim = 0.2
+
+[qc]
+fail_on = "suspect"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in (
+        "friction/sb-r_glycerol_31N_01_force.csv",
+        "friction/sb-r_glycerol_31N_01_motion.csv",
+        "friction/sb-r_glycerol_31N_02_force.csv",
+        "friction/sb-r_glycerol_31N_02_motion.csv",
+        "friction/cycle_10.csv",
+        "friction/cycle_9.csv",
+        "profiles/sb-r_1.csv",
+    ):
+        path = tmp_path / "raw" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("never read here\n")
+    return tmp_path
+
+
+def load(folder, text):
+    (folder / "campaign.toml").write_text(text, encoding="utf-8")
+    return load_campaign(folder / "campaign.toml")
+
+
+def complaint(folder, text):
+    with pytest.raises(ConfigError) as caught:
+        load(folder, text)
+    return str(caught.value)
+
+
+def test_quantities_become_si(folder):
+    campaign = load(folder, WHOLE)
+    assert campaign.contact.radius == 0.07
+    assert campaign.contact.youngs_modulus == 1.5e6
+    assert campaign.medium["glycerol"].work_of_adhesion == 0.051
+    assert campaign.medium["glycerol"].temperature == 293.15
+    assert campaign.segments.position_range == (0.005, 0.032)
+    assert campaign.run[0].normal_force == 31.0
+    assert campaign.output == folder / "results"
+
+
+def test_files_become_runs_with_names_and_settings(folder):
+    runs, _ = plan(load(folder, WHOLE))
+    assert [run.name for run in runs] == ["sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "cycle"]
+    assert [file.name for file in runs[0].files] == [
+        "sb-r_glycerol_31N_01_force.csv",
+        "sb-r_glycerol_31N_01_motion.csv",
+    ]
+    assert [file.name for file in runs[2].files] == ["cycle_9.csv", "cycle_10.csv"]
+    assert runs[0].labels[0] == "raw/friction/sb-r_glycerol_31N_01_force.csv"
+    assert (runs[0].surface, runs[2].surface, runs[2].normal_force) == ("Sb-R", "", None)
+    assert runs[0].segments == {"trim": 0.15, "position_range": (0.005, 0.032)}
+    assert runs[2].segments == {"trim": 0.2, "position_range": (0.005, 0.032)}
+
+
+def test_what_is_not_known_may_be_left_out(folder):
+    text = '[campaign]\nname = "rock"\n[[run]]\nfiles = "friction/cycle_9.csv"\n'
+    campaign = load(folder, text)
+    assert campaign.contact.radius is None
+    assert campaign.surface == ()
+    assert plan(campaign).runs[0].segments == {"trim": 0.10}
+
+
+def test_the_settings_of_a_run_and_no_others_change_its_checksum(folder):
+    def sums(text):
+        return [run.config_sha256 for run in plan(load(folder, text)).runs]
+
+    before = sums(WHOLE)
+    assert sums(WHOLE.replace("PMMA on PDMS", "Another title")) == before
+    after = sums(WHOLE.replace("trim = 0.2\n", "trim = 0.3\n"))
+    assert (after[0] == before[0], after[2] == before[2]) == (True, False)
+    after = sums(WHOLE.replace('"31 N"', '"32 N"'))
+    assert (after[0] == before[0], after[2] == before[2]) == (False, True)
+
+
+WRONG = {
+    "unknown key": ("viscosity =", "viscosty =", 12, "medium.glycerol.viscosty", "'viscosity'?"),
+    "unknown table": ("[contact]", "[contakt]", 5, "contakt", "did you mean 'contact'?"),
+    "unknown key of a run": ("cycles = true", "cycle = true", 34, "run 2, cycle", "'cycles'?"),
+    "key in a run's own table": ("trim = 0.2", "trimm = 0.2", 36, "segments.trimm", "'trim'?"),
+    "unknown surface": ('surface = "Sb-R"', 'surface = "Sb-S"', 27, "run 1, surface", "'Sb-R'?"),
+    "unknown medium": ('medium = "glycerol"', 'medium = "glycerin"', 28, "medium", "'glycerol'?"),
+    "unknown instrument": (
+        '"linear_slider"',
+        '"linear_slidr"',
+        30,
+        "instrument",
+        "'linear_slider'",
+    ),
+    "no such dialect file": ('"linear_slider"', '"my.toml"', 30, "instrument", "no such dialect"),
+    "wrong unit": ('"31 N"', '"31 kg"', 29, "run 1, normal_force", "'kg' cannot be turned"),
+    "no unit": ('"7 cm"', '"7"', 6, "contact.radius", "has no unit; write e.g."),
+    "a bare number": ('"7 cm"', "7", 6, "contact.radius", "has no unit; write e.g. '7 cm'"),
+    "a unit within a list": ('"32 mm"', '"32 s"', 19, "segments.position_range", "'s' cannot"),
+    "negative radius": ('"7 cm"', '"-7 cm"', 6, "contact.radius", "not greater than zero"),
+    "too much trim": ("trim = 0.15", "trim = 0.6", 18, "segments.trim", "less than 0.5; got 0.6"),
+    "unknown choice": ('"suspect"', '"suspekt"', 39, "qc.fail_on", "did you mean 'suspect'?"),
+    "a table instead of a value": ("[qc]", "[qc.fail_on]", 38, "qc.fail_on", ""),
+    "nothing matches": ("sb-r_glycerol_31N_*", "sb-r_water_*", 26, "files", "cycle_10.csv"),
+    "no such scans": (
+        "profiles/sb-r_*",
+        "scans/sb-r_*",
+        23,
+        "surface 1, scans",
+        "friction/, profiles/",
+    ),
+    "no raw folder": ('raw = "raw"', 'raw = "rawdata"', 3, "campaign.raw", "there is no folder"),
+    "no name": ('name = "PMMA on PDMS in glycerol"', "", 1, "campaign.name", "is missing"),
+    "not TOML": ('viscosity = "1.4 Pa s"', "viscosity = 1.4 Pa s", 12, "", "1.4 Pa s"),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong", "line", "key", "cure"), WRONG.values(), ids=WRONG)
+def test_a_mistake_is_met_with_file_line_key_and_cure(folder, right, wrong, line, key, cure):
+    assert right in WHOLE
+    said = complaint(folder, WHOLE.replace(right, wrong, 1))
+    assert said.startswith(str(folder / "campaign.toml"))
+    assert f"line {line}:" in said
+    assert key in said
+    assert cure in said
+
+
+def test_all_mistakes_are_told_at_once_in_the_order_of_the_file(folder):
+    said = complaint(folder, WHOLE.replace('"31 N"', '"31"').replace('"7 cm"', '"7"'))
+    assert [line.split(": ")[1] for line in said.splitlines()] == [
+        "contact.radius",
+        "run 1, normal_force",
+    ]
+
+
+def test_a_file_in_two_runs_is_named_with_both(folder):
+    said = complaint(folder, WHOLE.replace('"friction/cycle_*.csv"', '"friction/*_01_force.csv"'))
+    assert "line 33: run 2, files" in said
+    assert "raw/friction/sb-r_glycerol_31N_01_force.csv belongs to run 1 already" in said
+
+
+def test_a_surface_declared_twice_is_an_error(folder):
+    said = complaint(folder, WHOLE.replace("[qc]", '[[surface]]\nname = "Sb-R"\n[qc]'))
+    assert "line 39: surface 2, name: 'Sb-R'" in said
+
+
+def test_a_campaign_without_runs_says_so(folder):
+    assert "run: is missing" in complaint(folder, '[campaign]\nname = "empty"\n')
+
+
+def test_a_file_that_is_not_there_points_at_the_demo(tmp_path):
+    with pytest.raises(ConfigError, match="tribolab demo"):
+        load_campaign(tmp_path / "none.toml")
+
+
+def test_a_file_in_another_encoding_is_one_clear_error(tmp_path):
+    (tmp_path / "campaign.toml").write_bytes(b'[campaign]\nname = "\xb5m"\n')
+    with pytest.raises(ConfigError, match="UTF-8"):
+        load_campaign(tmp_path)
+
+
+def test_brackets_in_a_real_name_are_no_wildcards(folder):
+    (folder / "raw" / "run [1].csv").write_text("x")
+    campaign = load(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "run [1].csv"\n')
+    assert [run.name for run in plan(campaign).runs] == ["run_1"]
+
+
+def test_the_same_name_in_two_folders_gives_two_data_files(folder):
+    for place in ("monday", "tuesday", "tuesday/Monday"):
+        (folder / "raw" / place).mkdir()
+        (folder / "raw" / place / "curve_µ.csv").write_text("x")
+    campaign = load(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "**/curve_*.csv"\n')
+    names = [run.name for run in plan(campaign).runs]
+    assert names == ["monday_run_curve_u", "Monday_run_curve_u_2", "tuesday_run_curve_u"]
+
+
+def test_nothing_can_be_changed_after_reading(folder):
+    campaign = load(folder, WHOLE)
+    with pytest.raises(ValueError, match="frozen"):
+        campaign.contact.radius = 1.0
+
+
+def test_the_published_schema_is_the_models():
+    published = json.loads((schema_folder() / SCHEMA_FILE).read_text(encoding="utf-8"))
+    assert published == campaign_schema()
+
+
+def test_python_may_give_plain_numbers_in_si():
+    campaign = Campaign.model_validate(
+        {"campaign": {"name": "a"}, "contact": {"radius": 0.07}, "run": [{"files": "x"}]}
+    )
+    assert campaign.contact.radius == 0.07
+
+
+@pytest.mark.parametrize(
+    ("where", "line"),
+    [
+        (("a", "b"), 2),
+        (("a", "c", "d"), 4),
+        (("t", 0, "k"), 9),
+        (("t", 1, "s", "k"), 13),
+        (("t", 1, "absent"), 10),
+        (("quoted key",), 14),
+        (("absent",), None),
+    ],
+)
+def test_keys_are_found_in_every_place_that_toml_has_for_them(where, line):
+    text = (
+        '[a]\nb = 1\n[a.c]\nd = """\n[t]\nk = 0\n"""\n'
+        '[[t]] # first\nk = 1\n[[t]]\nk = 2\n[t.s]\nk = 3\n"quoted key" = 1\n'
+    )
+    if where == ("quoted key",):
+        text = text.replace("[t.s]\nk = 3\n", "").replace("[[t]]\nk = 2\n", "")
+        where, line = ("t", 0, "quoted key"), 10
+    assert line_of(text, where) == line

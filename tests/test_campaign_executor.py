@@ -1,0 +1,113 @@
+"""Work in processes: a crash costs the work that crashed, and no other."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from tribolab.campaign.executor import LastingPool, WorkerDied, completed, workers
+from tribolab.errors import ConfigError
+
+
+def square(number):
+    return number * number
+
+
+def square_or_die(number):
+    if number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number * number
+
+
+def die_the_first_time(marker):
+    if not os.path.exists(marker):  # noqa: PTH110 - runs in a bare worker
+        open(marker, "w").close()  # noqa: PTH123
+        os._exit(1)
+    return "answer"
+
+
+def blas_threads(_):
+    return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+def value_error(_):
+    raise ValueError("no")
+
+
+def test_a_dying_worker_costs_only_the_work_that_killed_it():
+    with LastingPool(2) as pool:
+        futures = {number: pool.submit(square_or_die, number) for number in range(12)}
+        with pytest.raises(WorkerDied, match="ended without an answer, twice"):
+            futures[3].result(timeout=60)
+        others = {n: f.result(timeout=60) for n, f in futures.items() if n != 3}
+    assert others == {n: n * n for n in range(12) if n != 3}
+
+
+def test_work_whose_worker_died_once_is_done_in_a_fresh_process(tmp_path):
+    with LastingPool(2) as pool:
+        assert pool.submit(die_the_first_time, str(tmp_path / "m")).result(timeout=60) == "answer"
+
+
+def test_workers_take_one_blas_thread_and_leave_the_parent_as_it_was():
+    before = dict(os.environ)
+    with workers(2) as pool:
+        assert pool.submit(blas_threads, 0).result(timeout=60) == "1"
+    assert dict(os.environ) == before
+
+
+def test_an_interrupt_ends_the_processes_at_once():
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), workers(2) as pool:
+        pool.submit(time.sleep, 300)
+        raise KeyboardInterrupt
+    assert time.monotonic() - began < 60
+
+
+def test_workers_end_when_their_parent_is_killed():
+    code = (
+        "import os, time\n"
+        "from tribolab.campaign.executor import LastingPool\n"
+        "if __name__ == '__main__':\n"
+        "    pool = LastingPool(1)\n"
+        "    print(pool.submit(os.getpid).result(), flush=True)\n"
+        "    pool.submit(time.sleep, 300)\n"
+        "    time.sleep(300)\n"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    with parent:
+        worker = int(parent.stdout.readline())
+        parent.kill()
+    deadline = time.monotonic() + 30
+    while _lives(worker) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not _lives(worker)
+
+
+def _lives(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:  # noqa: PTH123 - a process table, not a file
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_any_executor_yields_every_task_with_its_result_or_error():
+    with ThreadPoolExecutor(2) as threads:
+        for executor in (None, threads):
+            done = {task: future.result() for task, future in completed(executor, square, [1, 2])}
+            assert done == {1: 1, 2: 4}
+            [(_, future)] = completed(executor, value_error, [1])
+            assert isinstance(future.exception(), ValueError)
+
+
+def test_one_job_means_no_processes_and_none_is_refused():
+    with workers(1) as executor:
+        assert executor is None
+    with pytest.raises(ConfigError, match="jobs is 0"), workers(0):
+        pass
+    with pytest.raises(ConfigError, match="either jobs"), workers(2, "tcp://localhost:1"):
+        pass

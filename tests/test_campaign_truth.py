@@ -1,0 +1,87 @@
+"""Found against true: what is found, missed and extra, and whether the error bars hold."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from campaigns import simulated
+
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.report.truth import compare_run, compare_with_truth, summary
+
+
+def true_segments():
+    return pd.DataFrame(
+        {
+            "start_s": [10.0, 30.0, 50.0],
+            "stop_s": [20.0, 40.0, 60.0],
+            "sliding_speed_m_s": [1e-3, 1e-3, 2e-3],
+            "direction": [1, -1, 1],
+            "friction_coefficient": [0.5, 0.5, 0.4],
+        }
+    )
+
+
+def found_segments(start, stop, direction, mu, sem=0.01):
+    data = {
+        "start": start,
+        "stop": stop,
+        "direction": direction,
+        "sliding_speed": [1e-3] * len(start),
+        "friction_coefficient": mu,
+        "friction_coefficient_sem": [sem] * len(start),
+    }
+    return xr.Dataset({name: ("segment", np.array(value)) for name, value in data.items()})
+
+
+def statuses(found, origin=0.0):
+    return compare_run("a", true_segments(), found, origin)["status"].tolist()
+
+
+def test_perfect_is_perfect():
+    found = found_segments([8.0, 28.0, 48.0], [18.0, 38.0, 58.0], [1, -1, 1], [0.5, 0.5, 0.4])
+    table = compare_run("a", true_segments(), found, 2.0)
+    assert table["status"].tolist() == ["found"] * 3
+    result = summary(table)
+    assert (result.true, result.found, result.missed, result.extra) == (3, 3, 0, 0)
+    assert (result.within_1, result.within_3) == (1.0, 1.0)
+
+
+def test_missed_extra_and_the_wrong_direction_are_told():
+    found = found_segments([10.0, 30.0, 70.0], [20.0, 40.0, 80.0], [1, 1, 1], [0.5, 0.5, 0.5])
+    assert statuses(found) == ["found", "missed", "missed", "extra", "extra"]
+
+
+def test_half_of_a_segment_is_not_the_segment():
+    assert statuses(found_segments([10.0], [14.0], [1], [0.5]))[0] == "missed"
+    assert statuses(found_segments([10.0], [16.0], [1], [0.5]))[0] == "found"
+
+
+def test_a_segment_that_swallows_two_is_found_once():
+    found = found_segments([10.0], [60.0], [1], [0.45])
+    assert statuses(found).count("found") == 1
+
+
+def test_a_failed_run_misses_everything():
+    assert statuses(None) == ["missed"] * 3
+
+
+def test_shares_count_the_segments_that_were_found():
+    found = found_segments([10.0, 30.0, 50.0], [20.0, 40.0, 60.0], [1, -1, 1], [0.505, 0.52, 0.5])
+    result = summary(compare_run("a", true_segments(), found, 0.0))
+    assert result.within_1 == pytest.approx(1 / 3)
+    assert result.within_3 == pytest.approx(2 / 3)
+
+
+@pytest.mark.slow
+def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
+    campaign = simulated(tmp_path)
+    outcome = process(load_campaign(campaign), tmp_path / "results")
+    result = compare_with_truth(outcome, campaign.parent)
+    assert (result.true, result.missed, result.extra) == (24, 0, 0)
+    table = pd.read_csv(tmp_path / "results" / "tables" / "truth.csv")
+    speed = table["sliding_speed_m_s"] / table["true_sliding_speed_m_s"]
+    np.testing.assert_allclose(speed, 1, atol=0.02)
+    np.testing.assert_allclose(table["start_s"], table["true_start_s"], atol=0.5)
+    assert result.within_3 > 0.9

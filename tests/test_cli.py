@@ -1,0 +1,267 @@
+"""The command line as a person and a scheduled job meet it: real processes, real exit codes."""
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pandas as pd
+import pytest
+from campaigns import RUNS, copied, fingerprint, simulated
+
+import tribolab
+from tribolab import cli
+
+ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
+
+
+def tribolab_command(*words, **options):
+    command = [sys.executable, "-m", "tribolab", *map(str, words)]
+    options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "check": False} | options
+    return subprocess.run(command, **options)
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    return simulated(tmp_path_factory.mktemp("simulated"))
+
+
+@pytest.fixture(scope="module")
+def analysed(original):
+    """The campaign with results, and what `tribolab run` said."""
+    done = tribolab_command("run", original, "--jobs", 2)
+    return original, done
+
+
+@pytest.fixture
+def campaign(analysed, tmp_path):
+    return copied(analysed[0], tmp_path)
+
+
+def test_help_teaches_and_version_tells():
+    done = tribolab_command("--help")
+    assert done.returncode == 0
+    for word in ("demo", "run", "simulate", "info", "Exit codes"):
+        assert word in done.stdout
+    assert "tribolab run campaign.toml --output" in tribolab_command("run", "--help").stdout
+    assert tribolab_command("--version").stdout == f"tribolab {tribolab.__version__}\n"
+
+
+def test_help_needs_none_of_the_heavy_libraries():
+    code = (
+        "import sys\nfrom tribolab import cli\n"
+        "try:\n    cli.app(['--help'])\nexcept SystemExit:\n    pass\n"
+        "heavy = {'numpy', 'pandas', 'xarray', 'pint', 'pydantic', 'matplotlib', 'distributed'}\n"
+        "sys.stderr.write(str(sorted(heavy & set(sys.modules))))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "[]"
+
+
+def test_a_run_says_in_few_lines_what_came_out(analysed):
+    campaign, done = analysed
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "4 of 4 runs, 24 segments" in done.stdout
+    assert re.search(r"Sb-R +glycerol +31 N +2 +12 +\S+ to \S+ m/s +\S+ to \S+\n", done.stdout)
+    assert done.stdout.endswith("results/report.html\n")
+    assert len(done.stdout.splitlines()) < 8
+    results = campaign.parent / "results"
+    assert {path.name for path in results.iterdir()} >= {
+        *("report.html", "report.json", "tables", "figures", "data")
+    }
+    json.loads((results / "report.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+def test_a_second_run_says_what_was_unchanged_and_leaves_nothing_beside(campaign):
+    done = tribolab_command("run", campaign.parent, "--jobs", 1)
+    assert done.returncode == 0
+    assert "4 unchanged since the last time" in done.stdout
+    assert sorted(path.name for path in campaign.parent.iterdir()) == [
+        *("campaign.toml", "raw", "results", "truth")
+    ]
+
+
+@pytest.mark.slow
+def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_path):
+    (campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv").write_text("Time [s]\n")
+    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1)
+    assert done.returncode == 3
+    assert "3 of 4 runs" in done.stdout
+    assert done.stderr.startswith(f"tribolab: {RUNS[2]} failed: ")
+    assert "sb-r_dry_31N_01_force.csv" in done.stderr
+    assert (tmp_path / "new" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["run", "none.toml"], 2, "none.toml: there is no such file"),
+        (["run"], 2, "Missing argument"),
+        (["rum"], 2, "No such command"),
+        (["run", "{campaign}", "--jobs", "0"], 2, "--jobs"),
+        (["run", "{campaign}", "--output", "{folder}"], 2, "--output"),
+        (["run", "{campaign}", "--output", "{folder}/raw/x"], 2, "apart from the raw files"),
+        (["simulate", "{folder}"], 2, "nothing is overwritten"),
+        (["info", "none.csv"], 3, "none.csv"),
+        (["info", "{campaign}"], 3, "instrument"),
+        (["info", "{campaign}", "-i", "linear_slidr"], 2, "'linear_slider'"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else None,
+)
+def test_what_goes_wrong_gives_its_exit_code_and_the_cure(analysed, words, code, said):
+    campaign = analysed[0]
+    words = [word.format(campaign=campaign, folder=campaign.parent) for word in words]
+    before = fingerprint(campaign.parent)
+    done = tribolab_command(*words)
+    assert done.returncode == code
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    assert fingerprint(campaign.parent) == before
+
+
+def test_a_mistake_in_the_campaign_file_is_one_line(campaign):
+    text = campaign.read_text(encoding="utf-8")
+    campaign.write_text(text.replace("viscosity", "viscosty"), encoding="utf-8")
+    done = tribolab_command("run", campaign)
+    assert done.returncode == 2
+    line = 1 + text.splitlines().index('viscosity = "1.4 Pa s"')
+    assert done.stderr == (
+        f"tribolab: {campaign}, line {line}: medium.glycerol.viscosty: unknown key; "
+        "did you mean 'viscosity'?\n"
+    )
+
+
+def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, capsys, campaign):
+    def broken(*words, **options):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr("tribolab.report.run.run_campaign", broken)
+    with pytest.raises(SystemExit) as caught:
+        cli.app(["run", str(campaign)])
+    assert caught.value.code == 3
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "crashed with ZeroDivisionError at test_cli.py:" in said
+    assert "--debug" in said
+    with pytest.raises(ZeroDivisionError):
+        cli.app(["run", str(campaign), "--debug"])
+
+
+def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path):
+    text = campaign.read_text(encoding="utf-8")
+    text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
+    campaign.write_text(text, encoding="utf-8")
+    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1)
+    assert done.returncode == 3
+    assert "no segment of constant speed was found" in done.stderr
+
+
+def test_info_shows_how_files_are_understood_and_goes_on_after_a_bad_one(analysed):
+    campaign = analysed[0]
+    good = campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv"
+    done = tribolab_command("info", campaign, good)
+    assert done.returncode == 3
+    assert "campaign.toml" in done.stderr
+    assert re.search(r"linear_slider \(.*force log\)", done.stdout)
+    assert re.search(r"normal_force +\S+ to \S+ N +from 'Fz \[N\]'", done.stdout)
+
+
+def _with_terminal(*words):
+    """Run with stderr on a terminal; return exit code and what the terminal showed."""
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "tribolab", *map(str, words)]
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=theirs, env=ENVIRONMENT | {"TERM": "xterm"}
+    )
+    os.close(theirs)
+    shown = b""
+    while True:
+        try:
+            piece = os.read(ours, 65536)
+        except OSError:  # the other end is closed
+            break
+        shown += piece
+        if not piece:
+            break
+    os.close(ours)
+    return process.wait(), shown.decode()
+
+
+@pytest.mark.slow
+def test_bars_are_shown_on_a_terminal_only_and_not_if_told(campaign, tmp_path):
+    code, shown = _with_terminal("run", campaign, "-o", tmp_path / "a", "-j", 1)
+    assert code == 0
+    assert "runs" in shown
+    assert "4/4" in shown
+    code, shown = _with_terminal("run", campaign, "-o", tmp_path / "b", "-j", 1, "--quiet")
+    assert (code, shown) == (0, "")
+
+
+def _begin(campaign, *words):
+    """Start a run and wait until it writes; a new trim so that nothing is taken over."""
+    text = campaign.read_text(encoding="utf-8")
+    campaign.write_text(text.replace("trim = 0.10", "trim = 0.2"), encoding="utf-8")
+    command = [sys.executable, "-m", "tribolab", "run", str(campaign), *words]
+    process = subprocess.Popen(
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=ENVIRONMENT,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60
+    while not list(campaign.parent.glob(".results.tribolab-*/new/data/*.nc")):
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    return process
+
+
+@pytest.mark.slow
+def test_a_run_that_is_killed_leaves_the_old_results_and_the_next_completes(campaign):
+    results = campaign.parent / "results"
+    before = fingerprint(results)
+    with _begin(campaign, "--jobs", "2") as process:
+        process.kill()
+    assert process.returncode == -signal.SIGKILL
+    assert fingerprint(results) == before
+    assert list(campaign.parent.glob(".results.tribolab-*"))
+    done = tribolab_command("run", campaign, "--jobs", 1)
+    assert done.returncode == 0
+    assert "unchanged" not in done.stdout
+    assert list(campaign.parent.glob(".results.tribolab-*")) == []
+    table = pd.read_csv(results / "tables" / "friction.csv")
+    assert len(table) == 24
+    assert fingerprint(results) != before
+
+
+@pytest.mark.slow
+def test_ctrl_c_leaves_the_old_results_and_nothing_else(campaign):
+    results = campaign.parent / "results"
+    before = fingerprint(results)
+    with _begin(campaign, "--jobs", "2") as process:
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it too
+        said = process.stderr.read()
+    assert process.returncode == 130
+    assert said == "tribolab: interrupted; results of before are as they were\n"
+    assert fingerprint(results) == before
+    assert list(campaign.parent.glob(".results.tribolab-*")) == []
+
+
+@pytest.mark.slow
+def test_simulate_and_run_reproduce_byte_for_byte(tmp_path):
+    for name in ("one", "two"):
+        done = tribolab_command(
+            "simulate", tmp_path / name, "--small", "--repeats", 1, "--seed", 7, "-j", 1
+        )
+        assert done.returncode == 0
+        assert f"tribolab run {tmp_path / name}" in done.stdout
+    first, second = (fingerprint(tmp_path / name) for name in ("one", "two"))
+    assert {k: v[0] for k, v in first.items()} == {k: v[0] for k, v in second.items()}

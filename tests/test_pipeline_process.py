@@ -1,0 +1,253 @@
+"""The pipeline over the runs: all that can be done is done, what cannot be says why."""
+
+import errno
+import multiprocessing
+import os
+import pickle
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray as xr
+from campaigns import RUNS, copied, fingerprint, simulated
+
+import tribolab
+from tribolab.campaign import pipeline, work
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.executor import WorkerDied, workers
+from tribolab.campaign.pipeline import process
+from tribolab.errors import ConfigError, OutputError
+from tribolab.io.netcdf import read_netcdf
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    return simulated(tmp_path_factory.mktemp("simulated"))
+
+
+@pytest.fixture(scope="module")
+def done(original, tmp_path_factory):
+    """The campaign, processed once in this process; not to be changed."""
+    return process(load_campaign(original), tmp_path_factory.mktemp("results"))
+
+
+@pytest.fixture
+def campaign(original, tmp_path):
+    return copied(original, tmp_path)
+
+
+def again(campaign, done, folder, **options):
+    folder.mkdir(exist_ok=True)
+    return process(load_campaign(campaign), folder, previous=done.folder, **options)
+
+
+def edit(path, old, new):
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def test_every_run_and_every_condition_has_its_data_file(done):
+    assert [run.name for run in done.runs] == list(RUNS)
+    assert all(run.done and run.segments == 6 and not run.reused for run in done.runs)
+    assert [(c.medium, c.normal_force, c.run_names) for c in done.curves] == [
+        ("glycerol", 31.0, RUNS[:2]),
+        ("dry", 31.0, RUNS[2:]),
+    ]
+    files = {path.name for path in (done.folder / "data").iterdir()}
+    assert files == {f"{name}.nc" for name in RUNS} | {
+        "curve_Sb-R_glycerol_31N.nc",
+        "curve_Sb-R_dry_31N.nc",
+    }
+
+
+def test_a_data_file_holds_signals_segments_and_friction_with_their_origin(done, original):
+    path = done.folder / done.runs[0].data_file
+    for group in ("run", "segments", "friction"):
+        data = read_netcdf(path, group=group)
+        assert data.attrs["tribolab_version"] == tribolab.__version__
+        assert (data.attrs["surface"], data.attrs["medium"]) == ("Sb-R", "glycerol")
+        assert len(data.attrs["config_sha256"]) == 64
+    friction = read_netcdf(path, group="friction")
+    assert friction.friction_coefficient.sizes == {"segment": 6}
+    assert friction.attrs["trim"] == 0.10
+    sources = {name: checksum for name, checksum, _ in done.sources}
+    raw = fingerprint(original.parent)
+    used = [name for name in raw if name.startswith("raw/friction")]
+    assert sources == {name: raw[name][0] for name in used}
+
+
+def test_a_measured_curve_takes_its_runs_together(done):
+    curve = read_netcdf(done.folder / done.curves[0].data_file)
+    np.testing.assert_allclose(curve.sliding_speed, [4.64e-6, 1e-4, 2.15e-3], rtol=0.05)
+    assert curve.runs.values.tolist() == [2, 2, 2]
+    assert curve.segments.values.tolist() == [4, 4, 4]
+
+
+def test_raw_files_are_only_read(original, tmp_path):
+    before = fingerprint(original.parent)
+    process(load_campaign(original), tmp_path)
+    assert fingerprint(original.parent) == before
+
+
+def test_a_bad_file_costs_its_own_run_only(campaign, tmp_path):
+    bad = campaign.parent / "raw/friction/sb-r_glycerol_31N_01_force.csv"
+    bad.write_text("Lunch is at noon.\n")
+    outcome = process(load_campaign(campaign), tmp_path)
+    assert [run.name for run in outcome.failed] == [RUNS[0]]
+    assert "sb-r_glycerol_31N_01_force.csv" in outcome.failed[0].reason
+    assert outcome.failed[0].error == "ReadError"
+    assert outcome.curves[0].run_names == RUNS[1:2]
+    assert not (tmp_path / "data" / f"{RUNS[0]}.nc").exists()
+
+
+def test_a_file_that_vanishes_on_the_way_costs_its_own_run_only(campaign, tmp_path):
+    gone = campaign.parent / "raw/friction/sb-r_dry_31N_02_force.csv"
+
+    def progress(stage, done, total):
+        gone.unlink(missing_ok=True)
+
+    outcome = process(load_campaign(campaign), tmp_path, progress=progress)
+    assert [run.name for run in outcome.failed] == [RUNS[3]]
+    assert gone.name in outcome.failed[0].reason
+    missing = next(source for source in outcome.sources if gone.name in source[0])
+    assert missing[1:] == ("", 0)
+
+
+def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monkeypatch):
+    def broken(run):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr(work, "_analyse", broken)
+    outcome = process(load_campaign(campaign), tmp_path)
+    assert outcome.curves == ()
+    assert outcome.runs[0].error == "ZeroDivisionError"
+    assert outcome.runs[0].reason.startswith(
+        "crashed with ZeroDivisionError at test_pipeline_process.py:"
+    )
+
+
+def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
+    for path in campaign.parent.rglob("*.csv"):
+        os.utime(path)  # touched, not changed
+    outcome = again(campaign, done, tmp_path / "new")
+    assert all(run.reused for run in outcome.runs)
+    for run in outcome.runs:
+        new, old = (folder / run.data_file for folder in (outcome.folder, done.folder))
+        assert new.read_bytes() == old.read_bytes()
+    assert [(r.name, r.segments, r.normal_force) for r in outcome.runs] == [
+        (r.name, r.segments, r.normal_force) for r in done.runs
+    ]
+    assert outcome.curves == done.curves
+    assert outcome.sources == done.sources
+
+
+def reused(outcome):
+    return [run.name for run in outcome.runs if run.reused]
+
+
+def test_a_changed_raw_file_is_done_again_alone(campaign, done, tmp_path):
+    motion = campaign.parent / "raw/friction/sb-r_dry_31N_01_motion.csv"
+    with motion.open("a") as file:
+        file.write("\n")
+    assert reused(again(campaign, done, tmp_path / "new")) == [RUNS[0], RUNS[1], RUNS[3]]
+
+
+def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
+    edit(campaign, "trim = 0.10", "trim = 0.12")
+    outcome = again(campaign, done, tmp_path / "new")
+    assert reused(outcome) == []
+    friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
+    assert friction.attrs["trim"] == 0.12
+
+
+def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_path, monkeypatch):
+    first = again(campaign, done, tmp_path / "first")
+    damaged = first.folder / first.runs[1].data_file
+    content = damaged.read_bytes()
+    damaged.unlink()  # not the file of `done`, which it is a link to
+    damaged.write_bytes(content[: len(content) // 2])
+    assert reused(again(campaign, first, tmp_path / "second")) == [RUNS[0], *RUNS[2:]]
+    monkeypatch.setattr(tribolab, "__version__", "9.9.9")
+    assert reused(again(campaign, first, tmp_path / "third")) == []
+
+
+def test_a_campaign_whose_files_are_gone_says_so(campaign, tmp_path):
+    loaded = load_campaign(campaign)
+    for path in campaign.parent.glob("raw/friction/*_dry_*"):
+        path.unlink()
+    with pytest.raises(ConfigError, match=r"line \d+: run 2, files: nothing matches"):
+        process(loaded, tmp_path)
+
+
+def same_results(outcome, other):
+    assert outcome.curves == other.curves
+    assert outcome.sources == other.sources
+    for run in outcome.runs:
+        one, two = (
+            read_netcdf(o.folder / run.data_file, group="friction") for o in (outcome, other)
+        )
+        xr.testing.assert_equal(one, two)
+
+
+@pytest.mark.slow
+def test_processes_give_what_this_process_gives_even_if_one_is_killed(original, done, tmp_path):
+    killed = []
+
+    def progress(stage, count, total):
+        if stage == "runs" and count == 1:
+            victim = multiprocessing.active_children()[0]
+            victim.kill()
+            killed.append(victim.pid)
+
+    with workers(2) as pool:
+        outcome = process(load_campaign(original), tmp_path, executor=pool, progress=progress)
+    assert len(killed) == 1
+    same_results(outcome, done)
+
+
+def test_threads_give_what_this_process_gives(original, done, tmp_path):
+    with ThreadPoolExecutor(2) as threads:
+        same_results(process(load_campaign(original), tmp_path, executor=threads), done)
+
+
+class Losing(ThreadPoolExecutor):
+    """Loses one run, as a pool does whose worker dies again and again."""
+
+    def submit(self, function, task):
+        if getattr(getattr(task, "run", None), "name", "") == RUNS[2]:
+            future = Future()
+            future.set_exception(WorkerDied("its worker process ended"))
+            return future
+        return super().submit(function, task)
+
+
+def test_a_run_that_kills_its_worker_fails_with_the_reason(original, tmp_path):
+    with Losing(2) as executor:
+        outcome = process(load_campaign(original), tmp_path, executor=executor)
+    assert [(run.name, run.error) for run in outcome.failed] == [(RUNS[2], "WorkerDied")]
+    assert "ended" in outcome.failed[0].reason
+
+
+def test_a_worker_hands_back_a_record_not_signals(original, tmp_path):
+    (tmp_path / "data").mkdir()
+    run = pipeline.plan(load_campaign(original)).runs[0]
+    record = work.process_run(work.RunTask(run, tmp_path))
+    assert (tmp_path / record.outcome.data_file).stat().st_size > 50_000
+    assert len(pickle.dumps(record)) < 2_000
+
+
+def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, monkeypatch):
+    def full(data, path, **options):
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    monkeypatch.setattr("tribolab.io.netcdf.write_netcdf", full)
+    with pytest.raises(OutputError, match="disk is full"):
+        process(load_campaign(original), tmp_path)
+
+
+def test_a_force_log_without_its_motion_log_fails_and_says_what_is_missing(campaign, tmp_path):
+    (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
+    outcome = process(load_campaign(campaign), tmp_path)
+    assert [run.name for run in outcome.failed] == [f"{RUNS[3]}_force"]
+    assert "sliding speed" in outcome.failed[0].reason

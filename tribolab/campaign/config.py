@@ -1,0 +1,266 @@
+"""The campaign file: what was measured, where the raw files lie, how to analyse them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    ValidationInfo,
+    WithJsonSchema,
+)
+
+from tribolab.errors import ConfigError, UnitError
+from tribolab.units import to_si
+
+SCHEMA_FILE = "campaign.schema.json"
+_NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
+
+
+def _si(unit: str, example: str) -> Any:
+    """Type of a quantity: text with a unit in the file, a float in SI afterwards."""
+
+    def convert(value: Any, info: ValidationInfo) -> float:
+        in_file = bool(info.context and info.context.get("in_file"))
+        if in_file and not isinstance(value, str):
+            raise ValueError(f"{value!r} has no unit; write e.g. {example!r}")
+        try:
+            return to_si(value, unit, name="")
+        except UnitError as error:
+            raise ValueError(f"{str(error).removeprefix(': ')} (e.g. {example!r})") from error
+
+    schema = {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": [example]}
+    return Annotated[float, BeforeValidator(convert), WithJsonSchema(schema)]
+
+
+def _positive(value: float) -> float:
+    if not value > 0:
+        raise ValueError(f"{value:g} is not greater than zero")
+    return value
+
+
+def _positive_si(unit: str, example: str) -> Any:
+    return Annotated[_si(unit, example), AfterValidator(_positive)]
+
+
+Text = Annotated[str, Field(min_length=1)]
+Patterns = Annotated[
+    tuple[Text, ...],
+    BeforeValidator(lambda value: (value,) if isinstance(value, str) else value),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "minLength": 1},
+                {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1},
+            ]
+        }
+    ),
+]
+
+
+class Table(BaseModel):
+    """A table of the campaign file: keys that are not known are errors, nothing can be changed."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class About(Table):
+    """What the campaign is called and where its files lie."""
+
+    name: Text
+    """Title of the report."""
+    raw: Text = "raw"
+    """Folder of the raw files, relative to this file."""
+    output: Text = "results"
+    """Folder of the results, relative to this file."""
+
+
+class Contact(Table):
+    """The cylinder and the elastomer, as far as they are known."""
+
+    radius: _positive_si("m", "7 cm") | None = None
+    """Radius of the cylinder."""
+    length: _positive_si("m", "10 cm") | None = None
+    """Length of the line contact."""
+    youngs_modulus: _positive_si("Pa", "1.5 MPa") | None = None
+    """Young's modulus of the elastomer at low frequency."""
+    poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
+    """Poisson's ratio of the elastomer."""
+
+
+class Medium(Table):
+    """What is between the surfaces, as far as it is known."""
+
+    viscosity: _positive_si("Pa s", "1.4 Pa s") | None = None
+    """Dynamic viscosity."""
+    work_of_adhesion: _si("J/m2", "51 mJ/m^2") | None = None
+    """Work of adhesion of the surfaces in this medium."""
+    temperature: _positive_si("K", "20 °C") | None = None
+    """Temperature at which it was measured."""
+
+
+class Segments(Table):
+    """How segments of constant speed are found."""
+
+    trim: Annotated[float, Field(ge=0, lt=0.5)] = 0.10
+    """Share of a segment that is left out at each end."""
+    position_range: tuple[_si("m", "5 mm"), _si("m", "32 mm")] | None = None
+    """Only this part of the track is used."""
+    resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
+    """Relative difference of speed that separates two neighbouring plateaus."""
+    drift: Annotated[float, Field(gt=0)] | None = None
+    """Relative change of speed within one plateau above which it is a ramp."""
+    min_samples: Annotated[int, Field(ge=2)] | None = None
+    """Fewest samples in a segment."""
+    min_duration: _positive_si("s", "0.5 s") | None = None
+    """Shorter segments are left out."""
+    max_gap: _positive_si("s", "2 s") | None = None
+    """Longest pause between two samples within a segment."""
+    rest_speed: _positive_si("m/s", "0.1 um/s") | None = None
+    """Speed below which the slider is at rest."""
+
+
+class Friction(Table):
+    """How the friction coefficient is computed."""
+
+    offset: Literal["auto", "half loop", "zero load", "none"] = "auto"
+    """Which offset of the friction force is removed."""
+
+
+class Surface(Table):
+    """One surface and its topography scans."""
+
+    name: Text
+    """What it is called in the [[run]] tables and in the report."""
+    scans: Patterns | None = None
+    """Profilometer files, relative to the raw folder."""
+
+
+class RunEntry(Table):
+    """Runs that were measured alike."""
+
+    files: Patterns
+    """Raw files, relative to the raw folder: a pattern, or a list of patterns."""
+    surface: Text | None = None
+    """Name of a [[surface]]."""
+    medium: Text | None = None
+    """Name of a [medium.*] table."""
+    normal_force: _positive_si("N", "31 N") | None = None
+    """Set-point of the normal force."""
+    instrument: Text | None = None
+    """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
+    cycles: bool = False
+    """The files are consecutive cycles of one run, not runs of their own."""
+    segments: Segments | None = None
+    """Overrides of [segments] for these runs."""
+
+
+class Qc(Table):
+    """When a finding makes the whole run count as failed."""
+
+    fail_on: Literal["suspect", "fail", "never"] = "fail"
+    """The mildest finding that gives exit code 1."""
+
+
+class Campaign(Table):
+    """A friction campaign as tribolab analyses it."""
+
+    campaign: About
+    contact: Contact = Contact()
+    medium: dict[Text, Medium] = {}
+    segments: Segments = Segments()
+    friction: Friction = Friction()
+    surface: tuple[Surface, ...] = ()
+    run: Annotated[tuple[RunEntry, ...], Field(min_length=1)]
+    qc: Qc = Qc()
+
+    _file: Path = PrivateAttr(default=Path("campaign.toml"))
+
+    @property
+    def file(self) -> Path:
+        """The campaign file; all its paths are relative to its folder."""
+        return self._file
+
+    @property
+    def name(self) -> str:
+        """Title of the campaign."""
+        return self.campaign.name
+
+    @property
+    def raw(self) -> Path:
+        """Folder of the raw files."""
+        return self._file.parent / self.campaign.raw
+
+    @property
+    def output(self) -> Path:
+        """Folder of the results."""
+        return self._file.parent / self.campaign.output
+
+    def segment_options(self, entry: RunEntry) -> dict[str, Any]:
+        """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""
+        options = self.segments.model_dump(exclude_none=True)
+        if entry.segments is not None:
+            options |= entry.segments.model_dump(exclude_unset=True, exclude_none=True)
+        return options
+
+
+def load_campaign(path: str | Path) -> Campaign:
+    """Read and check a campaign file.
+
+    Parameters
+    ----------
+    path
+        The TOML file, or the folder in which it is called ``campaign.toml``.
+
+    Returns
+    -------
+    Campaign
+        With quantities as floats in SI units.
+
+    Raises
+    ------
+    ConfigError
+        If anything in it is wrong: the message has the file, the line, the key and the cure.
+    """
+    import tomllib
+
+    from pydantic import ValidationError
+
+    from tribolab.campaign import problems
+    from tribolab.campaign.plan import plan
+
+    path = Path(path)
+    path = (path / "campaign.toml" if path.is_dir() else path).absolute()
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        content = tomllib.loads(text)
+    except FileNotFoundError as error:
+        raise ConfigError(
+            f"{path}: there is no such file; 'tribolab demo' makes a campaign to start from"
+        ) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read ({error}); it wants to be UTF-8") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{path}: not a TOML file: {problems.toml_error(error, text)}") from error
+    try:
+        campaign = Campaign.model_validate(content, context={"in_file": True})
+    except ValidationError as error:
+        found = problems.from_pydantic(error, Campaign)
+    else:
+        campaign._file = path
+        found = problems.of_names(campaign) or plan(campaign).problems
+    if found:
+        raise ConfigError(problems.message(found, path, text))
+    return campaign
+
+
+def campaign_schema() -> dict[str, Any]:
+    """Return the JSON Schema (2020-12) of the campaign file."""
+    schema = Campaign.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,0 +1,314 @@
+"""Where work is done: processes that outlive a crash, a Dask cluster, or this process."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    as_completed,
+)
+from functools import partial
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any
+
+from tribolab.errors import AnalysisError, ConfigError
+
+# Two BLAS threads in each of many workers are slower than one, by up to fifty times.
+_ONE_THREAD = {
+    name: "1"
+    for name in (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+    )
+}
+
+
+_STOPPED = "stopped before it was done"
+_DIED = (
+    "its worker process ended without an answer, twice (out of memory? a crash in a compiled "
+    "library? in a script: no 'if __name__ == \"__main__\":'?)"
+)
+
+
+class WorkerDied(AnalysisError):
+    """A worker process ended without an answer, twice."""
+
+
+def default_jobs() -> int:
+    """Return the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def completed(
+    executor: Executor | None, function: Callable[[Any], Any], tasks: Iterable[Any]
+) -> Iterator[tuple[Any, Future]]:
+    """Yield (task, its finished future) as the tasks end; without executor, here and in order.
+
+    If the caller stops early, what has not begun is cancelled.
+    """
+    if executor is None:
+        for task in tasks:
+            future: Future = Future()
+            try:
+                future.set_result(function(task))
+            except Exception as error:  # handed on: whoever asks for the result gets it
+                future.set_exception(error)
+            yield task, future
+        return
+    futures = {executor.submit(function, task): task for task in tasks}
+    try:
+        for future in as_completed(futures):
+            yield futures[future], future
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+@contextlib.contextmanager
+def workers(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor | None]:
+    """Yield an executor: Dask's for a scheduler's address, else processes, else none.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes; 1 means none (all is done here). By default one per processor.
+    scheduler
+        Address of a Dask scheduler, e.g. ``"tcp://10.0.0.5:8786"``. Its workers have to see the
+        raw files and the results folder under the same paths.
+
+    Raises
+    ------
+    ConfigError
+        If the options exclude each other or the scheduler cannot be reached.
+    """
+    if scheduler is not None:
+        if jobs is not None:
+            raise ConfigError("give either jobs (processes here) or scheduler (Dask), not both")
+        with _dask(scheduler) as executor:
+            yield executor
+        return
+    jobs = default_jobs() if jobs is None else jobs
+    if jobs < 1:
+        raise ConfigError(f"jobs is {jobs}; it wants a number of processes, 1 or more")
+    if jobs == 1:
+        yield None
+        return
+    pool = LastingPool(jobs)
+    try:
+        yield pool
+    except BaseException:
+        pool.end()
+        raise
+    pool.shutdown()
+
+
+@contextlib.contextmanager
+def _dask(scheduler: str) -> Iterator[Executor]:
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ConfigError(
+            "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
+        ) from error
+    try:
+        client = Client(scheduler, timeout="20s", set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ConfigError(
+            f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
+            "its address, e.g. tcp://localhost:8786"
+        ) from error
+    with client:
+        if not client.scheduler_info()["workers"]:
+            raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
+        yield client.get_executor(pure=False)
+
+
+class LastingPool(Executor):
+    """A pool of processes in which a crash costs the work that crashed, and no other.
+
+    A `ProcessPoolExecutor` is lost as a whole when one of its processes dies. Here what was
+    under way is tried once more, each piece alone in a fresh process; what then kills its process
+    again fails with `WorkerDied`, and all the rest is done.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes.
+
+    Examples
+    --------
+    >>> with LastingPool(2) as pool:  # doctest: +SKIP
+    ...     pool.submit(pow, 2, 10).result()
+    1024
+    """
+
+    def __init__(self, jobs: int) -> None:
+        self._lock = threading.RLock()
+        self._main = _Lane(jobs)
+        self._alone = _Lane(1)
+        self._closed = False
+
+    def submit(self, function: Callable, /, *args: Any, **kwargs: Any) -> Future:
+        """Queue a call and return its future."""
+        with self._lock:
+            if self._closed:
+                raise RuntimeError("the pool is closed")
+            future: Future = Future()
+            self._main.waiting.append((future, partial(function, *args, **kwargs)))
+            self._feed(self._main)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Take no more work; with `wait`, return when all that was submitted has ended."""
+        with self._lock:
+            self._closed = True
+            lanes = (self._main, self._alone)
+            if cancel_futures:
+                for lane in lanes:
+                    lane.cancel_waiting()
+            left = [f for lane in lanes for f in lane.futures()]
+        if wait:
+            for _ in as_completed(left):
+                pass
+            for lane in lanes:
+                lane.close()
+
+    def end(self) -> None:
+        """Drop all work and end the processes at once."""
+        self.shutdown(wait=False, cancel_futures=True)
+        for lane in (self._main, self._alone):
+            lane.kill()
+
+    def _feed(self, lane: _Lane) -> None:
+        while lane.waiting and len(lane.under_way) < lane.jobs:
+            future, call = lane.waiting.popleft()
+            if not future.running() and not future.set_running_or_notify_cancel():
+                continue
+            pool = lane.pool()
+            try:
+                inner = pool.submit(call)
+            except BrokenExecutor:  # died while idle: nothing was lost
+                lane.forget(pool)
+                pool = lane.pool()
+                inner = pool.submit(call)
+            lane.under_way[future] = call
+            inner.add_done_callback(partial(self._ended, lane, pool, future))
+
+    def _ended(self, lane: _Lane, pool: ProcessPoolExecutor, future: Future, inner: Future) -> None:
+        with self._lock:
+            call = lane.under_way.pop(future)
+            error = None if inner.cancelled() else inner.exception()
+            if isinstance(error, BrokenExecutor):
+                lane.forget(pool)
+                if lane is self._main and not lane.killed:
+                    self._alone.waiting.append((future, call))
+                    self._feed(self._alone)
+                    self._feed(self._main)
+                    return
+                error = WorkerDied(_STOPPED if lane.killed else _DIED)
+            if not lane.killed:
+                self._feed(lane)
+        if inner.cancelled():
+            future.set_exception(WorkerDied(_STOPPED))
+        elif error is not None:
+            future.set_exception(error)
+        else:
+            future.set_result(inner.result())
+
+
+class _Lane:
+    """A process pool, what waits for it and what is under way in it."""
+
+    def __init__(self, jobs: int) -> None:
+        self.jobs = jobs
+        self.waiting: deque[tuple[Future, Callable]] = deque()
+        self.under_way: dict[Future, Callable] = {}
+        self.killed = False
+        self._pool: ProcessPoolExecutor | None = None
+        self._context = _Context()
+
+    def pool(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            self._context = _Context()
+            self._pool = ProcessPoolExecutor(
+                self.jobs, mp_context=self._context, initializer=_begin_worker
+            )
+        return self._pool
+
+    def forget(self, pool: ProcessPoolExecutor) -> None:
+        """Leave a broken pool; the next call gets a fresh one."""
+        if self._pool is pool:
+            self._pool = None
+
+    def futures(self) -> list[Future]:
+        return [*self.under_way, *(future for future, _ in self.waiting)]
+
+    def cancel_waiting(self) -> None:
+        for future, _ in self.waiting:
+            future.cancel()
+        self.waiting.clear()
+
+    def close(self) -> None:
+        if self._pool is not None:
+            self._pool.shutdown()
+
+    def kill(self) -> None:
+        self.killed = True
+        for process in self._context.started:
+            process.kill()
+        self.close()
+
+
+class _Context(SpawnContext):
+    """Fresh interpreters (safe beside threads), with BLAS on one thread, that can be ended."""
+
+    def __init__(self) -> None:
+        self.started: list[SpawnProcess] = []
+
+    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # noqa: N802 - multiprocessing's name
+        process = _OneThreadProcess(*args, **kwargs)
+        self.started.append(process)
+        return process
+
+
+class _OneThreadProcess(SpawnProcess):
+    def start(self) -> None:
+        """Start with the environment in which BLAS, loaded there anew, takes one thread."""
+        before = {name: os.environ.get(name) for name in _ONE_THREAD}
+        os.environ.update(_ONE_THREAD)
+        try:
+            super().start()
+        finally:
+            for name, value in before.items():
+                if value is None:
+                    del os.environ[name]
+                else:
+                    os.environ[name] = value
+
+
+def _begin_worker() -> None:
+    """Leave Ctrl-C to the parent, and end when the parent is gone, however it went."""
+    import multiprocessing
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+
+    def follow() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()

@@ -1,0 +1,115 @@
+"""What a campaign came to: one small record per run and per curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+
+
+@dataclass(frozen=True)
+class RunOutcome:
+    """One run: done or failed, and where its data are.
+
+    Parameters
+    ----------
+    name
+        Unique within the campaign; safe as a file name.
+    files
+        Raw files, relative to the campaign file.
+    surface, medium
+        As the campaign file calls them; "" where it says nothing.
+    normal_force
+        Set-point [N] of the campaign file, else of the raw file, else None.
+    status
+        "done" or "failed".
+    reason
+        Why it failed, in one line; "" for a run that is done.
+    error
+        Class name of the error; "" for a run that is done.
+    data_file
+        Path of the netCDF file relative to the results folder; "" for a failed run.
+    reused
+        Whether the data file was taken over from the previous results.
+    seconds
+        Time [s] that the run took.
+    segments
+        Number of segments found.
+    """
+
+    name: str
+    files: tuple[str, ...]
+    surface: str
+    medium: str
+    normal_force: float | None
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    segments: int = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results of this run."""
+        return self.status == "done"
+
+
+@dataclass(frozen=True)
+class CurveOutcome:
+    """One measured curve: the runs of one surface, medium and load, taken together.
+
+    `status` and `reason` are as for a run; `data_file` is "" for a curve that failed.
+    """
+
+    name: str
+    surface: str
+    medium: str
+    normal_force: float | None
+    data_file: str
+    run_names: tuple[str, ...]
+    status: str = "done"
+    reason: str = ""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a curve."""
+        return self.status == "done"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Everything that a campaign came to.
+
+    Parameters
+    ----------
+    campaign
+        The campaign as it was read.
+    folder
+        Where the results lie (while they are being written: the staging folder).
+    runs, curves
+        One record each, in the order of the campaign file.
+    sources
+        (path relative to the campaign file, sha256, bytes) of every file that was read; a file
+        that could not be read has the sha256 "".
+    """
+
+    campaign: Campaign
+    folder: Path
+    runs: tuple[RunOutcome, ...]
+    curves: tuple[CurveOutcome, ...]
+    sources: tuple[tuple[str, str, int], ...]
+
+    @property
+    def failed(self) -> tuple[RunOutcome, ...]:
+        """The runs that have no results."""
+        return tuple(run for run in self.runs if not run.done)
+
+    @property
+    def segments(self) -> int:
+        """Number of segments found in all runs."""
+        return sum(run.segments for run in self.runs)

@@ -1,0 +1,233 @@
+"""A whole campaign: every run in a worker, then the repeats combined into measured curves."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.executor import completed
+from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
+from tribolab.campaign.problems import message
+from tribolab.campaign.work import (
+    CurveTask,
+    RunRecord,
+    RunTask,
+    Source,
+    checksums,
+    explain,
+    failed_run,
+    process_curve,
+    process_run,
+)
+from tribolab.errors import ConfigError, OutputError
+from tribolab.provenance import sha256_of_file
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+
+Progress = Callable[[str, int, int], None]
+
+
+def process(
+    campaign: Campaign,
+    staging: Path,
+    *,
+    executor: Executor | None = None,
+    previous: Path | None = None,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Process every run of a campaign and combine the repeats.
+
+    A run that fails is recorded with the reason; the others are done. Data files of `previous`
+    are taken over where raw files (by sha256), settings and version are the same.
+
+    Parameters
+    ----------
+    campaign
+        From `load_campaign`.
+    staging
+        Folder to write to; data files go to its ``data`` folder.
+    executor
+        Any `concurrent.futures.Executor`; without one everything is done here, run by run.
+    previous
+        Folder of earlier results, if there is one.
+    progress
+        Called as ``progress(stage, done, total)``.
+
+    Returns
+    -------
+    Outcome
+        With one record per run and per curve.
+
+    Raises
+    ------
+    ConfigError
+        If the campaign's patterns no longer match any file.
+    OutputError
+        If results cannot be written.
+    """
+    runs, problems = plan(campaign)
+    if problems:
+        raise ConfigError(message(problems, campaign.file, campaign.file.read_text("utf-8-sig")))
+    (staging / "data").mkdir(parents=True, exist_ok=True)
+    tell = progress or (lambda stage, done, total: None)
+
+    records = _taken_over(runs, previous, staging)
+    left = [RunTask(run, staging) for run in runs if run.name not in records]
+    tell("runs", len(records), len(runs))
+    for task, future in completed(executor, process_run, left):
+        records[task.run.name] = _record(task, future.exception() or future.result(), staging)
+        tell("runs", len(records), len(runs))
+    ordered = [records[run.name] for run in runs]
+    outcomes = tuple(record.outcome for record in ordered)
+    return Outcome(
+        campaign=campaign,
+        folder=staging,
+        runs=outcomes,
+        curves=_curves(outcomes, staging, executor, tell),
+        sources=_unique(source for record in ordered for source in record.sources),
+    )
+
+
+def _record(task: RunTask, answer: RunRecord | BaseException, staging: Path) -> RunRecord:
+    """Judge what came back from a worker."""
+    if isinstance(answer, OutputError):
+        raise answer
+    if isinstance(answer, BaseException):  # the worker could not even say what went wrong
+        return RunRecord(failed_run(task.run, *explain(answer)), ())
+    if answer.outcome.done and not (staging / answer.outcome.data_file).is_file():
+        raise OutputError(
+            f"{answer.outcome.data_file}: written by a worker, but not to be seen in {staging}; do "
+            "the workers share this folder?"
+        )
+    return answer
+
+
+def _taken_over(
+    runs: Iterable[PlannedRun], previous: Path | None, staging: Path
+) -> dict[str, RunRecord]:
+    """Take over the data files of earlier results that are still true."""
+    if previous is None or not (previous / "data").is_dir():
+        return {}
+    candidates = [
+        (run, known)
+        for run in runs
+        if (known := _known(previous / "data" / f"{run.name}.nc", run)) is not None
+    ]
+    taken = {}
+    with ThreadPoolExecutor(4) as threads:  # hashing releases the interpreter's lock
+        sums = threads.map(_checksums, [run.files for run, _ in candidates])
+        for (run, (known, outcome)), sources in zip(candidates, sums, strict=True):
+            if known == sorted((name, checksum) for name, checksum, _ in sources):
+                try:
+                    _link(previous / outcome.data_file, staging / outcome.data_file)
+                except FileNotFoundError:  # replaced by another process meanwhile: done anew
+                    continue
+                rows = zip(run.labels, sources, strict=True)
+                taken[run.name] = RunRecord(outcome, tuple((n, c, b) for n, (_, c, b) in rows))
+    return taken
+
+
+def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutcome] | None:
+    """Checksums and outcome of an earlier data file, if settings and version are the same."""
+    import netCDF4
+
+    from tribolab import __version__
+
+    if not path.is_file():
+        return None
+    try:
+        with netCDF4.Dataset(path) as file:
+            attrs = file["run"].__dict__
+            segments = len(file["segments"].dimensions["segment"])
+            complete = "friction" in file.groups
+    except (OSError, RuntimeError, LookupError):  # damaged: done anew
+        return None
+    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
+    if not complete or same != (run.config_sha256, __version__):
+        return None
+    load = run.normal_force
+    if load is None and "set_normal_force_N" in attrs:
+        load = float(attrs["set_normal_force_N"])
+    outcome = RunOutcome(
+        name=run.name,
+        files=run.labels,
+        surface=run.surface,
+        medium=run.medium,
+        normal_force=load,
+        status="done",
+        data_file=f"data/{path.name}",
+        reused=True,
+        segments=segments,
+    )
+    return checksums(attrs), outcome
+
+
+def _checksums(files: Iterable[Path]) -> list[Source]:
+    try:
+        return [(file.name, sha256_of_file(file), file.stat().st_size) for file in files]
+    except OSError:  # vanished: nothing is the same; processing it says why
+        return []
+
+
+def _link(old: Path, new: Path) -> None:
+    try:
+        os.link(old, new)
+    except FileNotFoundError:
+        raise
+    except OSError:  # a file system without hard links
+        shutil.copy2(old, new)
+
+
+def _curves(
+    runs: Iterable[RunOutcome], staging: Path, executor: Executor | None, tell: Progress
+) -> tuple[CurveOutcome, ...]:
+    groups: dict[tuple, list[RunOutcome]] = {}
+    for run in runs:
+        if run.done and run.segments:
+            # only what is stated to be the same is taken together
+            alone = "" if run.surface or run.medium else run.name
+            load = run.normal_force and float(f"{run.normal_force:.4g}")
+            groups.setdefault((run.surface, run.medium, load, alone), []).append(run)
+    names = distinct(_curve_name(*key) for key in groups)
+    tasks = [
+        CurveTask(
+            CurveOutcome(
+                name=name,
+                surface=surface,
+                medium=medium,
+                normal_force=load,
+                data_file=f"data/{name}.nc",
+                run_names=tuple(run.name for run in members),
+            ),
+            tuple(run.data_file for run in members),
+            staging,
+        )
+        for name, ((surface, medium, load, _), members) in zip(names, groups.items(), strict=True)
+    ]
+    done: dict[str, CurveOutcome] = {}
+    for task, future in completed(executor, process_curve, tasks):
+        error = future.exception()
+        if isinstance(error, OutputError):
+            raise error
+        curve = task.curve
+        if error is not None:
+            curve = replace(curve, data_file="", status="failed", reason=explain(error)[0])
+        done[curve.name] = curve
+        tell("curves", len(done), len(tasks))
+    return tuple(done[task.curve.name] for task in tasks)
+
+
+def _curve_name(surface: str, medium: str, load: float | None, alone: str) -> str:
+    parts = [surface, medium, "" if load is None else f"{load:g}N", alone]
+    return f"curve_{safe_name('_'.join(part for part in parts if part))}"
+
+
+def _unique(sources: Iterable[Source]) -> tuple[Source, ...]:
+    return tuple({source[0]: source for source in sources}.values())

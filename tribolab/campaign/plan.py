@@ -1,0 +1,253 @@
+"""Which files make which run: patterns resolved, names given, settings collected."""
+
+from __future__ import annotations
+
+import os
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tribolab.campaign.problems import Problem
+from tribolab.errors import nearest
+from tribolab.provenance import sha256_of, sha256_of_file
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign, RunEntry
+
+_LONGEST_NAME = 100
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """One run to be processed: all that a worker needs to know.
+
+    Parameters
+    ----------
+    name
+        Unique in the campaign, safe as a file name.
+    files
+        Raw files, absolute.
+    labels
+        The same relative to the campaign file, as reports show them.
+    surface, medium
+        "" where the campaign file says nothing.
+    normal_force
+        Set-point [N], if the campaign file gives it.
+    instrument
+        Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
+    segments, friction
+        Arguments of `find_segments` and `friction_coefficient`.
+    config_sha256
+        Checksum of all of these, and of the dialect's content.
+    """
+
+    name: str
+    files: tuple[Path, ...]
+    labels: tuple[str, ...]
+    surface: str
+    medium: str
+    normal_force: float | None
+    instrument: str | None
+    segments: dict[str, Any] = field(default_factory=dict)
+    friction: dict[str, Any] = field(default_factory=dict)
+    config_sha256: str = ""
+
+
+class Plan(NamedTuple):
+    """The runs of a campaign, and what is wrong with its patterns."""
+
+    runs: tuple[PlannedRun, ...]
+    problems: list[Problem]
+
+
+def plan(campaign: Campaign) -> Plan:
+    """Resolve the patterns of a campaign into runs, in the order of the campaign file."""
+    if not campaign.raw.is_dir():
+        what = f"there is no folder {campaign.raw}"
+        return Plan((), [Problem(("campaign", "raw"), what)])
+    problems: list[Problem] = []
+    found: list[tuple[RunEntry, list[Path]]] = []
+    owner: dict[Path, int] = {}
+    for number, surface in enumerate(campaign.surface):
+        _resolve(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
+    for number, entry in enumerate(campaign.run):
+        where = ("run", number, "files")
+        files = _resolve(campaign.raw, entry.files, where, problems)
+        for file in files:
+            if (other := owner.setdefault(file, number)) != number:
+                what = f"{_label(campaign, file)} belongs to run {other + 1} already"
+                problems.append(Problem(where, what))
+                break
+        found += [(entry, group) for group in _groups(campaign, entry, files)]
+    if problems:
+        return Plan((), problems)
+    names = unique_names([files for _, files in found])
+    runs = tuple(
+        _planned(campaign, entry, files, name)
+        for (entry, files), name in zip(found, names, strict=True)
+    )
+    return Plan(runs, [])
+
+
+def instrument_of(campaign: Campaign, name: str) -> str:
+    """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
+    return str(campaign.file.parent / name) if name.endswith(".toml") else name
+
+
+def _resolve(
+    raw: Path, patterns: Iterable[str], where: tuple[str | int, ...], problems: list[Problem]
+) -> list[Path]:
+    files: dict[Path, None] = {}
+    for pattern in patterns:
+        found = _matching(raw, pattern)
+        if not found:
+            problems.append(
+                Problem(where, f"nothing matches '{pattern}' in {raw}{_there(raw, pattern)}")
+            )
+        files.update(dict.fromkeys(found))
+    return list(files)
+
+
+def _matching(raw: Path, pattern: str) -> list[Path]:
+    exact = raw / pattern
+    if exact.is_file():  # brackets in a real name are no wildcards
+        return [exact]
+    try:
+        found = [path for path in raw.glob(pattern) if path.is_file()]
+    except (ValueError, NotImplementedError):  # an absolute or an empty pattern
+        return []
+    return sorted(found, key=lambda path: _natural(str(path)))
+
+
+def _natural(text: str) -> list[tuple[bool, int, str]]:
+    """Key under which cycle 2 comes before cycle 10."""
+    return [
+        (part.isdigit(), int(part) if part.isdigit() else 0, part)
+        for part in re.split(r"(\d+)", text)
+    ]
+
+
+def _there(raw: Path, pattern: str) -> str:
+    """Say what is in the folder where the pattern stops to match."""
+    folder = raw
+    for part in Path(pattern).parts[:-1]:
+        if not (folder / part).is_dir():
+            break
+        folder /= part
+    names = sorted(f"{p.name}/" if p.is_dir() else p.name for p in folder.iterdir())
+    if not names:
+        return f"; {folder} is empty"
+    hint = nearest(Path(pattern).name, names)
+    listed = ", ".join(names[:5]) + (f", ... ({len(names)} in all)" if len(names) > 5 else "")
+    in_folder = "" if folder == raw else f" in {folder.relative_to(raw)}/"
+    return f"; there is{in_folder} {listed}" + (hint if "did you mean" in hint else "")
+
+
+def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list[Path]]:
+    if entry.cycles:
+        return [files]
+    from tribolab.io.runs import group_files
+
+    instrument = entry.instrument and instrument_of(campaign, entry.instrument)
+    return group_files(files, instrument)
+
+
+def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) -> PlannedRun:
+    instrument = entry.instrument and instrument_of(campaign, entry.instrument)
+    settings: dict[str, Any] = {
+        "surface": entry.surface or "",
+        "medium": entry.medium or "",
+        "normal_force": entry.normal_force,
+        "segments": campaign.segment_options(entry),
+        "friction": campaign.friction.model_dump(),
+    }
+    shaping = settings | {
+        "instrument": entry.instrument,
+        "dialect": instrument and _sha256_of_dialect(instrument),
+        "cycles": entry.cycles,
+    }
+    return PlannedRun(
+        name=name,
+        files=tuple(files),
+        labels=tuple(_label(campaign, file) for file in files),
+        instrument=instrument,
+        config_sha256=sha256_of(shaping),
+        **settings,
+    )
+
+
+def _sha256_of_dialect(instrument: str) -> str:
+    from tribolab.io.dialects import known_dialects
+
+    return sha256_of_file(known_dialects().get(instrument, instrument))
+
+
+def _label(campaign: Campaign, file: Path) -> str:
+    return Path(os.path.relpath(file, campaign.file.parent)).as_posix()
+
+
+def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
+    """One name per run, from what its files' names have in common; safe on any file system.
+
+    Examples
+    --------
+    >>> unique_names([[Path("a/x_1_force.csv"), Path("a/x_1_motion.csv")], [Path("b/x_1.csv")]])
+    ['a_x_1', 'b_x_1']
+    """
+    groups = [list(group) for group in groups]
+    names = [safe_name(_common(group)) for group in groups]
+    taken = Counter(name.casefold() for name in names)
+    names = [
+        safe_name(f"{group[0].parent.name}_{name}") if taken[name.casefold()] > 1 else name
+        for name, group in zip(names, groups, strict=True)
+    ]
+    return distinct(names)
+
+
+def distinct(names: Iterable[str]) -> list[str]:
+    """Add numbers to names that came before; upper and lower case are one on some disks.
+
+    Examples
+    --------
+    >>> distinct(["a", "A", "b"])
+    ['a', 'A_2', 'b']
+    """
+    seen: set[str] = set()
+    result = []
+    for name in names:
+        candidate, number = name, 2
+        while candidate.casefold() in seen:
+            candidate, number = f"{name}_{number}", number + 1
+        seen.add(candidate.casefold())
+        result.append(candidate)
+    return result
+
+
+def _common(files: list[Path]) -> str:
+    stems = [file.stem for file in files]
+    if len(stems) == 1:
+        return stems[0]
+    prefix = os.path.commonprefix(stems)
+    if any(len(stem) > len(prefix) and stem[len(prefix)].isalnum() for stem in stems):
+        prefix = re.sub(r"[^\W_]+$", "", prefix)  # not in the middle of a word or number
+    return prefix.rstrip(" _-.") or stems[0]
+
+
+def safe_name(name: str) -> str:
+    """Return a name that any file system takes.
+
+    Examples
+    --------
+    >>> safe_name("Sb-R, glycerol 5 µm/s")
+    'Sb-R_glycerol_5_um_s'
+    """
+    plain = unicodedata.normalize("NFKD", name.replace("µ", "u").replace("μ", "u"))
+    plain = plain.encode("ascii", "ignore").decode()
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", plain).strip("._")[:_LONGEST_NAME] or "run"
+    # "curve_" is what measured curves are called; the others are devices on Windows
+    clash = re.match(r"(?i)(curve_|(con|prn|aux|nul|com\d|lpt\d)(\.|$))", plain)
+    return f"run_{plain}" if clash else plain

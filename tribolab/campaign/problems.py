@@ -1,0 +1,176 @@
+"""What is wrong in a campaign file, in words: file, line, key, cure."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+import types
+import typing
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pydantic import BaseModel, ValidationError
+
+from tribolab.campaign.toml_lines import line_of
+from tribolab.errors import ConfigError, nearest
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+
+_SHOWN = 5
+
+
+class Problem(NamedTuple):
+    """Where in the file (names and numbers of elements), and what is wrong there."""
+
+    where: tuple[str | int, ...]
+    what: str
+
+
+def message(problems: Iterable[Problem], path: Path, text: str) -> str:
+    """Put problems into words, in the order of the file, one line each."""
+    lines = []
+    for problem in problems:
+        line = line_of(text, problem.where)
+        where = f"{path}, line {line}" if line else f"{path}"
+        key = _key(problem.where)
+        lines.append(
+            (line or 0, f"{where}: {key}: {problem.what}" if key else f"{where}: {problem.what}")
+        )
+    lines.sort(key=lambda pair: pair[0])
+    shown = [line for _, line in lines[:_SHOWN]]
+    if len(lines) > _SHOWN:
+        shown.append(f"... and {len(lines) - _SHOWN} more")
+    return "\n".join(shown)
+
+
+def _key(where: tuple[str | int, ...]) -> str:
+    """``("run", 1, "files")`` as people count: ``run 2, files``."""
+    text = ""
+    for part in where:
+        if isinstance(part, int):
+            text += f" {part + 1}"
+        else:
+            text += f", {part}" if text[-1:].isdigit() else f".{part}" if text else part
+    return text
+
+
+def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """Return what the TOML parser says, with the line it means."""
+    said = str(error)
+    if match := re.search(r"\(at line (\d+), column \d+\)", said):
+        number = int(match[1])
+        line = text.splitlines()[number - 1].strip() if number <= len(text.splitlines()) else ""
+        return f"line {number}: {said[: match.start()].strip()} in: {line}"
+    if said.endswith("(at end of document)"):
+        return f"line {len(text.splitlines())}: {said}"
+    return said
+
+
+def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+    """Turn pydantic's findings into problems that name the cure."""
+    found: dict[tuple[str | int, ...], Problem] = {}
+    for item in error.errors(include_url=False):
+        where, table = _walk(model, item["loc"])
+        found.setdefault(where, Problem(where, _words(item, table)))
+    return list(found.values())
+
+
+def _words(item: Any, table: type[BaseModel] | None) -> str:
+    kind, value = item["type"], item.get("input")
+    if kind == "extra_forbidden" and table is not None:
+        return f"unknown key{nearest(str(item['loc'][-1]), table.model_fields)}"
+    if kind == "missing":
+        return "is missing"
+    if kind == "value_error":
+        return str(item["ctx"]["error"])
+    if kind == "literal_error":
+        known = re.findall(r"'([^']*)'", item["ctx"]["expected"])
+        hint = nearest(str(value), known)
+        return f"{value!r} is not one of {', '.join(map(repr, known))}" + (
+            hint if "did you mean" in hint else ""
+        )
+    if kind == "model_type":
+        return f"a table is wanted, not {value!r}"
+    if kind == "too_short":
+        return "is empty"
+    text = item["msg"][0].lower() + item["msg"][1:]
+    return f"{text}; got {value!r}"
+
+
+def _walk(
+    model: type[BaseModel], location: tuple[str | int, ...]
+) -> tuple[tuple[str | int, ...], type[BaseModel] | None]:
+    """Follow pydantic's location through the model.
+
+    Returns the path in the file (pydantic adds names of its own for unions and keys) and the
+    table that the last part belongs to.
+    """
+    where: list[str | int] = []
+    here: Any = model
+    table: type[BaseModel] | None = None
+    for part in location:
+        here = _bare(here)
+        if isinstance(here, type) and issubclass(here, BaseModel):
+            table = here
+            where.append(part)
+            field = here.model_fields.get(str(part))
+            here = field.annotation if field else None
+        elif typing.get_origin(here) in (dict, tuple):
+            table = None
+            where.append(part)
+            inner = typing.get_args(here)
+            numbered = isinstance(part, int) and Ellipsis not in inner and part < len(inner)
+            here = inner[part] if numbered else inner[1 if typing.get_origin(here) is dict else 0]
+        else:
+            break
+    return tuple(where), table
+
+
+def _bare(annotation: Any) -> Any:
+    """Strip ``| None`` and ``Annotated``."""
+    while True:
+        origin = typing.get_origin(annotation)
+        if origin is typing.Annotated:
+            annotation = typing.get_args(annotation)[0]
+        elif origin in (typing.Union, types.UnionType):
+            annotation = next(a for a in typing.get_args(annotation) if a is not type(None))
+        else:
+            return annotation
+
+
+def of_names(campaign: Campaign) -> list[Problem]:
+    """Names that are used but not declared, or declared twice."""
+    found = []
+    surfaces = [surface.name for surface in campaign.surface]
+    for number, name in enumerate(surfaces):
+        if name in surfaces[:number]:
+            found.append(
+                Problem(("surface", number, "name"), f"'{name}' is the name of a surface before")
+            )
+    for number, entry in enumerate(campaign.run):
+        if entry.surface is not None and entry.surface not in surfaces:
+            what = f"no [[surface]] is called '{entry.surface}'{_hint(entry.surface, surfaces)}"
+            found.append(Problem(("run", number, "surface"), what))
+        if entry.medium is not None and entry.medium not in campaign.medium:
+            what = f"there is no [medium.{entry.medium}]{_hint(entry.medium, campaign.medium)}"
+            found.append(Problem(("run", number, "medium"), what))
+        if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
+            found.append(Problem(("run", number, "instrument"), what))
+    return found
+
+
+def _hint(word: str, known: Iterable[str]) -> str:
+    return nearest(word, known) or "; none is declared"
+
+
+def _instrument(campaign: Campaign, name: str) -> str:
+    from tribolab.campaign.plan import instrument_of
+    from tribolab.io.dialects import load_dialect
+
+    try:
+        load_dialect(instrument_of(campaign, name))
+    except ConfigError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,63 @@
+"""On which line of a TOML text a key stands, so that an error can point at it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_HEADER = re.compile(r"^\s*(\[\[?)\s*(.+?)\s*\]\]?\s*(?:#.*)?$")
+_KEY = re.compile(r"^\s*((?:[A-Za-z0-9_-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*[A-Za-z0-9_-]+)*)\s*=")
+_PART = re.compile(r"\"([^\"]*)\"|'([^']*)'|([^\s.\"']+)")
+
+
+def _parts(dotted: str) -> tuple[str, ...]:
+    return tuple(next(text for text in match if text) for match in _PART.findall(dotted))
+
+
+def line_of(text: str, where: Sequence[str | int]) -> int | None:
+    r"""Return the line (from 1) on which the key at `where` stands, or the nearest table above it.
+
+    Parameters
+    ----------
+    text
+        A TOML text.
+    where
+        Path of the key: names of tables and keys, and numbers of the elements of lists.
+
+    Returns
+    -------
+    int or None
+        The line; None if not even the first part of the path stands in the text.
+
+    Examples
+    --------
+    >>> line_of('[[run]]\nfiles = "a"\n[[run]]\nfiles = "b"\n', ["run", 1, "files"])
+    4
+    """
+    found: dict[tuple[str | int, ...], int] = {}
+    table: tuple[str | int, ...] = ()
+    counts: dict[tuple[str | int, ...], int] = {}
+    fence = ""  # inside a text of several lines nothing is a key
+    for number, line in enumerate(text.splitlines(), start=1):
+        if fence:
+            if line.count(fence) % 2:
+                fence = ""
+            continue
+        if header := _HEADER.match(line):
+            table = ()
+            for part in _parts(header[2]):
+                table += (part,)
+                if table in counts and table != _parts(header[2]):
+                    table += (counts[table],)
+            if header[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                found.setdefault(table, number)
+                table += (counts[table],)
+            found.setdefault(table, number)
+        elif key := _KEY.match(line):
+            found.setdefault(table + _parts(key[1]), number)
+        fence = next((f for f in ('"""', "'''") if line.count(f) % 2), "")
+    for length in range(len(where), 0, -1):
+        if tuple(where[:length]) in found:
+            return found[tuple(where[:length])]
+    return None

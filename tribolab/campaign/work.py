@@ -1,0 +1,224 @@
+"""The work on one run and on one curve, as a worker process does it.
+
+A worker reads raw files, writes its result itself and hands back a small record: nothing that is
+as large as a signal travels between processes.
+"""
+
+from __future__ import annotations
+
+import errno
+import shutil
+import threading
+import time
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.outcome import CurveOutcome, RunOutcome
+from tribolab.campaign.plan import PlannedRun
+from tribolab.errors import OutputError, TribolabError
+from tribolab.provenance import sha256_of_file
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Source = tuple[str, str, int]
+
+# The netCDF library is not safe under threads, which some executors use.
+_NETCDF = threading.Lock()
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
+_LITTLE = 1 << 20
+
+
+@dataclass(frozen=True)
+class RunTask:
+    """A run to process, and the folder for its data file."""
+
+    run: PlannedRun
+    folder: Path
+
+    @property
+    def data_file(self) -> str:
+        """Path of the data file relative to the results folder."""
+        return f"data/{self.run.name}.nc"
+
+
+@dataclass(frozen=True)
+class CurveTask:
+    """Data files of the runs that make one measured curve."""
+
+    curve: CurveOutcome
+    data_files: tuple[str, ...]
+    folder: Path
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """What a worker hands back: the outcome and the files that were read."""
+
+    outcome: RunOutcome
+    sources: tuple[Source, ...]
+
+
+def process_run(task: RunTask) -> RunRecord:
+    """Read a run, find its segments, compute its friction, write its data file.
+
+    What goes wrong with the run is in the record.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written: that is no fault of the run.
+    """
+    began = time.monotonic()
+    run = task.run
+    try:
+        signals, segments, friction = _analyse(run)
+        _write(
+            {"run": signals, "segments": segments, "friction": friction},
+            task.folder / task.data_file,
+        )
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one bad file must not stop the others
+        reason, name = explain(error)
+        outcome = failed_run(run, reason, name, time.monotonic() - began)
+        return RunRecord(outcome, tuple(_source(*pair) for pair in _files(run)))
+    load = run.normal_force
+    if load is None:
+        load = signals.attrs.get("set_normal_force_N")
+    outcome = RunOutcome(
+        name=run.name,
+        files=run.labels,
+        surface=run.surface,
+        medium=run.medium,
+        normal_force=None if load is None else float(load),
+        status="done",
+        data_file=task.data_file,
+        seconds=time.monotonic() - began,
+        segments=segments.sizes["segment"],
+    )
+    return RunRecord(outcome, sources_of(run, signals.attrs))
+
+
+def process_curve(task: CurveTask) -> None:
+    """Combine the segments of several runs into a measured curve and write it.
+
+    Raises
+    ------
+    TribolabError
+        If the runs make no curve.
+    """
+    from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.io.netcdf import read_netcdf
+
+    with _NETCDF:
+        frictions = [read_netcdf(task.folder / name, group="friction") for name in task.data_files]
+    curve = measured_stribeck_curve(frictions)
+    curve.attrs.update(_labels(task.curve), runs="; ".join(task.curve.run_names))
+    _write({None: curve}, task.folder / task.curve.data_file)
+
+
+def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
+    """Return the outcome of a run that has no results."""
+    return RunOutcome(
+        name=run.name,
+        files=run.labels,
+        surface=run.surface,
+        medium=run.medium,
+        normal_force=run.normal_force,
+        status="failed",
+        reason=reason,
+        error=error,
+        seconds=seconds,
+    )
+
+
+def explain(error: BaseException) -> tuple[str, str]:
+    """Return one line that says what went wrong, and the class name of the error.
+
+    An error that nobody raised on purpose also says where it happened.
+    """
+    name = type(error).__name__
+    text = " ".join(str(error).split())
+    if isinstance(error, TribolabError):
+        return text, name
+    if isinstance(error, OSError) and error.strerror and error.filename:
+        return f"{Path(str(error.filename)).name}: {error.strerror.lower()}", name
+    where = ""
+    if frames := traceback.extract_tb(error.__traceback__):
+        where = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}"
+    return f"crashed with {name}{where}: {text}" if text else f"crashed with {name}{where}", name
+
+
+def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
+    """Return the files of a run with the checksums that were taken while reading."""
+    known = dict(checksums(attrs))
+    return tuple(
+        (label, known[file.name], file.stat().st_size)
+        if file.name in known
+        else _source(file, label)
+        for file, label in _files(run)
+    )
+
+
+def checksums(attrs: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return name and sha256 of the sources that a product's attributes name, sorted."""
+    names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
+    return sorted(zip(names, sums, strict=False))
+
+
+def _files(run: PlannedRun) -> list[tuple[Path, str]]:
+    return list(zip(run.files, run.labels, strict=True))
+
+
+def _source(file: Path, label: str) -> Source:
+    try:
+        return label, sha256_of_file(file), file.stat().st_size
+    except OSError:  # vanished or unreadable: the outcome of its run says so
+        return label, "", 0
+
+
+def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+    from tribolab.friction.coefficient import friction_coefficient
+    from tribolab.friction.segments import find_segments
+    from tribolab.io.runs import read
+
+    files = list(run.files)
+    signals = read(files if len(files) > 1 else files[0], run.instrument)
+    if run.normal_force is not None:
+        signals.attrs["set_normal_force_N"] = run.normal_force
+    segments = find_segments(signals, **run.segments)
+    friction = friction_coefficient(signals, segments, **run.friction)
+    for data in (signals, segments, friction):
+        data.attrs.update(_labels(run), config_sha256=run.config_sha256)
+    return signals, segments, friction
+
+
+def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:
+    return {"run_name" if isinstance(what, PlannedRun) else "curve_name": what.name} | {
+        key: value for key in ("surface", "medium") if (value := getattr(what, key))
+    }
+
+
+def _write(groups: dict[str | None, xr.Dataset], path: Path) -> None:
+    from tribolab.io.netcdf import write_netcdf
+
+    try:
+        with _NETCDF:
+            for group, data in groups.items():
+                write_netcdf(data, path, group=group)
+    except (OSError, RuntimeError, TribolabError) as error:
+        # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"
+        full = shutil.disk_usage(path.parent).free < _LITTLE if path.parent.is_dir() else False
+        cause = error.__cause__ if isinstance(error, TribolabError) else error
+        number = errno.ENOSPC if full else getattr(cause, "errno", None)
+        path.unlink(missing_ok=True)
+        if number == errno.ENOSPC:
+            raise OutputError(
+                f"{path.name}: the disk is full; make room or choose another folder with --output"
+            ) from error
+        if number in _NO_ROOM or not path.parent.is_dir():
+            raise OutputError(f"{path.name}: cannot be written ({error})") from error
+        raise

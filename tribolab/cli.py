@@ -1,0 +1,292 @@
+"""The command line. Heavy imports wait in the commands, so that --help answers at once."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome
+
+USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="markdown",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=(
+        "Friction experiments on soft, rough contacts: raw files in, friction coefficients with "
+        "honest error bars and a report out.\n\n"
+        "New here? `tribolab demo` simulates a campaign, analyses it and shows where to look.\n\n"
+        "Exit codes: 0 fine; 1 a finding at or above the campaign's fail_on; 2 wrong use or a "
+        "mistake in the campaign file; 3 an input that cannot be read, or nothing found."
+    ),
+)
+
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs", "-j", min=1, help="Number of processes.", show_default="one per processor"
+    ),
+]
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from tribolab import __version__
+
+        typer.echo(f"tribolab {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Take the options that stand before a command."""
+
+
+@app.command()
+def demo(
+    folder: Annotated[
+        Path, typer.Argument(help="Where to put it; made if it is not there.")
+    ] = Path("tribolab-demo"),
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Simulate a campaign, analyse it and compare the result with the truth.
+
+    The virtual rig measures the reference system: a PMMA cylinder on smooth and sandblasted
+    PDMS, dry and in glycerol, at 13 speeds in repeats. Called again, it analyses the same raw
+    files and redoes only what changed.
+
+        tribolab demo
+
+        tribolab demo /tmp/look
+    """
+    with _reported(debug):
+        from tribolab.campaign.executor import default_jobs
+        from tribolab.report.run import run_campaign
+        from tribolab.report.terminal import truth_lines
+        from tribolab.report.truth import compare_with_truth
+        from tribolab.rig import simulate_campaign
+
+        campaign = folder / "campaign.toml"
+        compared = []
+        with _progress(quiet) as progress:
+            if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
+                simulate_campaign(folder, jobs=jobs or default_jobs(), progress=progress)
+            outcome = run_campaign(
+                campaign,
+                jobs=jobs,
+                progress=progress,
+                finish=lambda outcome: compared.append(compare_with_truth(outcome, folder)),
+            )
+        code = _show(outcome)
+        for line in truth_lines(compared[0], folder, outcome):
+            typer.echo(line)
+    raise typer.Exit(code)
+
+
+@app.command()
+def run(
+    campaign: Annotated[
+        Path, typer.Argument(help="The campaign file (TOML), or the folder with campaign.toml.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="Folder of the results; replaced as a whole.",
+            show_default="as the campaign file says, else results/ beside it",
+        ),
+    ] = None,
+    jobs: Jobs = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="Address of a Dask scheduler to work on, e.g. tcp://10.0.0.5:8786.",
+            show_default=False,
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Analyse a campaign: friction of every run, measured curves, report.
+
+    Raw files are only read. Results appear whole or not at all, and what did not change since
+    the last time is not done again.
+
+        tribolab run campaign.toml
+
+        tribolab run campaign.toml --output /tmp/results --jobs 4
+    """
+    with _reported(debug):
+        from tribolab.report.run import run_campaign
+
+        with _progress(quiet) as progress:
+            outcome = run_campaign(
+                campaign, output=output, jobs=jobs, scheduler=scheduler, progress=progress
+            )
+        code = _show(outcome)
+    raise typer.Exit(code)
+
+
+@app.command()
+def simulate(
+    folder: Annotated[Path, typer.Argument(help="Where to; must be new or empty.")],
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 0,
+    repeats: Annotated[int, typer.Option(min=1, help="Runs per surface, medium and load.")] = 2,
+    small: Annotated[
+        bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
+    ] = False,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Write a campaign of raw files as the virtual rig measures it, with the truth beside it.
+
+    To learn with, to teach with, and to try an analysis on data whose answer is known.
+
+        tribolab simulate practice --small
+
+        tribolab run practice/campaign.toml
+    """
+    with _reported(debug):
+        from tribolab.campaign.executor import default_jobs
+        from tribolab.rig import simulate_campaign
+
+        with _progress(quiet) as progress:
+            campaign = simulate_campaign(
+                folder,
+                seed,
+                small=small,
+                n_repeats=repeats,
+                jobs=jobs or default_jobs(),
+                progress=progress,
+            )
+        typer.echo(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
+
+
+@app.command()
+def info(
+    files: Annotated[list[Path], typer.Argument(help="Raw files.")],
+    instrument: Annotated[
+        str | None,
+        typer.Option(
+            "--instrument",
+            "-i",
+            help="Name of an instrument, or the .toml file that describes it.",
+            show_default="the files tell",
+        ),
+    ] = None,
+    debug: Debug = False,
+) -> None:
+    """Show how raw files are understood, before anything is computed.
+
+    tribolab info raw/friction/*.csv
+
+    tribolab info odd.txt --instrument my_tribometer.toml
+    """
+    with _reported(debug):
+        from tribolab.errors import ReadError
+        from tribolab.io.runs import describe
+        from tribolab.report.terminal import file_lines
+
+        unreadable = 0
+        for file in files:
+            try:
+                typer.echo("\n".join(file_lines(describe(file, instrument))))
+            except ReadError as error:  # the other files want to be seen too
+                unreadable += 1
+                typer.echo(f"tribolab: {error}", err=True)
+    raise typer.Exit(UNREADABLE if unreadable else 0)
+
+
+@contextlib.contextmanager
+def _reported(debug: bool) -> Iterator[None]:
+    """Turn an error into one short message on stderr and an exit code."""
+    from tribolab.errors import ConfigError, TribolabError, UnitError
+
+    try:
+        yield
+    except (ConfigError, UnitError) as error:
+        _fail(str(error), USAGE, debug)
+    except TribolabError as error:
+        _fail(str(error), UNREADABLE, debug)
+    except KeyboardInterrupt:
+        _fail("interrupted; results of before are as they were", INTERRUPTED, debug)
+    except (typer.Exit, BrokenPipeError):
+        raise
+    except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
+        from tribolab.campaign.work import explain
+
+        _fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
+
+
+def _fail(message: str, code: int, debug: bool) -> None:
+    if debug:
+        raise
+    typer.echo(f"tribolab: {message}", err=True)
+    raise typer.Exit(code) from None
+
+
+@contextlib.contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[str, int, int], None] | None]:
+    """Show bars with the time left on a terminal; say nothing in a pipe."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (TextColumn("{task.description:>10}"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as bars:
+        stages = {}
+
+        def tell(stage: str, done: int, total: int) -> None:
+            if stage not in stages:
+                stages[stage] = bars.add_task(stage, total=total)
+            bars.update(stages[stage], completed=done, total=total)
+
+        yield tell
+
+
+def _show(outcome: Outcome) -> int:
+    """Show what a campaign came to; return the exit code."""
+    from tribolab.report import terminal
+
+    table = terminal.outcome_table(outcome)
+    if table.row_count:
+        terminal.console().print(table)
+    for line in terminal.outcome_lines(outcome):
+        typer.echo(line)
+    for line in terminal.failure_lines(outcome):
+        typer.echo(f"tribolab: {line}", err=True)
+    if not outcome.segments:
+        typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
+    return UNREADABLE if outcome.failed or not outcome.segments else 0
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

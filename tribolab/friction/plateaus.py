@@ -1,0 +1,231 @@
+"""Plateaus of a noisy signal: where a velocity is constant, found on blocks at many scales.
+
+Works on bare arrays and knows nothing of files or forces; `segments` gives it the velocity.
+
+Notes
+-----
+1. Neighbouring window means are compared at every scale W = 1, 2, 4 ... blocks (moving-sum
+   statistic, bottom-up [1]_). A break stands where they differ by more than noise and by more
+   than a relative `resolution`; a scale may add a break only where no finer scale has one
+   within its window.
+2. Neighbouring pieces that one straight line v(t) describes as well as two are merged. A ramp
+   thus becomes one steep piece, a plateau with a slow drift one nearly flat piece.
+3. A piece is a plateau if its fitted line changes by less than `drift` of its speed.
+
+References
+----------
+.. [1] Messer et al. (2014), Ann. Appl. Stat. 8, 2027-2067. doi:10.1214/14-AOAS782
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+SIGNIFICANT = 5.0  # standard errors between neighbouring windows that make a break
+WORSE = 12.0  # squares (in variances) by which one line may be worse than two
+
+
+class Noise(NamedTuple):
+    """Noise of one block: standard deviation sqrt(floor^2 + (relative * v)^2)."""
+
+    floor: float
+    relative: float
+
+    def variance(self, velocity: np.ndarray | float) -> np.ndarray | float:
+        """Variance of one block at a velocity."""
+        return self.floor**2 + (self.relative * velocity) ** 2
+
+
+class Pieces(NamedTuple):
+    """Straight pieces of the block series: [first, last) blocks, mean, change along the line."""
+
+    first: np.ndarray
+    last: np.ndarray
+    mean: np.ndarray
+    change: np.ndarray
+    change_error: np.ndarray
+    mean_error: np.ndarray
+
+
+def running_median(values: np.ndarray) -> np.ndarray:
+    """Return the running median of five samples, which drops spikes and keeps edges."""
+    if values.size < 5:
+        return values
+    padded = np.concatenate([values[:1].repeat(2), values, values[-1:].repeat(2)])
+    stack = np.stack([padded[i : i + values.size] for i in range(5)])
+    return np.partition(stack, 2, axis=0)[2]
+
+
+def estimate_noise(velocity: np.ndarray) -> Noise:
+    """Estimate the absolute floor and the relative part of the noise from neighbouring blocks.
+
+    The spread of differences is taken per quarter decade of speed, because the lowest speed may
+    drown in a floor that the highest does not show.
+    """
+    middle = np.abs(velocity[1:] + velocity[:-1]) / 2
+    difference = np.abs(np.diff(velocity)) / np.sqrt(2)
+    top = np.quantile(middle, 0.98) if middle.size else 0.0
+    if top == 0:
+        return Noise(0.0, 0.0)
+    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-7))).astype(int)
+    levels = []
+    for one in np.unique(bins):
+        inside = bins == one
+        if np.count_nonzero(inside) >= max(8, 0.002 * middle.size):
+            chosen = difference[inside]
+            # quantised readings repeat, so that their median difference is zero: then the
+            # mean below the largest tenth stands in
+            spread = max(
+                np.median(chosen) / 0.6745, np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)])
+            )
+            levels.append((np.median(middle[inside]), spread, chosen.size))
+    if not levels:
+        return Noise(float(np.median(difference) / 0.6745), 0.0)
+    speed, spread, count = np.array(levels).T
+    floor = float(spread.min())
+    high = speed > 0.03 * top
+    relative = np.sqrt(np.maximum(spread[high] ** 2 - floor**2, 0)) / speed[high]
+    # most blocks lie on plateaus; bins with few blocks are ramps and reversals
+    order = np.argsort(relative)
+    share = np.cumsum(count[high][order]) / count[high].sum()
+    return Noise(floor, float(relative[order][np.searchsorted(share, 0.5)]))
+
+
+def find_breaks(
+    velocity: np.ndarray, noise: Noise, resolution: float, rest_speed: float
+) -> np.ndarray:
+    """Block numbers at which the mean velocity changes, by moving sums from fine to coarse."""
+    m = velocity.size
+    total = np.concatenate([[0.0], np.cumsum(velocity)])
+    found = np.zeros(0, dtype=int)
+    free = np.zeros(m + 1, dtype=int)  # 1 where a break stands
+    width = 1
+    while 2 * width <= m:
+        k = np.arange(width, m - width + 1)
+        before = (total[k] - total[k - width]) / width
+        after = (total[k + width] - total[k]) / width
+        jump = np.abs(after - before)
+        error = np.sqrt((noise.variance(before) + noise.variance(after)) / width)
+        larger = np.maximum(np.abs(before), np.abs(after))
+        wanted = np.maximum(resolution * larger, rest_speed)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            score = np.where(jump > 1e-12 * larger, jump / error, 0.0)
+        crowd = np.concatenate([[0], np.cumsum(free)])
+        clear = crowd[np.minimum(k + width, m + 1)] - crowd[np.maximum(k - width + 1, 0)] == 0
+        if clear.any():
+            # noise with memory spreads the window means more than white noise would
+            usual = score[clear][:: 1 + m // 2048]
+            usual = usual[np.isfinite(usual)]
+            memory = max(1.0, float(np.median(usual)) / 0.6745) if usual.size > 8 else 1.0
+            hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
+            found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
+            free[found_now] = 1
+            found = np.concatenate([found, found_now])
+        width *= 2
+    return np.sort(found)
+
+
+def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
+    """Return the highest candidates, none nearer to another than `width`."""
+    if position.size == 0:
+        return position
+    if width == 1:
+        return position
+    # candidates of one cluster lie close together: the highest of each bin, then thin out
+    order = np.argsort(-height, kind="stable")
+    taken = np.zeros(position[-1] + width + 2, dtype=bool)
+    chosen = []
+    for index in order:
+        here = position[index]
+        if not taken[here]:
+            chosen.append(here)
+            taken[max(0, here - width + 1) : here + width] = True
+    return np.array(chosen, dtype=int)
+
+
+def _moments(
+    time: np.ndarray, velocity: np.ndarray, variance: np.ndarray, starts: np.ndarray
+) -> np.ndarray:
+    """Weight, mean time, mean velocity and centred second moments of each piece, as columns."""
+    weight = 1 / variance
+    add = np.add.reduceat
+    size = np.diff(np.append(starts, time.size))
+    total = add(weight, starts)
+    t = add(weight * time, starts) / total
+    v = add(weight * velocity, starts) / total
+    dt, dv = time - np.repeat(t, size), velocity - np.repeat(v, size)
+    second = [add(weight * a * b, starts) for a, b in ((dt, dt), (dt, dv), (dv, dv))]
+    return np.stack([size.astype(float), total, t, v, *second])
+
+
+def _joined(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Moments of two pieces taken as one (pairwise update, stable)."""
+    total = a[1] + b[1]
+    share = a[1] * b[1] / total
+    dt, dv = b[2] - a[2], b[3] - a[3]
+    return np.stack(
+        [
+            a[0] + b[0],
+            total,
+            (a[1] * a[2] + b[1] * b[2]) / total,
+            (a[1] * a[3] + b[1] * b[3]) / total,
+            a[4] + b[4] + share * dt * dt,
+            a[5] + b[5] + share * dt * dv,
+            a[6] + b[6] + share * dv * dv,
+        ]
+    )
+
+
+def _misfit(m: np.ndarray) -> np.ndarray:
+    """Weighted squares left by the straight line through a piece."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        explained = np.where(m[4] > 0, m[5] ** 2 / m[4], 0.0)
+    return np.maximum(m[6] - explained, 0.0)
+
+
+def straight_pieces(
+    time: np.ndarray,
+    velocity: np.ndarray,
+    noise: Noise,
+    breaks: np.ndarray,
+    resolution: float,
+) -> Pieces:
+    """Merge neighbours that one straight line describes as well as two, best first."""
+    starts = np.concatenate([[0], breaks])
+    # the weight follows the mean of the piece: single readings would draw the mean towards zero
+    size = np.diff(np.append(starts, time.size))
+    level = np.repeat(np.add.reduceat(velocity, starts) / size, size)
+    variance = noise.variance(level) + (1e-4 * level) ** 2
+    variance = variance + max((1e-7 * np.max(np.abs(velocity))) ** 2, 1e-60)
+    m = _moments(time, velocity, variance, starts)
+    while m.shape[1] > 1:
+        a, b = m[:, :-1], m[:, 1:]
+        left, right, both = _misfit(a), _misfit(b), _misfit(_joined(a, b))
+        shorter = np.minimum(a[0], b[0])
+        memory = np.maximum(1.0, (left + right) / np.maximum(a[0] + b[0] - 4, 1))
+        speed = np.maximum(np.abs(a[3]), np.abs(b[3]))
+        # a step s under one line leaves s/4 rms: a quarter of the resolution is the limit
+        small = (resolution * speed / 4) ** 2 / (noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60)
+        cost = (both - left - right) / np.maximum(WORSE * memory, shorter * small)
+        if not (cost < 1).any():
+            break
+        ahead = np.concatenate([[np.inf], cost[:-1]])
+        after = np.concatenate([cost[1:], [np.inf]])
+        merge = np.flatnonzero((cost < 1) & (cost <= ahead) & (cost < after))
+        if merge.size == 0:
+            merge = np.array([int(np.argmin(cost))])
+        m[:, merge] = _joined(m[:, merge], m[:, merge + 1])
+        m = np.delete(m, merge + 1, axis=1)
+        starts = np.delete(starts, merge + 1)
+    last = np.append(starts[1:], time.size)
+    duration = time[last - 1] - time[starts]
+    duration = duration * m[0] / np.maximum(m[0] - 1, 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = np.where(m[4] > 0, m[5] / m[4], 0.0)
+        scatter = np.maximum(1.0, _misfit(m) / np.maximum(m[0] - 2, 1))
+        slope_error = np.where(m[4] > 0, np.sqrt(scatter / m[4]), 0.0)
+    return Pieces(
+        starts, last, m[3], slope * duration, slope_error * duration, np.sqrt(scatter / m[1])
+    )

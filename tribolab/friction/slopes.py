@@ -1,0 +1,85 @@
+"""Velocity from a position record: robust slopes over blocks, because pointwise dx/dt is useless."""
+
+from __future__ import annotations
+
+import numpy as np
+
+WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
+FEWEST = 8  # samples in a block
+
+
+def position_noise(time: np.ndarray, position: np.ndarray) -> float:
+    """Standard deviation of the position readings [m], from their distance to the chord of both
+    neighbours, which a constant speed leaves at zero.
+    """
+    if time.size < 3:
+        return 0.0
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    chord = position[:-2] + share * (position[2:] - position[:-2])
+    size = np.sqrt(1 + share**2 + (1 - share) ** 2)
+    return float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+
+
+def block_slopes(time: np.ndarray, position: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mean time and least-squares slope of each block of `size` samples."""
+    count = time.size // size
+    t = time[: count * size].reshape(count, size)
+    x = position[: count * size].reshape(count, size)
+    middle = t.mean(axis=1, keepdims=True)
+    t, x = t - middle, x - x.mean(axis=1, keepdims=True)
+    slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)
+    # one reweighting: readings that stand off (a stale or a wild one) are left out
+    rest = x - slope[:, None] * t
+    limit = 4 * np.median(np.abs(rest), axis=1, keepdims=True) / 0.6745
+    weight = (np.abs(rest) <= np.maximum(limit, 1e-300)).astype(float)
+    total = weight.sum(axis=1, keepdims=True)
+    t = t - (weight * t).sum(axis=1, keepdims=True) / np.maximum(total, 1)
+    spread = (weight * t * t).sum(axis=1)
+    good = spread > 0
+    better = (weight * t * x).sum(axis=1) / np.where(good, spread, 1.0)
+    return middle[:, 0], np.where(good, better, slope)
+
+
+def velocity_blocks(
+    time: np.ndarray, position: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Velocity on blocks just long enough for a slope good to a few percent.
+
+    Parameters
+    ----------
+    time, position
+        Finite samples [s], [m].
+
+    Returns
+    -------
+    tuple
+        Mean time of each block [s], velocity [m/s], and samples in a block.
+    """
+    noise = position_noise(time, position)
+    size = FEWEST
+    while size * 32 <= time.size:
+        t, v = block_slopes(time, position, size)
+        moving = np.abs(v) > 0.2 * np.quantile(np.abs(v), 0.9)
+        if not moving.any():
+            break
+        spacing = np.median(np.diff(t)[moving[1:]]) / size if moving[1:].any() else np.diff(t).mean() / size
+        error = noise * np.sqrt(12 / size) / (size * spacing)
+        if error <= WANTED_ERROR * np.median(np.abs(v[moving])):
+            break
+        size *= 2
+    return (*block_slopes(time, position, size), size)
+
+
+def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
+    """Offset and slope of the straight line through a stretch, single wild readings left out."""
+    t0 = time.mean()
+    keep = np.ones(time.size, dtype=bool)
+    offset = slope = 0.0
+    for _ in range(3):
+        slope, offset = np.polyfit(time[keep] - t0, position[keep], 1)
+        rest = np.abs(position - offset - slope * (time - t0))
+        limit = 4 * np.median(rest[keep]) / 0.6745
+        if limit == 0:
+            break
+        keep = rest <= limit
+    return float(offset - slope * t0), float(slope)

@@ -1,0 +1,128 @@
+"""Dialects: descriptions of instruments' raw files as TOML, found by name or by content."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tribolab.errors import ConfigError, ReadError, nearest
+from tribolab.io.dialect_model import Dialect
+from tribolab.io.schema_folder import schema_folder
+
+__all__ = ["Dialect", "json_schema", "known_dialects", "load_dialect", "recognise"]
+
+
+def known_dialects() -> dict[str, Path]:
+    """Names of the instruments that are described, and the TOML file of each.
+
+    Examples
+    --------
+    >>> "linear_slider" in known_dialects()
+    True
+    """
+    return {path.stem: path for path in sorted((schema_folder() / "instruments").glob("*.toml"))}
+
+
+def load_dialect(name_or_path: str | Path) -> Dialect:
+    """Return the dialect of a known instrument, or of a TOML file of your own.
+
+    Parameters
+    ----------
+    name_or_path
+        Name of a known instrument, or path of a TOML file.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such dialect, or it says something that cannot be.
+
+    Examples
+    --------
+    >>> load_dialect("linear_slider").text.delimiter
+    ','
+    """
+    known = known_dialects()
+    if str(name_or_path) in known:
+        return _load(known[str(name_or_path)])
+    path = Path(name_or_path)
+    if path.suffix == ".toml":
+        if not path.is_file():
+            raise ConfigError(f"{path}: there is no such dialect file")
+        return _parse(path)
+    raise ConfigError(
+        f"no instrument is called '{name_or_path}'{nearest(str(name_or_path), known)}; "
+        "a description of your own is given by its path, ending in .toml"
+    )
+
+
+def recognise(path: str | Path) -> Dialect:
+    """Tell from a file's content which known instrument wrote it.
+
+    Raises
+    ------
+    ReadError
+        If no dialect fits, or more than one; the message names the candidates and the option
+        ``instrument=``.
+    """
+    from tribolab.io.recognise import mismatch
+    from tribolab.io.signature import peek
+
+    file = peek(path)
+    every = [load_dialect(name) for name in known_dialects()]
+    fitting = [dialect for dialect in every if mismatch(file, dialect) is None]
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        names = ", ".join(repr(dialect.name) for dialect in fitting)
+        raise ReadError(
+            f"{file.path}: more than one instrument fits: {names}; say which with instrument="
+        )
+    same_format = ", ".join(d.name for d in every if d.format == file.format)
+    raise ReadError(
+        f"{file.path}: no known instrument writes such a file ({file.format}); say which with "
+        f"instrument=, one of {same_format or 'none of this format'}, or the path of a TOML "
+        "description of your own (see raw_data_schema/README.md)"
+    )
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a dialect file, for editors and other programs."""
+    schema = Dialect.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+@functools.lru_cache(maxsize=64)
+def _load(path: Path) -> Dialect:
+    return _parse(path)
+
+
+def _parse(path: Path) -> Dialect:
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ConfigError(f"{path}: the dialect cannot be read: {error}") from error
+    try:
+        return Dialect.model_validate(content)
+    except ValidationError as error:
+        raise ConfigError(f"{path}: " + "; ".join(_explain(e) for e in error.errors())) from error
+
+
+def _explain(problem: Any) -> str:
+    where = ".".join(str(part) for part in problem["loc"])
+    if problem["type"] != "extra_forbidden":
+        return f"{where}: {problem['msg'].removeprefix('Value error, ')}".removeprefix(": ")
+    model = _model_at(problem["loc"][:-1])
+    word = str(problem["loc"][-1])
+    return f"{where}: there is no such key{nearest(word, model)}"
+
+
+def _model_at(loc: tuple[str | int, ...]) -> list[str]:
+    """Names of the keys that are allowed at a place of the dialect."""
+    from tribolab.io import dialect_model
+
+    name = next((str(part) for part in reversed(loc) if isinstance(part, str)), "dialect")
+    return list(getattr(dialect_model, name.capitalize()).model_fields)

@@ -1,0 +1,167 @@
+"""Results as netCDF: attributes that netCDF refuses are encoded here, and only here."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError, TribolabError
+
+CHUNK = 65_536  # samples; a default chunk would be the whole array
+_COMPRESSION = 2
+_MARK, _TUPLE = "json:", "json-tuple:"
+
+
+def write_netcdf(
+    data: xr.Dataset,
+    path: str | Path,
+    group: str | None = None,
+    mode: Literal["w", "a"] | None = None,
+) -> Path:
+    """Write a dataset, losing nothing: values, types, flags and attributes come back the same.
+
+    Parameters
+    ----------
+    data
+        The dataset.
+    path
+        The file.
+    group
+        Group in the file; several datasets can so share one file.
+    mode
+        ``"w"`` writes a new file, ``"a"`` adds to it; by default a group is added to a file that
+        is there, and a dataset without a group starts a new one.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    TribolabError
+        If the file cannot be written.
+
+    Notes
+    -----
+    Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
+    dicts and lists among the attributes become JSON text behind the mark ``json:``.
+    """
+    path = Path(path)
+    mode = mode or ("a" if group and path.exists() else "w")
+    encoded = data.copy()
+    encoded.attrs = _encoded(data.attrs)
+    encoding = {}
+    for name in encoded.variables:
+        variable = encoded[name]
+        variable.attrs = _encoded(data[name].attrs)
+        variable.encoding = {}
+        encoding[name] = _storage(variable)
+    try:
+        encoded.to_netcdf(path, mode=mode, group=group, encoding=encoding, engine="netcdf4")
+    except (OSError, ValueError, TypeError) as error:
+        raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
+    return path
+
+
+def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
+    """Read a dataset that `write_netcdf` wrote, into memory.
+
+    Parameters
+    ----------
+    path
+        The file.
+    group
+        Group in the file. ``"run?"`` takes the group ``run`` if the file has one, else its root.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file or group, or the file is no netCDF.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ReadError(f"{path}: there is no such file")
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            groups = list(file.groups)
+        if group == "run?":
+            group = "run" if "run" in groups else None
+        if group is not None and group not in groups:
+            raise ReadError(
+                f"{path}: there is no group '{group}'; there are {', '.join(groups) or 'none'}"
+            )
+        with xr.open_dataset(
+            path, group=group, engine="netcdf4", decode_times=False, mask_and_scale=False
+        ) as opened:
+            data = opened.load()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise ReadError(f"{path}: this is not a netCDF file that can be read: {error}") from error
+    data.attrs = _decoded(data.attrs)
+    for name in data.variables:
+        data[name].attrs = _decoded(data[name].attrs)
+        data[name].encoding = {}
+    data.encoding = {}
+    return data
+
+
+def _storage(variable: xr.DataArray) -> dict[str, Any]:
+    storage: dict[str, Any] = {}
+    if variable.dtype.kind in "fiu":
+        storage["_FillValue"] = None
+        if variable.ndim and variable.size > 1024:
+            chunks = tuple(min(length, CHUNK) for length in variable.shape)
+            storage |= {
+                "zlib": True,
+                "shuffle": True,
+                "complevel": _COMPRESSION,
+                "chunksizes": chunks,
+            }
+    return storage
+
+
+def _encoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+    return {str(name): _encode(value) for name, value in attrs.items()}
+
+
+def _encode(value: Any) -> Any:
+    if isinstance(value, str):
+        # text that happens to begin with the mark must come back as text
+        return _MARK + json.dumps(value) if value.startswith((_MARK, _TUPLE)) else value
+    if isinstance(value, np.bool_):
+        value = bool(value)
+    if isinstance(value, np.ndarray | np.generic):
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    mark = _TUPLE if isinstance(value, tuple) else _MARK
+    return mark + json.dumps(value, ensure_ascii=False, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    return str(value)
+
+
+def _decoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+    return {str(name): _decode(value) for name, value in attrs.items()}
+
+
+def _decode(value: Any) -> Any:
+    if isinstance(value, str) and value.startswith(_TUPLE):
+        return tuple(json.loads(value.removeprefix(_TUPLE)))
+    if isinstance(value, str):
+        return json.loads(value.removeprefix(_MARK)) if value.startswith(_MARK) else value
+    if isinstance(value, np.integer):
+        return int(value)
+    if isinstance(value, np.floating):
+        return float(value)
+    return value

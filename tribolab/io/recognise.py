@@ -1,0 +1,90 @@
+"""Does a file's content fit a dialect? Every rule that the dialect states has to hold."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.io.dialect_model import Dialect, Recognise
+from tribolab.io.headers import find_tables, split_row
+from tribolab.io.signature import File
+
+_ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
+_LINKED = 0.999  # correlation of the same signal in volts and in its unit
+
+
+def mismatch(file: File, dialect: Dialect) -> str | None:
+    """Why a file cannot be this instrument's, or None if it can.
+
+    Parameters
+    ----------
+    file
+        The file, looked at by `tribolab.io.signature.peek`.
+    dialect
+        The dialect in question.
+    """
+    rules = dialect.recognise
+    if dialect.format != file.format:
+        return f"it is {file.format}, not {dialect.format}"
+    if rules == Recognise():
+        return "the dialect has no rules to recognise it by"
+    if rules.file_name and not re.search(rules.file_name, file.path.name):
+        return "its name does not fit"
+    if dialect.format == "mat":
+        from tribolab.io.mat import variable_names
+
+        return _names_missing(rules, variable_names(file.path))
+    if dialect.format == "tdms":
+        from tribolab.io.tdms import channel_names
+
+        return _names_missing(rules, channel_names(file.path))
+    return _text_mismatch(file, dialect)
+
+
+def _names_missing(rules: Recognise, names: set[str]) -> str | None:
+    missing = [name for name in rules.header if name not in names]
+    return f"it has no '{missing[0]}'" if missing else None
+
+
+def _text_mismatch(file: File, dialect: Dialect) -> str | None:
+    rules = dialect.recognise
+    encoding = "utf-16" if file.head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
+    text = file.head[: 1 << 16].decode(encoding, errors="replace").replace("\r\n", "\n")
+    text = text.removeprefix("\ufeff")
+    for pattern in rules.preamble:
+        if not re.search(pattern, text, re.MULTILINE):
+            return f"nothing in it matches '{pattern}'"
+    try:
+        raw = find_tables(file, dialect)
+    except ReadError as error:
+        # a file that is otherwise this instrument's is recognised, so that the error is told
+        return None if rules.preamble else str(error)
+    names = {
+        f"{name} [{unit}]" if unit else name
+        for name, unit in zip(raw.tables[0].names, raw.tables[0].units, strict=True)
+    } | set(raw.tables[0].names)
+    wanted = _names_missing(rules, names)
+    if wanted:
+        return wanted
+    if rules.columns is not None:
+        return _numbers_mismatch(text, dialect)
+    return None
+
+
+def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
+    """Check a table without a header by the number and the kinship of its columns."""
+    lines = [line for line in text.splitlines()[:-1][:_ROWS] if line.strip()]
+    rows = [split_row(line, dialect.text.delimiter) for line in lines]
+    if not rows or any(len(row) != dialect.recognise.columns for row in rows):
+        return f"it does not have {dialect.recognise.columns} columns"
+    try:
+        numbers = np.array(rows, dtype=float)
+    except ValueError:
+        return "it is not all numbers"
+    for one, other in dialect.recognise.linked:
+        a, b = numbers[:, one - 1], numbers[:, other - 1]
+        if np.ptp(a) == 0 or np.ptp(b) == 0 or abs(np.corrcoef(a, b)[0, 1]) < _LINKED:
+            return f"columns {one} and {other} are not the same signal"
+    return None

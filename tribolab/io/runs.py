@@ -1,0 +1,374 @@
+"""Read a run: one raw file, the two logs of a run, or the files of its cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from xarray.indexes import PandasIndex
+
+from tribolab.errors import ReadError
+from tribolab.io.clock import join_clocks, kept_rows, set_time
+from tribolab.io.dialects import Dialect, known_dialects, load_dialect, recognise
+from tribolab.io.pieces import Content, read_content
+from tribolab.io.signature import peek
+from tribolab.io.values import single_values, step_values
+from tribolab.provenance import CONVENTIONS, history_line
+from tribolab.quantities import stamp
+from tribolab.units import to_si
+
+PathLike = str | Path
+
+
+def read(
+    path: PathLike | Sequence[PathLike],
+    instrument: str | Path | None = None,
+    *,
+    pair: bool = True,
+    clock_shift: str | float | None = None,
+) -> xr.Dataset:
+    r"""Read one run from its raw file or files.
+
+    Parameters
+    ----------
+    path
+        A raw file (text, MAT, TDMS, or a run that tribolab wrote as netCDF); or a list: the two
+        logs of a run, or the files of consecutive cycles, in any order if they say when they start.
+    instrument
+        Name of a known instrument, or path of a TOML description of your own. Without it the
+        instrument is recognised by the file's content.
+    pair
+        Also read the companion log, if the instrument writes one and it lies beside the file.
+    clock_shift
+        What has to be added to the companion's clock to get this log's clock [s]; estimated from
+        the signals when not given.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dim ``time`` [s] from the first sample, strictly increasing; the quantities that the
+        instrument records, in SI; what stands outside the table as attributes, with the unit in
+        the name. Raw time is ``time + time_origin_s``.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read; the message says what, where and how to mend it.
+    ConfigError
+        If there is no such instrument.
+
+    Notes
+    -----
+    Time has to increase strictly; what is done where it does not is stated in
+    `tribolab.io.clock`. Single values that are missing are NaN. An optional column without a
+    value is left out and named in ``columns_not_used``.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> file = folder / "sb-r_dry_31N_01_force.csv"
+    >>> head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    >>> _ = file.write_text(head + "5.0,1.0,31.0\n5.1,2.0,31.0\n")
+    >>> run = read(file)
+    >>> run.friction_force.values.tolist(), run.attrs["time_origin_s"]
+    ([1.0, 2.0], 5.0)
+    """
+    paths = [Path(path)] if isinstance(path, str | Path) else [Path(p) for p in path]
+    if not paths:
+        raise ReadError("no file is given")
+    shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
+    if len(paths) == 1 and peek(paths[0]).format == "netcdf":
+        from tribolab.io.netcdf import read_netcdf
+
+        return read_netcdf(paths[0], group="run?")
+    dialects = _dialects(paths, instrument)
+    main, companions = _sorted_out(paths, dialects)
+    if pair and len(main) == 1 and not companions:
+        companions = _companion(*main[0])
+    run = _run(main)
+    if len(companions) > 1:
+        raise ReadError(f"{companions[0][0]}: more than one companion log is given")
+    if companions:
+        from tribolab.io.merge import merge
+
+        return merge(run, _run(companions), shift)
+    dialect = main[0][1]
+    if pair and dialect.pair is not None:
+        wanted = _companion_path(main[0][0], dialect)
+        run.attrs["companion_missing"] = wanted.name if wanted else f"*{dialect.pair.other}.*"
+    return run
+
+
+def group_files(
+    paths: Iterable[PathLike], instrument: str | Path | None = None
+) -> list[list[Path]]:
+    """Put the files of each run together: two logs where the instrument writes two, else one.
+
+    Parameters
+    ----------
+    paths
+        Raw files, in any order.
+    instrument
+        The instrument; without it the naming rules of all known instruments are tried.
+
+    Returns
+    -------
+    list of list of Path
+        One list for each run, in the order of their first file; this instrument's main log comes
+        first. A file without its companion stands alone.
+
+    Examples
+    --------
+    >>> files = ["a_31N_01_force.csv", "a_31N_01_motion.csv", "b.csv"]
+    >>> [[path.name for path in group] for group in group_files(files)]
+    [['a_31N_01_force.csv', 'a_31N_01_motion.csv'], ['b.csv']]
+    """
+    every = [load_dialect(instrument)] if instrument else map(load_dialect, known_dialects())
+    rules = [dialect for dialect in every if dialect.pair is not None]
+    files = list(dict.fromkeys(Path(path) for path in paths))
+    present = set(files)
+    partner: dict[Path, Path] = {}
+    for file in files:
+        for dialect in rules:
+            other = _companion_path(file, dialect)
+            if other in present:
+                partner[file] = other
+    taken = set(partner.values())
+    groups = {file: [file, partner[file]] if file in partner else [file] for file in files}
+    first = {companion: main for main, companion in partner.items()}
+    order = dict.fromkeys(first.get(file, file) for file in files)
+    return [groups[file] for file in order if file not in taken]
+
+
+def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, Any]:
+    """Say what was understood of one raw file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    instrument
+        As for `read`.
+
+    Returns
+    -------
+    dict
+        ``file``, ``instrument``, ``title``, ``columns`` (quantity -> label, unit, minimum and
+        maximum in SI), ``not_used``, ``rows``, ``duration_s``, ``interval_s`` (median),
+        ``longest_interval_s``, ``steps`` and ``metadata``.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read.
+    """
+    run = read(path, instrument, pair=False)
+    time = run["time"].to_numpy()
+    gaps = np.diff(time)
+    labels = run.attrs.get("columns_used", {})
+    columns = {
+        str(name): {
+            "label": labels.get(str(name), ""),
+            "unit": run[name].attrs.get("units", ""),
+            "minimum": float(run[name].min()),
+            "maximum": float(run[name].max()),
+        }
+        for name in run.data_vars
+        if run[name].dtype.kind in "fiu"
+    }
+    name = str(run.attrs.get("instrument", ""))
+    known = known_dialects()
+    title = load_dialect(instrument or name).title if instrument or name in known else ""
+    known_attrs = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+    known_attrs |= {"columns_not_used", "columns_used", "instrument"}
+    unused = str(run.attrs.get("columns_not_used", ""))
+    return {
+        "file": str(path),
+        "instrument": name,
+        "title": title,
+        "columns": columns,
+        "not_used": unused.split("; ") if unused else [],
+        "rows": len(time),
+        "duration_s": float(time[-1]) if len(time) else 0.0,
+        "interval_s": float(np.median(gaps)) if len(gaps) else None,
+        "longest_interval_s": float(gaps.max()) if len(gaps) else None,
+        "steps": int(np.unique(run["step"]).size) if "step" in run else None,
+        "metadata": {k: v for k, v in run.attrs.items() if k not in known_attrs},
+    }
+
+
+def _dialects(paths: list[Path], instrument: str | Path | None) -> list[Dialect]:
+    """Dialect of each file; a companion log has its own, told by the ending of its name."""
+    if instrument is None:
+        return [recognise(path) for path in paths]
+    dialect = load_dialect(instrument)
+    rule = dialect.pair
+    return [
+        load_dialect(rule.instrument) if rule and path.stem.endswith(rule.other) else dialect
+        for path in paths
+    ]
+
+
+Logs = list[tuple[Path, Dialect]]
+
+
+def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[Logs, Logs]:
+    """Separate main logs from companions."""
+    logs = list(zip(paths, dialects, strict=True))
+    second = {dialect.pair.instrument for dialect in dialects if dialect.pair}
+    main = [log for log in logs if log[1].name not in second]
+    companions = [log for log in logs if log[1].name in second]
+    names = {dialect.name for _, dialect in main}
+    if len(names) > 1:
+        raise ReadError(
+            f"{paths[0]}: the files of one run come from different instruments: "
+            f"{', '.join(sorted(names))}; read them one by one"
+        )
+    return main, companions
+
+
+def _companion_path(path: Path, dialect: Dialect) -> Path | None:
+    rule = dialect.pair
+    if rule is None or not path.stem.endswith(rule.own):
+        return None
+    return path.with_name(path.stem.removesuffix(rule.own) + rule.other + path.suffix)
+
+
+def _companion(path: Path, dialect: Dialect) -> Logs:
+    """Return the companion log, if the instrument writes one and it lies beside the file."""
+    other = _companion_path(path, dialect)
+    if other is None or dialect.pair is None or not other.is_file():
+        return []
+    return [(other, load_dialect(dialect.pair.instrument))]
+
+
+def _run(logs: Logs) -> xr.Dataset:
+    """Make one run of the files of one instrument."""
+    dialect = logs[0][1]
+    contents = [read_content(path, dialect) for path, _ in logs]
+    for content in contents:
+        set_time(content, dialect)
+    if all(content.pieces[0].started for content in contents):
+        contents.sort(key=lambda content: content.pieces[0].started)
+    join_clocks(contents, dialect)
+    columns = _columns(contents, dialect)
+    more, step_attrs = step_values(contents, dialect)
+    columns |= more
+    attrs = single_values(contents[0], dialect) | step_attrs
+    where = "; ".join(str(content.path) for content in contents)
+    keep = kept_rows(columns["time"], where, dialect)
+    left_out = sum(content.rows_left_out for content in contents)
+    if keep is not None:
+        left_out += int((~keep).sum())
+        columns = {name: values[keep] for name, values in columns.items()}
+    time = columns.pop("time")
+    origin = float(time[0])
+    time -= origin
+    _add_speed(columns, attrs, time, where, dialect)
+    _check_normal_force(columns, contents[0], where, dialect)
+    attrs |= _attributes(contents, dialect, origin, left_out)
+    data = xr.Dataset(
+        {name: ("time", values) for name, values in columns.items()},
+        coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),
+        attrs=attrs,
+    )
+    return stamp(data)
+
+
+def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]:
+    """Arrays of the whole run, with ``step`` and ``cycle`` where there are several."""
+    pieces = [piece for content in contents for piece in content.pieces]
+    lengths = [len(piece.columns["time"]) for piece in pieces]
+    names = dict.fromkeys(name for piece in pieces for name in piece.columns)
+    if len(pieces) == 1:
+        columns = dict(pieces[0].columns)
+    else:
+        columns = {
+            name: np.concatenate(
+                [
+                    piece.columns.get(name, np.full(length, np.nan))
+                    for piece, length in zip(pieces, lengths, strict=True)
+                ]
+            )
+            for name in names
+        }
+    if pieces[0].step is not None and "step" not in columns:
+        columns["step"] = np.repeat([piece.step for piece in pieces], lengths).astype(np.int32)
+    if len(contents) > 1:
+        numbers = [n for n, content in enumerate(contents, 1) for _ in content.pieces]
+        columns["cycle"] = np.repeat(numbers, lengths).astype(np.int32)
+    return columns
+
+
+def _add_speed(
+    columns: dict[str, np.ndarray],
+    attrs: dict[str, Any],
+    time: np.ndarray,
+    where: str,
+    dialect: Dialect,
+) -> None:
+    """Speed from rotation and radius, or the set-point; nothing is invented."""
+    speed = dialect.speed
+    if speed.source == "rotation":
+        radius = to_si(speed.radius, "m", "speed.radius") if speed.radius else None
+        radius = radius if radius is not None else attrs.get(f"{speed.radius_value}_m")
+        if radius is None or "rotation_speed" not in columns:
+            raise ReadError(
+                f"{where}: the speed should follow from rotation_speed and a radius, but "
+                f"{'the radius' if radius is None else 'the column rotation_speed'} is missing "
+                f"(instrument '{dialect.name}', [speed])"
+            )
+        columns["sliding_velocity"] = columns["rotation_speed"] * float(radius)
+    elif speed.source == "set speed" and "set_speed" not in columns and "set_speed_m_s" in attrs:
+        columns["set_speed"] = np.full(len(time), float(attrs["set_speed_m_s"]))
+
+
+def _check_normal_force(
+    columns: dict[str, np.ndarray], content: Content, where: str, dialect: Dialect
+) -> None:
+    force = columns.get("normal_force")
+    if force is None or np.nanmax(force) > 0:
+        return
+    raise ReadError(
+        f"{where}: the normal force ('{content.labels['normal_force']}') is nowhere above zero "
+        f"(greatest {np.nanmax(force):.4g} N); if the instrument counts pressing as negative, say "
+        f"sign = -1 for the column in the dialect '{dialect.name}'"
+    )
+
+
+def _attributes(
+    contents: list[Content], dialect: Dialect, origin: float, left_out: int
+) -> dict[str, Any]:
+    """Provenance, and what else the run should know of its files."""
+    from tribolab import __version__
+
+    labels = {name: label for content in contents for name, label in content.labels.items()}
+    unused = dict.fromkeys(name for content in contents for name in content.not_used)
+    attrs: dict[str, Any] = {
+        "source": "; ".join(content.path.name for content in contents),
+        "source_sha256": "; ".join(content.sha256 for content in contents),
+        "tribolab_version": __version__,
+        "history": history_line(f"read as {dialect.name}"),
+        "Conventions": CONVENTIONS,
+        "instrument": dialect.name,
+        "columns_used": labels,
+        "columns_not_used": "; ".join(unused),
+        "time_origin_s": origin,
+        "time_source": {"column": "recorded", "rate": "sample rate", "none": "row number"}[
+            dialect.time.source
+        ],
+        "speed_from": dialect.speed.source,
+    }
+    moment = contents[0].pieces[0].started
+    if moment is not None:
+        attrs["recorded_at"] = moment.isoformat()
+    if left_out:
+        attrs["rows_left_out"] = left_out
+    for content in contents:
+        attrs.update(content.notes)
+    return attrs

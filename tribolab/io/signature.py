@@ -1,0 +1,70 @@
+"""The first look at a file: is it there, is it text, and if not, which binary format."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import ReadError
+
+HEAD = 1 << 20  # bytes looked at for preamble and header
+
+_MAGIC = {
+    b"MATLAB 5.0": "mat",
+    b"TDSm": "tdms",
+    b"\x89HDF\r\n\x1a\n": "netcdf",
+    b"CDF\x01": "netcdf",
+    b"CDF\x02": "netcdf",
+}
+_FOREIGN = {
+    b"PK\x03\x04": "a zip or Office file; export the table as text (csv)",
+    b"\xd0\xcf\x11\xe0": "an old Office file; export the table as text (csv)",
+    b"\x1f\x8b": "compressed (gzip); unpack it first",
+    b"%PDF": "a PDF",
+}
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+class File(NamedTuple):
+    """A file that can be read: where, of which format, how long, and its first bytes."""
+
+    path: Path
+    format: str
+    size: int
+    head: bytes
+
+
+def peek(path: str | Path) -> File:
+    """Look at the start of a file.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it is no file, is empty, or is of a format that cannot be read.
+    """
+    path = Path(path)
+    try:
+        if path.exists() and not path.is_file():
+            raise ReadError(f"{path}: this is not a file; name the raw file itself")
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+            size = file.seek(0, 2)
+    except FileNotFoundError as error:
+        raise ReadError(f"{path}: there is no such file (any more)") from error
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        raise ReadError(f"{path}: the file cannot be opened: {error}") from error
+    if not head.strip(b"\xef\xbb\xbf \t\r\n"):
+        raise ReadError(f"{path}: the file is empty")
+    return File(path, _format(path, head), size, head)
+
+
+def _format(path: Path, head: bytes) -> str:
+    for magic, name in _MAGIC.items():
+        if head.startswith(magic):
+            return name
+    for magic, name in _FOREIGN.items():
+        if head.startswith(magic):
+            raise ReadError(f"{path}: this is {name}")
+    if b"\0" in head and not head.startswith(_UTF16):
+        raise ReadError(f"{path}: this is neither text nor a binary format that is known")
+    return "text"

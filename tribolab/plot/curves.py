@@ -1,0 +1,289 @@
+"""Friction over speed: measured Stribeck curves, with or without a model, and half loops."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from tribolab.errors import AnalysisError
+from tribolab.plot.labels import column, force_text, label, plain
+from tribolab.plot.style import (
+    GREY,
+    SINGLE_MM,
+    PaperFigure,
+    SurfaceStyle,
+    margins,
+    new_figure,
+    paper_style,
+    shade,
+    surface_styles,
+)
+
+_LOAD_MARKERS = "os^DvP<X"
+_DRY = {"dry", "none", "air"}
+Curves = xr.Dataset | Sequence[xr.Dataset] | None
+
+
+def stribeck(
+    measured: Curves = None,
+    model: Curves = None,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+) -> PaperFigure:
+    """Draw friction coefficients over the logarithm of the sliding speed.
+
+    Parameters
+    ----------
+    measured
+        One or several measured curves (sliding_speed) or friction results (segment). The
+        attributes ``surface``, ``medium`` and ``normal_force_N`` say what belongs together.
+    model
+        One or several calculated curves (sliding_speed), drawn as lines in the colour of the
+        measured curve with the same surface.
+    surfaces
+        All surfaces of the study in their order, so that each keeps its colour from figure to
+        figure.
+    title
+        Text above the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Marker: mean. Wide pale bar: standard deviation of the friction coefficient while sliding
+        (the error bar of the reference paper). Narrow bar with caps: standard error of the mean.
+        Dry contacts have open markers and dashed lines. Where no speed is known, the segments
+        are numbered instead; where no load is known, the friction force is drawn.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no finite point to draw.
+    """
+    curves, models = _listed(measured), _listed(model)
+    name = _quantity(curves + models)
+    numbered = not any(_has_speed(curve) for curve in curves + models)
+    every = [_attribute(curve, "surface") for curve in curves + models]
+    styles = surface_styles([*surfaces, *every])
+    loads = sorted({_load(c) for c in curves + models if np.isfinite(_load(c))})
+    with paper_style():
+        figure = new_figure(SINGLE_MM, 60.0)
+        axes = figure.add_subplot()
+        drawn = 0
+        for curve in curves:
+            look = _look(curve, styles, loads, len(set(every)))
+            text = _label(curve, curves + models)
+            drawn += _points(figure, axes, curve, name, numbered, look, text, bool(models))
+        for curve in models:
+            look = _look(curve, styles, loads, len(set(every)))
+            words = _label(curve, curves + models)
+            drawn += _line(figure, axes, curve, name, look, f"model {words}".strip())
+        if not drawn:
+            raise AnalysisError(
+                f"there is nothing to draw: no curve has a finite {name.replace('_', ' ')}"
+            )
+        _scales(axes, name, numbered)
+        _frame(figure, axes, title)
+    return figure
+
+
+def _listed(curves: Curves) -> list[xr.Dataset]:
+    if curves is None:
+        return []
+    return [curves] if isinstance(curves, xr.Dataset) else list(curves)
+
+
+def _quantity(curves: list[xr.Dataset]) -> str:
+    for name in ("friction_coefficient", "half_loop", "friction_force"):
+        if any(name in c and np.isfinite(np.asarray(c[name], float)).any() for c in curves):
+            return name
+    return "friction_coefficient"
+
+
+def _has_speed(curve: xr.Dataset) -> bool:
+    return "sliding_speed" in curve.variables and bool(
+        (np.asarray(curve["sliding_speed"], float) > 0).any()
+    )
+
+
+def _attribute(curve: xr.Dataset, name: str) -> str:
+    return str(curve.attrs.get(name, ""))
+
+
+def _load(curve: xr.Dataset) -> float:
+    try:
+        return float(curve.attrs.get("normal_force_N", np.nan))
+    except (TypeError, ValueError):
+        return float("nan")
+
+
+def is_dry(medium: str) -> bool:
+    """Whether a medium's name means that there is no fluid.
+
+    Examples
+    --------
+    >>> is_dry("Dry"), is_dry("glycerol")
+    (True, False)
+    """
+    return medium.strip().lower() in _DRY
+
+
+def _look(
+    curve: xr.Dataset, styles: dict[str, SurfaceStyle], loads: list[float], surfaces: int
+) -> dict:
+    own = styles[_attribute(curve, "surface")]
+    rank = loads.index(_load(curve)) if _load(curve) in loads else 0
+    colour = shade(own.colour, rank, len(loads))
+    by_load = surfaces == 1 and len(loads) > 1
+    marker = _LOAD_MARKERS[rank % len(_LOAD_MARKERS)] if by_load else own.marker
+    return {"color": colour, "marker": marker, "dry": is_dry(_attribute(curve, "medium"))}
+
+
+def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
+    """Say what sets this curve apart from the others in the figure."""
+    words = []
+    for name in ("surface", "medium"):
+        if len({_attribute(c, name) for c in curves}) > 1 and _attribute(curve, name):
+            words.append(plain(_attribute(curve, name)))
+    if len({str(_load(c)) for c in curves}) > 1:
+        words.append(force_text(_load(curve)))
+    return ", ".join(words)
+
+
+def _points(figure, axes: Axes, curve, name, numbered, look, text, with_model) -> int:
+    if name not in curve:
+        return 0
+    y = np.atleast_1d(np.asarray(curve[name], float))
+    x = np.arange(1.0, y.size + 1) if numbered else np.asarray(curve["sliding_speed"], float)
+    x = np.atleast_1d(x)
+    std, sem = (
+        np.atleast_1d(np.asarray(curve[name + end], float)) if name + end in curve else y * np.nan
+        for end in ("_std", "_sem")
+    )
+    fine = np.isfinite(y) & (np.ones_like(x, bool) if numbered else np.nan_to_num(x) > 0)
+    if not fine.any():
+        return 0
+    order = np.argsort(x[fine], kind="stable")
+    x, y, std, sem = (a[fine][order] for a in (x, y, std, sem))
+    colour, dry = look["color"], look["dry"]
+    for spread, width, alpha, cap in ((std, 2.4, 0.28, 0), (sem, 0.8, 1.0, 1.8)):
+        there = np.isfinite(spread)
+        if there.any():
+            axes.errorbar(
+                x[there], y[there], spread[there], fmt="none", ecolor=colour, elinewidth=width,
+                alpha=alpha, capsize=cap, capthick=0.8, zorder=2 + alpha,
+            )  # fmt: skip
+    joined = not with_model and not numbered and np.unique(x).size == x.size
+    axes.plot(
+        x, y, color=colour, marker=look["marker"], markersize=4.2, markeredgewidth=0.9,
+        markerfacecolor="white" if dry else colour, markeredgecolor=colour,
+        linestyle=("--" if dry else "-") if joined else "none", linewidth=0.7,
+        label=text or "_nolegend_", zorder=4,
+    )  # fmt: skip
+    where = "segment" if numbered else column("sliding_speed")
+    numbers = {where: x, column(name): y, column(name + "_std"): std, column(name + "_sem"): sem}
+    figure.keep("curve", text or "measured", **numbers)
+    return int(fine.sum())
+
+
+def _line(figure, axes: Axes, curve, name, look, text) -> int:
+    if name not in curve or not _has_speed(curve):
+        return 0
+    x, y = (np.atleast_1d(np.asarray(curve[n], float)) for n in ("sliding_speed", name))
+    fine = np.isfinite(y) & (x > 0)
+    axes.plot(
+        x[fine], y[fine], color=look["color"], linestyle="--" if look["dry"] else "-",
+        linewidth=1.2, label=text, zorder=3,
+    )  # fmt: skip
+    figure.keep("curve", text, **{column("sliding_speed"): x[fine], column(name): y[fine]})
+    return int(fine.sum())
+
+
+def _scales(axes: Axes, name: str, numbered: bool) -> None:
+    if numbered:
+        axes.set_xlabel("number of the segment (speed unknown)")
+        axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+        low, high = axes.dataLim.intervalx
+        axes.set_xlim(low - 0.6, high + 0.6)
+    else:
+        low, high = axes.dataLim.intervalx
+        room = 1.8 if high / low > 3 else 10.0
+        axes.set_xscale("log")
+        axes.set_xlim(low / room, high * room)
+        axes.xaxis.set_major_locator(LogLocator(numticks=9))
+        axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel(label("sliding_speed"))
+    axes.set_ylabel(label(name, "half loop of the friction force" if name == "half_loop" else None))
+    low, high = axes.dataLim.intervaly
+    span = (high - low) or abs(high) or 1.0
+    axes.set_ylim(0.0 if low >= 0 else low - 0.08 * span, high + 0.08 * span)
+
+
+def _frame(figure: PaperFigure, axes: Axes, title: str) -> None:
+    """Put the legend above the axes, where it hides no point, and make room for it."""
+    handles, texts = axes.get_legend_handles_labels()
+    across = 3 if max(map(len, texts), default=0) < 14 else 2
+    rows = -(-len(texts) // across)
+    top = 2.5 + 3.8 * rows + (4.5 if title else 0)
+    height = 50.0 + top
+    figure.set_size_inches(SINGLE_MM / 25.4, height / 25.4)
+    margins(figure, 14, 3, 10.5, top)
+    if texts:
+        axes.legend(
+            handles, texts, loc="lower left", ncols=across,
+            bbox_to_anchor=(0, 1 + 0.8 / (height - top - 10.5)),
+        )  # fmt: skip
+    if title:
+        figure.text(14 / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
+
+
+def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
+    """Draw half the force difference of each pair of strokes: friction without the offset.
+
+    Parameters
+    ----------
+    friction
+        A friction result (segment) with `half_loop` and `pair`.
+    title
+        Text above the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A point per pair, in the order of the run, with their mean as a line.
+
+    Raises
+    ------
+    AnalysisError
+        If no stroke has a partner.
+    """
+    if "half_loop" not in friction or "pair" not in friction:
+        raise AnalysisError("the friction result has no 'half_loop' and 'pair', so no pairs")
+    pair = np.asarray(friction["pair"], int)
+    loop = np.asarray(friction["half_loop"], float)
+    numbers, first = np.unique(np.where(np.isfinite(loop), pair, -1), return_index=True)
+    first = first[numbers >= 0]
+    if not first.size:
+        raise AnalysisError("no stroke of this run has a partner, so there is no half loop to draw")
+    x, y = pair[first] + 1, loop[first]
+    with paper_style():
+        figure = new_figure(SINGLE_MM, 52.0)
+        axes = figure.add_subplot()
+        axes.plot(x, y, color="black", marker="o", linestyle="none", markersize=4)
+        axes.axhline(y.mean(), color=GREY, linewidth=0.8, zorder=1)
+        axes.set_xlabel("pair of strokes")
+        axes.set_ylabel("half loop of the\nfriction force (N)")
+        axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+        axes.set_xlim(x.min() - 0.6, x.max() + 0.6)
+        span = max(np.ptp(y), 0.1 * abs(y.mean())) or 1.0
+        axes.set_ylim(y.mean() - 1.2 * span, y.mean() + 1.2 * span)
+        margins(figure, 16, 3, 10.5, 6)
+        figure.keep("half loop", "pairs", pair=x, half_loop_N=y)
+        if title:
+            figure.text(16 / SINGLE_MM, 1 - 1.3 / 52, plain(title), va="top", fontsize=8)
+    return figure

@@ -1,0 +1,121 @@
+"""What the figures of a run draw: one signal, and how far each stroke has come."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+
+# Below this share of the load the ratio F_x/F_N is noise over nothing.
+_LOADED = 0.2
+
+
+class Signal(NamedTuple):
+    """Name of the quantity, its values (time), and what was removed, in words."""
+
+    name: str
+    values: np.ndarray
+    note: str
+
+
+def offset_of(friction: xr.Dataset | None, name: str) -> float:
+    """Return the offset that the analysis removed (median over the segments), 0 if none."""
+    if friction is None or name not in friction:
+        return 0.0
+    values = np.asarray(friction[name], float)
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if values.size else 0.0
+
+
+def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
+    """Return the friction coefficient over time, or the force where no load was recorded.
+
+    Parameters
+    ----------
+    run
+        A run (time).
+    friction
+        Its friction result; the offsets it removed are removed here too.
+
+    Returns
+    -------
+    Signal
+        The ratio is NaN where the contact is not loaded.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has neither a friction coefficient nor a friction force.
+    """
+    if "friction_force" in run and "normal_force" in run:
+        zero = offset_of(friction, "friction_force_offset")
+        load = np.asarray(run["normal_force"], float) - offset_of(friction, "normal_force_offset")
+        force = np.asarray(run["friction_force"], float) - zero
+        finite = load[np.isfinite(load)]
+        pressed = load > _LOADED * (np.percentile(finite, 95) if finite.size else np.inf)
+        pressed &= load > 0
+        ratio = np.divide(force, load, out=np.full(load.size, np.nan), where=pressed)
+        return Signal("friction_coefficient", ratio, "offset removed" if zero else "")
+    for name in ("friction_coefficient", "friction_force"):
+        if name in run:
+            zero = offset_of(friction, f"{name}_offset")
+            values = np.asarray(run[name], float) - zero
+            return Signal(name, values, "offset removed" if zero else "")
+    known = ", ".join(map(str, run.data_vars)) or "nothing"
+    raise AnalysisError(
+        "the run has neither 'friction_force' nor 'friction_coefficient', so there is no trace to "
+        f"draw; it has {known}"
+    )
+
+
+class Stroke(NamedTuple):
+    """One segment of a run: its samples, how far it has come, and where it was trimmed."""
+
+    number: int
+    samples: slice
+    distance: np.ndarray
+    trimmed: tuple[float, float]
+    speed: float
+    direction: int
+
+
+def strokes(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
+    """Return the samples of each segment with the distance slid since its start [m].
+
+    The distance comes from the position, else the speed, else (both unknown) it is the time
+    [s] since the start. It never decreases: what a noisy sensor goes back is not slid.
+    """
+    time = np.asarray(run["time"], float)
+    first = np.searchsorted(time, np.asarray(segments["start"], float), "left")
+    last = np.searchsorted(time, np.asarray(segments["stop"], float), "right")
+    inner = [np.asarray(segments[name], float) for name in ("trimmed_start", "trimmed_stop")]
+    speeds = np.asarray(segments["sliding_speed"], float)
+    directions = np.asarray(segments["direction"], int)
+    found = []
+    for k in range(segments.sizes["segment"]):
+        part = slice(int(first[k]), int(last[k]))
+        if part.stop - part.start < 2:
+            continue
+        way = _way(run, time, part, speeds[k])
+        ends = np.interp([inner[0][k], inner[1][k]], time[part], way)
+        found.append(
+            Stroke(k, part, way, (float(ends[0]), float(ends[1])), speeds[k], int(directions[k]))
+        )
+    return found
+
+
+def _way(run: xr.Dataset, time: np.ndarray, part: slice, speed: float) -> np.ndarray:
+    seconds = time[part] - time[part.start]
+    way = seconds * (speed if np.isfinite(speed) else 1.0)
+    if "position" in run:
+        position = np.asarray(run["position"][part], float)
+        if np.isfinite(position).all():
+            way = (position - position[0]) * np.sign(position[-1] - position[0] or 1.0)
+    elif "sliding_velocity" in run:
+        velocity = np.abs(np.asarray(run["sliding_velocity"][part], float))
+        if np.isfinite(velocity).all():
+            way = np.r_[0.0, np.cumsum((velocity[1:] + velocity[:-1]) / 2 * np.diff(seconds))]
+    return np.maximum.accumulate(np.maximum(way, 0.0))

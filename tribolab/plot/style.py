@@ -1,0 +1,281 @@
+"""The one look of all figures: sizes, fonts, colours, markers, and how a figure is saved."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+
+SINGLE_MM = 86.0
+DOUBLE_MM = 178.0
+
+# Okabe and Ito's palette: told apart by people with any of the common colour deficiencies.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#6B6B6B"
+
+# A stroke's direction is no surface, so it has colours that no surface has.
+FORWARD, BACKWARD, NEUTRAL = "#3A3A3A", ORANGE, GREY
+MEAN = "#C00000"
+
+_RC = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so every machine draws the same
+    "mathtext.fontset": "dejavusans",
+    "font.size": 7.5,
+    "axes.labelsize": 8,
+    "axes.titlesize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "legend.handlelength": 2.2,
+    "legend.columnspacing": 1.4,
+    "legend.handletextpad": 0.5,
+    "legend.borderaxespad": 0.0,
+    "axes.linewidth": 0.6,
+    "axes.formatter.useoffset": False,
+    "axes.unicode_minus": True,
+    "axes.edgecolor": "#222222",
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "lines.linewidth": 0.8,
+    "lines.markersize": 4,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "figure.dpi": 100,
+    # Letters as outlines: the figure looks the same wherever it is opened, with no font to fetch.
+    "svg.fonttype": "path",
+    "svg.hashsalt": "tribolab",
+    "path.simplify": True,
+}
+
+
+class SurfaceStyle(NamedTuple):
+    """Colour and marker that stand for a surface in every figure."""
+
+    colour: str
+    marker: str
+
+
+# The colours of the reference study: Smooth green, Sb-S blue, Sb-R red.
+_FIXED = {
+    "smooth": SurfaceStyle(GREEN, "o"),
+    "sb-s": SurfaceStyle(BLUE, "s"),
+    "sb-r": SurfaceStyle(VERMILLION, "^"),
+}
+_OTHERS = [
+    SurfaceStyle(PURPLE, "D"),
+    SurfaceStyle(ORANGE, "v"),
+    SurfaceStyle(SKY, "P"),
+    SurfaceStyle(BLACK, "X"),
+    SurfaceStyle("#7A5C00", "<"),
+    SurfaceStyle(GREY, ">"),
+]
+
+
+class PaperFigure(Figure):
+    """A matplotlib Figure that a notebook shows by itself and that knows its own numbers.
+
+    Made without pyplot, so no global state is touched and nothing has to be closed.
+    """
+
+    def __init__(self, *args, **kwargs) -> None:
+        super().__init__(*args, **kwargs)
+        self._numbers: list[pd.DataFrame] = []
+
+    def keep(self, panel: str, series: str, **columns: np.ndarray) -> None:
+        """Remember the numbers that were drawn; `figure_data` hands them out."""
+        self._numbers.append(pd.DataFrame({"panel": panel, "series": series, **columns}))
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        with paper_style():
+            self.savefig(buffer, format="png", dpi=200)
+        return buffer.getvalue()
+
+
+def figure_data(figure: Figure) -> pd.DataFrame:
+    """Return the numbers that a figure of this package shows.
+
+    Parameters
+    ----------
+    figure
+        What one of the functions of `tribolab.plot` returned.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row per drawn point; `panel` and `series` say where it stands, the other columns carry
+        their unit in the name (``sliding_speed_m_s``).
+    """
+    numbers = getattr(figure, "_numbers", [])
+    return pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
+
+
+@contextlib.contextmanager
+def paper_style() -> Iterator[None]:
+    """Draw in the package's style; what was set before is back afterwards.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> before = matplotlib.rcParams["font.size"]
+    >>> with paper_style():
+    ...     pass
+    >>> matplotlib.rcParams["font.size"] == before
+    True
+    """
+    with mpl.rc_context():
+        # from matplotlib's own defaults, not the user's matplotlibrc: the same look for everybody
+        defaults = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _KEEP}
+        mpl.rcParams.update(defaults)
+        mpl.rcParams.update(_RC)
+        yield
+
+
+_KEEP = {"backend", "backend_fallback", "interactive", "toolbar", "timezone", "date.epoch"}
+
+
+def new_figure(width_mm: float, height_mm: float) -> PaperFigure:
+    """Return an empty figure of the given size [mm]; call inside `paper_style()`."""
+    return PaperFigure(figsize=(width_mm / 25.4, height_mm / 25.4))
+
+
+def margins(
+    figure: Figure, left: float, right: float, bottom: float, top: float, **spaces: float
+) -> None:
+    """Place the axes by margins in mm, which is faster and steadier than an automatic layout."""
+    width, height = (25.4 * inch for inch in figure.get_size_inches())
+    figure.subplots_adjust(
+        left=left / width,
+        right=1 - right / width,
+        bottom=bottom / height,
+        top=1 - top / height,
+        **spaces,
+    )
+
+
+def surface_styles(surfaces: Iterable[str]) -> dict[str, SurfaceStyle]:
+    """Give every surface a colour and a marker: fixed for the reference ones, else by order.
+
+    Examples
+    --------
+    >>> surface_styles(["Sb-R", "steel"])["Sb-R"].colour
+    '#D55E00'
+    """
+    chosen: dict[str, SurfaceStyle] = {}
+    free = 0
+    for name in dict.fromkeys(surfaces):
+        fixed = _FIXED.get(name.strip().lower())
+        chosen[name] = fixed or _OTHERS[free % len(_OTHERS)]
+        free += fixed is None
+    return chosen
+
+
+def shade(colour: str, rank: int, count: int) -> str:
+    """Return the `rank`-th of `count` shades of a colour, from dark to light."""
+    if count < 2:
+        return colour
+    base = np.array(to_rgb(colour))
+    lightness = np.linspace(-0.35, 0.45, count)[rank]
+    target = np.ones(3) if lightness > 0 else np.zeros(3)
+    return to_hex(base + abs(lightness) * (target - base))
+
+
+def tidy(axes: Axes, letter: str = "") -> None:
+    """Give the panel its letter, as papers do."""
+    if letter:
+        axes.annotate(
+            f"({letter})",
+            (0, 1),
+            xytext=(4, -4),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            va="top",
+            fontsize=8,
+            fontweight="bold",
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
+            zorder=10,
+        )
+
+
+_DRAWN = re.compile(r' d="([^"]*)"')
+_DECIMALS = re.compile(r"-?\d+\.\d{3,}")
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_POLYLINE = re.compile(r"[MLz\d\s.+-]*")
+
+
+def _rounded(match: re.Match[str]) -> str:
+    return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
+
+
+def _shorter(match: re.Match[str]) -> str:
+    """Write a path shorter: two decimals, and no `L` where SVG takes it as understood."""
+    path = " ".join(_DECIMALS.sub(_rounded, match[1]).split())
+    if _POLYLINE.fullmatch(path):  # after M, pairs of numbers are lines
+        path = path.replace(" L ", " ")
+    return f' d="{path}"'
+
+
+_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # never a scale
+_GROUP_ID = re.compile(r'<g id="[^"]*"')
+_SYMBOL = re.compile(r'<path id="([^"]+)"[^>]*? style="([^"]*)"')
+_USE = re.compile(r'<use xlink:href="#([^"]+)"([^>]*?) style="([^"]*)"/>')
+_BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
+
+
+def _smaller(text: str) -> str:
+    """Leave out what the drawing does not need: decimals, indents, ids, styles said twice."""
+    text = _DRAWN.sub(_shorter, _COMMENT.sub("", text))
+    text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
+    styles = dict(_SYMBOL.findall(text))
+
+    def use(match: re.Match[str]) -> str:
+        name, place, own = match.groups()
+        return match[0] if styles.get(name) != own else f'<use xlink:href="#{name}"{place}/>'
+
+    text = re.sub(r"\n\s*", "\n", _GROUP_ID.sub("<g", _USE.sub(use, text)))
+    for _ in range(2):  # a bare group around one symbol
+        text = _BARE_GROUP.sub(r"\1", text)
+    return text
+
+
+def svg(figure: Figure) -> str:
+    """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
+
+    Coordinates are rounded to 0.01 pt (4 um on paper), which makes a trace less than half as long.
+    """
+    buffer = io.StringIO()
+    with paper_style():
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
+    return _smaller(buffer.getvalue())
+
+
+def save(figure: Figure, path: str | Path) -> Path:
+    """Write the figure as SVG, or as any format that matplotlib knows by the file's ending."""
+    path = Path(path)
+    if path.suffix.lower() == ".svg":
+        path.write_text(svg(figure), encoding="utf-8")
+    else:
+        with paper_style():
+            figure.savefig(path, dpi=300)
+    return path

@@ -1,0 +1,115 @@
+"""The measured curves in the report: their points, and figures that compare them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.plot.labels import force_text
+from tribolab.report.document import labels
+from tribolab.report.tables import curve_table
+from tribolab.report.wording import many, plain_value, span, speeds
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from tribolab.campaign.outcome import CurveOutcome
+
+_ALONE = threading.Lock()
+_MOST_IN_ONE = 9  # curves that can be told apart in one figure
+_BARS = (
+    "Markers: mean over the strokes; wide pale bars: standard deviation while sliding; narrow bars "
+    "with caps: standard error of the mean. Dry: open markers, dashed."
+)
+
+
+@dataclass(frozen=True)
+class CurveFigure:
+    """A figure to draw: which curves, what it is called, where it goes."""
+
+    curves: tuple[CurveOutcome, ...]
+    title: str
+    file: str
+    kind: str
+    surfaces: tuple[str, ...]
+    folder: Path
+
+
+def surface_of(curve: CurveOutcome) -> str:
+    """Return the surface; runs that name neither surface nor medium stand for themselves."""
+    if curve.surface or curve.medium:
+        return curve.surface
+    return "; ".join(curve.run_names)
+
+
+def read_curve(folder: Path, curve: CurveOutcome) -> xr.Dataset:
+    """Open a measured curve, labelled for `tribolab.plot.stribeck`."""
+    from tribolab.io.netcdf import read_netcdf
+
+    data = read_netcdf(folder / curve.data_file)
+    data.attrs |= {"surface": surface_of(curve), "medium": curve.medium}
+    if curve.normal_force is not None:
+        data.attrs["normal_force_N"] = curve.normal_force
+    return data
+
+
+def curve_record(folder: Path, curve: CurveOutcome) -> tuple[dict[str, Any], pd.DataFrame]:
+    """Return the curve for report.json and its table."""
+    table = curve_table(read_curve(folder, curve))
+    record = {
+        "name": curve.name,
+        **labels(curve),
+        "runs": list(curve.run_names),
+        "points": table.to_dict("records"),
+    }
+    return plain_value(record), table
+
+
+def plan_figures(curves: Sequence[CurveOutcome], folder: Path) -> list[CurveFigure]:
+    """Choose the figures: one per surface with all its loads, one per load with all surfaces."""
+    surfaces = tuple(dict.fromkeys(surface_of(curve) for curve in curves))
+    planned = []
+    for number, surface in enumerate(surfaces):
+        mine = [curve for curve in curves if surface_of(curve) == surface]
+        for part, chosen in enumerate(_parts(mine)):
+            file = (
+                f"figures/stribeck_surface_{number + 1}{'abcdefgh'[part % 8] if part else ''}.svg"
+            )
+            title = surface or "surface not named"
+            planned.append(CurveFigure(chosen, title, file, "surface", surfaces, folder))
+    loads = dict.fromkeys(curve.normal_force for curve in curves)
+    for number, load in enumerate(sorted(loads, key=lambda x: (x is None, x or 0.0))):
+        mine = [curve for curve in curves if curve.normal_force == load and curve.surface]
+        if len({curve.surface for curve in mine}) > 1:
+            file = f"figures/stribeck_load_{number + 1}.svg"
+            title = force_text(float("nan") if load is None else load)
+            chosen = tuple(mine[:_MOST_IN_ONE])
+            planned.append(CurveFigure(chosen, title, file, "load", surfaces, folder))
+    return planned
+
+
+def _parts(curves: list[CurveOutcome]) -> list[tuple[CurveOutcome, ...]]:
+    steps = range(0, len(curves), _MOST_IN_ONE)
+    return [tuple(curves[k : k + _MOST_IN_ONE]) for k in steps]
+
+
+def draw_curves(task: CurveFigure) -> dict[str, str]:
+    """Draw one figure into the results and return its record."""
+    from tribolab import plot
+
+    with _ALONE:
+        data = [read_curve(task.folder, curve) for curve in task.curves]
+        figure = plot.stribeck(data, surfaces=task.surfaces, title=task.title)
+        plot.save(figure, task.folder / task.file)
+    values = [v for curve in data for v in curve["friction_coefficient"].values.tolist()]
+    speed = [v for curve in data for v in curve["sliding_speed"].values.tolist()]
+    count = many(len(data), "measured curve")
+    alt = (
+        f"Friction coefficient over sliding speed, {task.title}: {count} at {speeds(speed)}, "
+        f"µ from {span(values)}."
+    )
+    return {"file": task.file, "kind": task.kind, "caption": f"{task.title}. {_BARS}", "alt": alt}

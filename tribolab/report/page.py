@@ -1,0 +1,121 @@
+"""The report as one HTML file that opens offline and asks nothing of the network."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import jinja2
+from markupsafe import Markup
+
+from tribolab.plot.labels import aligned, force_text, number, speed_text
+from tribolab.report import wording
+
+_PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
+# Everything that may stand in a data address inside a quoted HTML attribute.
+_SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
+
+
+def write_page(document: dict[str, Any], folder: Path) -> Path:
+    """Write ``report.html`` into the results folder, with the figures that lie there inside it."""
+    path = folder / "report.html"
+    path.write_text(render(document, folder), encoding="utf-8")
+    return path
+
+
+def render(document: dict[str, Any], folder: Path) -> str:
+    """Return the page of a report.
+
+    Parameters
+    ----------
+    document
+        From `tribolab.report.document.report_document`.
+    folder
+        Results folder, in which the figures lie.
+
+    Returns
+    -------
+    str
+        HTML. Text from files is escaped, and a content security policy forbids every script but
+        the page's own and every request.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("tribolab.report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": lambda value, digits=3: "–" if value is None else number(value, digits),
+        "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
+        "speed": lambda value: speed_text(float("nan") if value is None else value),
+        "force": lambda value: "–" if value is None else force_text(value),
+        "duration": wording.duration,
+        "percent": wording.percent,
+        "many": wording.many,
+        "size": wording.size,
+        "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
+    }
+    environment.globals |= {
+        "with_error": wording.with_error,
+        "span": wording.span,
+        "speeds": wording.speeds,
+        "UNITS": wording.UNITS,
+        "SYMBOLS": wording.SYMBOLS,
+    }
+    style, script = asset("report.css"), asset("report.js")
+    return environment.get_template("report.html.j2").render(
+        document,
+        style=style,
+        script=script,
+        policy=(
+            "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
+            f"style-src '{fingerprint(style)}'; script-src '{fingerprint(script)}'"
+        ),
+        left_out=left_out(document["runs"]),
+    )
+
+
+def asset(name: str) -> str:
+    """Return the text of one of the page's own files."""
+    return (files("tribolab.report") / "assets" / name).read_text(encoding="utf-8")
+
+
+def fingerprint(text: str) -> str:
+    """Return what a content security policy calls a piece of inline code."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return "sha256-" + base64.b64encode(digest).decode()
+
+
+def data_address(svg: str) -> Markup:
+    """Return a figure as an address that holds the figure itself.
+
+    As an image it is shut off from the page: its ids meet no others, and nothing in it can run.
+    """
+    body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
+    # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
+    return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
+
+
+def left_out(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return what was left out of all runs, a row per reason, the longest first."""
+    total = sum(run["duration_s"] or 0.0 for run in runs)
+    rows: dict[str, dict[str, Any]] = {}
+    for run in runs:
+        for entry in run["omitted"]:
+            row = rows.setdefault(
+                entry["reason"],
+                {"reason": entry["reason"], "runs": 0, "intervals": 0, "duration_s": 0.0},
+            )
+            row["runs"] += 1
+            row["intervals"] += entry["intervals"]
+            row["duration_s"] += entry["duration_s"] or 0.0
+    for row in rows.values():
+        row["share"] = row["duration_s"] / total if total else None
+    return sorted(rows.values(), key=lambda row: -row["duration_s"])

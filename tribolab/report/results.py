@@ -1,0 +1,153 @@
+"""Write the report of a campaign: figures, tables, report.json and the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from tribolab.campaign.executor import completed
+from tribolab.report import tables
+from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
+from tribolab.report.document import labels, report_document, write_json
+from tribolab.report.page import write_page
+from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome, RunOutcome
+
+Progress = Callable[[str, int, int], None]
+
+
+def write_report(
+    outcome: Outcome, *, executor: Executor | None = None, progress: Progress | None = None
+) -> None:
+    """Write everything that the results folder has beside the data.
+
+    Writes ``report.html`` (one page that opens offline), ``report.json`` (the same numbers),
+    ``figures/*.svg`` and ``tables/*.csv``.
+
+    Parameters
+    ----------
+    outcome
+        From `tribolab.campaign.pipeline.process`; its folder has the data files.
+    executor
+        Any `concurrent.futures.Executor` for the drawing; without one it is done here.
+    progress
+        Called as ``progress(stage, done, total)``.
+
+    Notes
+    -----
+    A run or a figure that cannot be shown is a finding of severity "error" and does not stop the
+    rest of the report.
+    """
+    folder = Path(outcome.folder)
+    for name in ("figures", "tables"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+    tell = progress or (lambda stage, done, total: None)
+
+    findings = [_failure(run) for run in outcome.runs if not run.done]
+    summaries = _summaries(outcome, executor, tell, findings)
+    for summary in summaries.values():
+        findings += summary.findings
+    curves, points = _curves(outcome, findings)
+    figures = _figures(outcome, executor, tell, findings, {curve["name"] for curve in curves})
+
+    ordered = tables.findings_table(findings)
+    _write_tables(outcome, summaries, points, ordered)
+    records = ordered.to_dict("records")
+    document = report_document(outcome, summaries, curves, figures, records)
+    write_json(document, folder / "report.json")
+    write_page(document, folder)
+    tell("page", 1, 1)
+
+
+def _failure(run: RunOutcome) -> dict[str, str]:
+    reason = run.reason or run.error or "no reason was given"
+    return {"severity": "fail", "run": run.name, "where": "run", "message": reason}
+
+
+def _error(run: str, where: str, error: BaseException) -> dict[str, str]:
+    text = f"{type(error).__name__}: {' '.join(str(error).split())}"
+    return {"severity": "error", "run": run, "where": where, "message": text}
+
+
+def _summaries(
+    outcome: Outcome, executor: Executor | None, tell: Progress, findings: list[dict[str, str]]
+) -> dict[str, RunSummary]:
+    tasks = [RunTask(run, Path(outcome.folder)) for run in outcome.runs if run.done]
+    found: dict[str, RunSummary] = {}
+    for number, (task, future) in enumerate(completed(executor, summarise_run, tasks)):
+        error = future.exception()
+        if error is None:
+            found[task.run.name] = future.result()
+        else:  # recorded: the other runs have their place in the report
+            findings.append(_error(task.run.name, "report", error))
+        tell("figures", number + 1, len(tasks))
+    return {run.name: found[run.name] for run in outcome.runs if run.name in found}
+
+
+def _curves(
+    outcome: Outcome, findings: list[dict[str, str]]
+) -> tuple[list[dict[str, Any]], list[pd.DataFrame]]:
+    records, points = [], []
+    for curve in outcome.curves:
+        members = "; ".join(curve.run_names)
+        if not curve.done:
+            text = f"no measured curve: {curve.reason}"
+            findings.append(
+                {"severity": "suspect", "run": members, "where": curve.name, "message": text}
+            )
+            continue
+        try:
+            record, table = curve_record(Path(outcome.folder), curve)
+        except Exception as error:  # recorded, as above
+            findings.append(_error(members, curve.name, error))
+            continue
+        records.append(record)
+        points.append(tables.labelled(table, "curve", curve.name, labels(curve)))
+    return records, points
+
+
+def _figures(
+    outcome: Outcome,
+    executor: Executor | None,
+    tell: Progress,
+    findings: list[dict[str, str]],
+    readable: set[str],
+) -> list[dict[str, str]]:
+    curves = [curve for curve in outcome.curves if curve.name in readable]
+    tasks = plan_figures(curves, Path(outcome.folder))
+    drawn: dict[str, dict[str, str]] = {}
+    for number, (task, future) in enumerate(completed(executor, draw_curves, tasks)):
+        error = future.exception()
+        if error is None:
+            drawn[task.file] = future.result()
+        else:  # recorded, as above
+            findings.append(_error("", f"figure {task.title}", error))
+        tell("curves' figures", number + 1, len(tasks))
+    return [drawn[task.file] for task in tasks if task.file in drawn]
+
+
+def _write_tables(
+    outcome: Outcome,
+    summaries: dict[str, RunSummary],
+    points: list[pd.DataFrame],
+    findings: pd.DataFrame,
+) -> None:
+    folder = Path(outcome.folder) / "tables"
+    rows = [
+        tables.labelled(summaries[run.name].table, "run", run.name, labels(run))
+        for run in outcome.runs
+        if run.name in summaries
+    ]
+    friction = ["run", *tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient"]
+    tables.write(tables.together(rows, friction), folder / "friction.csv")
+    stribeck = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
+    tables.write(tables.together(points, stribeck), folder / "stribeck.csv")
+    sources = pd.DataFrame(list(outcome.sources), columns=["file", "sha256", "bytes"])
+    tables.write(sources, folder / "sources.csv")
+    tables.write(findings, folder / "findings.csv")

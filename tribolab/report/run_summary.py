@@ -1,0 +1,251 @@
+"""What the report says of one run: its figures and its numbers, made by a worker."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.report.tables import friction_table
+from tribolab.report.wording import SYMBOLS, UNITS, duration, many, plain_value, span, speeds
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from tribolab.campaign.outcome import RunOutcome
+
+# Neither matplotlib's settings nor the netCDF library stand being used by two threads.
+_ALONE = threading.Lock()
+_SPEED_TOLERANCE = 0.1
+
+
+@dataclass(frozen=True)
+class RunTask:
+    """A run to describe, and the folder of the results."""
+
+    run: RunOutcome
+    folder: Path
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """What a worker hands back: numbers ready for report.json, the table, the findings."""
+
+    name: str
+    facts: dict[str, Any]
+    table: pd.DataFrame
+    findings: tuple[dict[str, str], ...]
+
+
+def summarise_run(task: RunTask) -> RunSummary:
+    """Open a run's data file, draw its figures into the results, and collect its numbers."""
+    from tribolab.io.netcdf import read_netcdf
+
+    path = task.folder / task.run.data_file
+    with _ALONE:
+        run, segments, friction = (
+            read_netcdf(path, group=group) for group in ("run", "segments", "friction")
+        )
+        findings = _findings(task.run.name, run, segments, friction)
+        figures = _figures(task, run, segments, friction, findings)
+    table = friction_table(friction)
+    facts = {
+        **_of_record(run),
+        **_of_friction(friction),
+        "omitted": _omitted(segments),
+        "segments": table.to_dict("records"),
+        "figures": figures,
+    }
+    return RunSummary(task.run.name, plain_value(facts), table, tuple(findings))
+
+
+def main_quantity(friction: xr.Dataset) -> str:
+    """Return the quantity that the report speaks of: mu, else the half loop, else the force."""
+    for name in ("friction_coefficient", "half_loop", "friction_force"):
+        if name in friction and np.isfinite(np.asarray(friction[name], float)).any():
+            return name
+    return "friction_coefficient"
+
+
+def _of_record(run: xr.Dataset) -> dict[str, Any]:
+    time = np.asarray(run["time"], float)
+    attrs = run.attrs
+    shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
+    return {
+        "instrument": str(attrs.get("instrument", "")),
+        "recorded_at": str(attrs.get("recorded_at", "")),
+        "duration_s": float(time[-1] - time[0]) if time.size else 0.0,
+        "samples": int(time.size),
+        "signals": sorted(str(name) for name in run.data_vars if run[name].dims == ("time",)),
+        "columns_not_used": [c for c in str(attrs.get("columns_not_used", "")).split("; ") if c],
+        "clock_shift_s": shift.get("clock_shift_s"),
+        "clock_shift_uncertainty_s": shift.get("clock_shift_uncertainty_s"),
+        "clock_shift_source": str(attrs.get("clock_shift_source", "")),
+        "history": str(attrs.get("history", "")),
+    }
+
+
+_SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
+
+
+def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
+    name = main_quantity(friction)
+    value = np.asarray(friction[name], float) if name in friction else np.array([])
+    std = _values(friction, f"{name}_std", value.size)
+    speed = _values(friction, "sliding_speed", value.size)
+    finite = np.isfinite(value)
+    scatter = std[finite] / np.abs(value[finite])
+    scatter = scatter[np.isfinite(scatter)]
+    return {
+        "quantity": name,
+        "offset": str(friction.attrs.get("offset", "")),
+        "trim": friction.attrs.get("trim"),
+        "velocity_source": str(friction.attrs.get("velocity_source", "")),
+        "sliding_speed_min_m_s": np.nanmin(speed, initial=np.inf),
+        "sliding_speed_max_m_s": np.nanmax(speed, initial=-np.inf),
+        "value_min": value[finite].min() if finite.any() else None,
+        "value_max": value[finite].max() if finite.any() else None,
+        "relative_scatter": float(np.median(scatter)) if scatter.size else None,
+        "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
+        "highlights": _highlights(speed, value, std, _values(friction, f"{name}_sem", value.size)),
+    }
+
+
+def _values(data: xr.Dataset, name: str, size: int) -> np.ndarray:
+    return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
+
+
+def _highlights(
+    speed: np.ndarray, value: np.ndarray, std: np.ndarray, sem: np.ndarray
+) -> list[dict[str, Any]]:
+    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
+    fine = np.flatnonzero(np.isfinite(value))
+    known = fine[np.isfinite(speed[fine]) & (speed[fine] > 0)]
+    groups = [("all", fine)] if fine.size and not known.size else []
+    if known.size:
+        order = known[np.argsort(speed[known], kind="stable")]
+        breaks = np.diff(np.log(speed[order])) > np.log1p(_SPEED_TOLERANCE)
+        parts = np.split(order, np.flatnonzero(breaks) + 1)
+        chosen = {0: "slowest", len(parts) - 1: "fastest"}
+        if len(parts) > 2:
+            chosen[len(parts) // 2] = "middle"
+        chosen[0] = "slowest"
+        groups = [(word, parts[k]) for k, word in sorted(chosen.items())]
+    return [
+        {
+            "where": word,
+            "sliding_speed_m_s": float(np.mean(speed[index])),
+            "value": float(np.mean(value[index])),
+            "std": float(np.sqrt(np.mean(std[index] ** 2))),
+            # independent strokes: the error of their mean
+            "sem": float(np.sqrt(np.sum(sem[index] ** 2)) / index.size),
+            "segments": int(index.size),
+        }
+        for word, index in groups
+    ]
+
+
+def _omitted(segments: xr.Dataset) -> list[dict[str, Any]]:
+    if "omitted_reason" not in segments:
+        return []
+    reasons = np.asarray(segments["omitted_reason"]).astype(str)
+    lengths = np.asarray(segments["omitted_stop"], float) - np.asarray(segments["omitted_start"])
+    return [
+        {
+            "reason": reason,
+            "intervals": int((reasons == reason).sum()),
+            "duration_s": float(lengths[reasons == reason].sum()),
+        }
+        for reason in dict.fromkeys(reasons.tolist())
+    ]
+
+
+def _findings(
+    name: str, run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset
+) -> list[dict[str, str]]:
+    found: list[dict[str, str]] = []
+
+    def say(severity: str, where: str, message: str) -> None:
+        found.append({"severity": severity, "run": name, "where": where, "message": message})
+
+    count = segments.sizes["segment"]
+    if count == 0:
+        say("suspect", "segments", "no segment of steady sliding was found")
+    quantity = main_quantity(friction)
+    if quantity in friction and count:
+        values = np.asarray(friction[quantity], float)
+        if missing := int(np.isnan(values).sum()):
+            say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
+        if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
+            text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
+            say("suspect", "friction", text + "; is the sign of the force or the offset right?")
+    drift = int((_values(friction, "steady", count) == 0).sum())
+    if drift:
+        say("note", "friction", f"{many(drift, 'segment')} of {count} with a significant trend")
+    if str(friction.attrs.get("offset", "")).startswith("none"):
+        say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
+    for entry in _omitted(segments):
+        text = f"{many(entry['intervals'], 'interval')}, {duration(entry['duration_s'])}"
+        say("note", "left out", f"{entry['reason']}: {text}")
+    if unused := str(run.attrs.get("columns_not_used", "")):
+        say("note", "columns", f"not used: {unused}")
+    return found
+
+
+def _figures(
+    task: RunTask,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    findings: list[dict[str, str]],
+) -> list[dict[str, str]]:
+    from tribolab import plot
+
+    name, made = task.run.name, []
+    drawn: list[tuple[str, Callable[[], Figure], str]] = [
+        ("trace", lambda: plot.trace(run, segments, friction, title=name), _TRACE)
+    ]
+    if segments.sizes["segment"]:
+        drawn += [("strokes", lambda: plot.strokes(run, segments, friction, title=name), _STROKES)]
+    if main_quantity(friction) == "half_loop":
+        drawn += [("half_loop", lambda: plot.half_loop(friction, title=name), _HALF_LOOP)]
+    for kind, draw, caption in drawn:
+        file = f"figures/{Path(task.run.data_file).stem}_{kind}.svg"
+        try:
+            plot.save(draw(), task.folder / file)
+        except Exception as error:  # recorded: a figure that fails must not cost the report
+            text = f"could not be drawn: {type(error).__name__}: {' '.join(str(error).split())}"
+            findings.append(
+                {"severity": "error", "run": name, "where": f"figure {kind}", "message": text}
+            )
+            continue
+        alt = f"{_words(friction)} {caption}"
+        made.append({"file": file, "kind": kind, "caption": caption, "alt": f"Run {name}: {alt}"})
+    return made
+
+
+_TRACE = (
+    "Trace over time, sliding velocity, and trace over the distance slid in the segments. Shaded: "
+    "segments, their trimmed ends paler. Extremes of every pixel column are drawn."
+)
+_STROKES = (
+    "Every stroke over its own length, slowest speed first; both directions count positive in "
+    "their own direction. Each panel has its own scale, fitted to the part that counts."
+)
+_HALF_LOOP = "Half the force difference of each pair of strokes, and their mean."
+
+
+def _words(friction: xr.Dataset) -> str:
+    name = main_quantity(friction)
+    values = [] if name not in friction else np.asarray(friction[name], float).tolist()
+    speed = _values(friction, "sliding_speed", len(values)).tolist()
+    return (
+        f"{many(friction.sizes['segment'], 'segment')} at {speeds(speed)}, "
+        f"{SYMBOLS[name]} from {span(values, UNITS[name])}."
+    )

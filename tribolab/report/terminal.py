@@ -1,0 +1,131 @@
+"""What the command line shows of results: short tables, and where to look next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+
+from tribolab.campaign.outcome import CurveOutcome, Outcome
+
+if TYPE_CHECKING:
+    from tribolab.report.truth import Comparison
+
+_PIPED_WIDTH = 120
+_SHOWN = 10
+
+
+def console() -> Console:
+    """Return a console on stdout; a pipe has no width of its own."""
+    out = Console(highlight=False)
+    return out if out.is_terminal else Console(highlight=False, width=_PIPED_WIDTH)
+
+
+def outcome_table(outcome: Outcome) -> Table:
+    """Return one row per measured curve: what was measured, at what speeds, how much friction."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("surface", "medium"):
+        table.add_column(heading)
+    for heading in ("load", "runs", "segments", "speeds", "friction coefficient"):
+        table.add_column(heading, justify="right")
+    for curve in outcome.curves:
+        if curve.done:
+            load = "" if curve.normal_force is None else f"{curve.normal_force:g} N"
+            name = curve.surface or curve.run_names[0]
+            table.add_row(name, curve.medium, load, *_numbers(curve, outcome.folder))
+    return table
+
+
+def _numbers(curve: CurveOutcome, folder: Path) -> tuple[str, str, str, str]:
+    from tribolab.io.netcdf import read_netcdf
+
+    data = read_netcdf(folder / curve.data_file)
+    segments = f"{int(data.segments.sum())}" if "segments" in data else ""
+    speed, mu = data.sliding_speed.values, data.friction_coefficient.values
+    ends = _range(f"{speed.min():.2g}", f"{speed.max():.2g}")
+    return (
+        str(len(curve.run_names)),
+        segments,
+        f"{ends} m/s",
+        _range(f"{mu.min():.3f}", f"{mu.max():.3f}"),
+    )
+
+
+def _range(low: str, high: str) -> str:
+    return low if low == high else f"{low} to {high}"
+
+
+def outcome_lines(outcome: Outcome) -> list[str]:
+    """Say how many runs were done, taken over and failed, and where the report is."""
+    done = [run for run in outcome.runs if run.done]
+    reused = sum(run.reused for run in done)
+    line = f"{len(done)} of {len(outcome.runs)} runs, {outcome.segments} segments"
+    if reused:
+        line += f"; {reused} unchanged since the last time"
+    lines = [line]
+    lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
+    return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
+
+
+def failure_lines(outcome: Outcome) -> list[str]:
+    """Say which runs failed and why."""
+    failed = outcome.failed
+    lines = [f"{run.name} failed: {run.reason}" for run in failed[:_SHOWN]]
+    if len(failed) > _SHOWN:
+        lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")
+    return lines
+
+
+def truth_lines(comparison: Comparison, folder: Path, outcome: Outcome) -> list[str]:
+    """Say how well the truth was found, where to look and what to do next."""
+    c = comparison
+    results = outcome.folder
+    return [
+        "",
+        f"against the truth: {c.found} of {c.true} segments found, {c.missed} missed, "
+        f"{c.extra} extra; the true friction coefficient lies within 1 standard error in "
+        f"{100 * c.within_1:.0f} %, within 3 in {100 * c.within_3:.1f} % of them",
+        "",
+        f"look at   {shown(results / 'report.html')}        the page: open it in a browser",
+        f"          {shown(results / 'tables')}/friction.csv  every segment, a row each",
+        f"          {shown(results / 'tables')}/truth.csv     every segment beside its truth",
+        f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
+        f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
+    ]
+
+
+def file_lines(description: Mapping[str, Any]) -> list[str]:
+    """Say how a raw file is understood.
+
+    Parameters
+    ----------
+    description
+        From `tribolab.io.runs.describe`.
+    """
+    d = description
+    title = f" ({d['title']})" if d["title"] else ""
+    lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
+    sampling = f"  {d['rows']} rows over {d['duration_s']:.6g} s"
+    if d["interval_s"] is not None:
+        sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
+    lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
+    width = max((len(name) for name in d["columns"]), default=0)
+    for name, column in d["columns"].items():
+        span = f"{column['minimum']:.6g} to {column['maximum']:.6g} {column['unit']}"
+        label = f"   from '{column['label']}'" if column["label"] else ""
+        lines.append(f"  {name:<{width}}  {span}{label}")
+    if d["not_used"]:
+        lines.append(f"  not used: {', '.join(d['not_used'])}")
+    lines += [f"  {key}: {value}" for key, value in d["metadata"].items()]
+    return lines
+
+
+def shown(path: Path) -> str:
+    """Return a path as short as it can be said from here."""
+    try:
+        return str(path.resolve().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

@@ -1,0 +1,163 @@
+"""What was found against what is true, for a simulated campaign."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from tribolab.campaign.outcome import Outcome
+from tribolab.errors import AnalysisError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_HALF = 0.5
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How well the truth was found.
+
+    Parameters
+    ----------
+    table
+        One row per true segment, and one per segment that was found where none is.
+    true, found, missed, extra
+        Numbers of segments.
+    within_1, within_3
+        Share of the found segments whose true friction coefficient lies within one and within
+        three standard errors of the measured one; NaN where there is none.
+    """
+
+    table: pd.DataFrame
+    true: int
+    found: int
+    missed: int
+    extra: int
+    within_1: float
+    within_3: float
+
+
+def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
+    """Compare a campaign's results with the truth and write ``tables/truth.csv``.
+
+    Parameters
+    ----------
+    outcome
+        Results whose data files lie in ``outcome.folder``.
+    folder
+        The simulated campaign's folder.
+
+    Returns
+    -------
+    Comparison
+        A true segment counts as found if one of the same direction covers more than half of
+        it; of a run that failed all segments are missed.
+
+    Raises
+    ------
+    AnalysisError
+        If the truth knows nothing of a run.
+    """
+    from tribolab.io.netcdf import read_netcdf
+    from tribolab.rig import read_truth
+
+    truth = read_truth(folder)
+    tables = []
+    for run in outcome.runs:
+        if run.name not in truth.segments:
+            raise AnalysisError(f"{run.name}: the truth in {folder} knows nothing of this run")
+        true = truth.segments[run.name]
+        found, origin = None, 0.0
+        if run.done:
+            found = read_netcdf(outcome.folder / run.data_file, group="friction")
+            origin = float(found.attrs["time_origin_s"])
+        tables.append(compare_run(run.name, true, found, origin))
+    table = pd.concat(tables, ignore_index=True)
+    place = outcome.folder / "tables"
+    place.mkdir(exist_ok=True)
+    table.to_csv(place / "truth.csv", index=False, float_format="%.9g", lineterminator="\n")
+    return summary(table)
+
+
+def compare_run(
+    name: str, true: pd.DataFrame, found: xr.Dataset | None, time_origin: float
+) -> pd.DataFrame:
+    """Match the segments of one run with the true ones.
+
+    Parameters
+    ----------
+    name
+        Name of the run.
+    true
+        Columns ``start_s``, ``stop_s`` (force clock), ``sliding_speed_m_s``, ``direction`` and
+        ``friction_coefficient``.
+    found
+        Friction (segment), or None for a run that failed.
+    time_origin
+        Raw time of the run's first sample [s].
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per true segment (status found or missed), then the extra ones.
+    """
+    start, stop = true["start_s"].to_numpy(), true["stop_s"].to_numpy()
+    size = 0 if found is None else found.sizes["segment"]
+    values = {
+        column: np.full(size, np.nan) if found is None or key not in found else found[key].values
+        for column, key in {
+            "start_s": "start",
+            "stop_s": "stop",
+            "direction": "direction",
+            "sliding_speed_m_s": "sliding_speed",
+            "friction_coefficient": "friction_coefficient",
+            "friction_coefficient_sem": "friction_coefficient_sem",
+        }.items()
+    }
+    values["start_s"] = values["start_s"] + time_origin
+    values["stop_s"] = values["stop_s"] + time_origin
+    overlap = np.minimum.outer(stop, values["stop_s"]) - np.maximum.outer(start, values["start_s"])
+    same = np.equal.outer(true["direction"].to_numpy(), values["direction"])
+    cover = np.where(same, overlap, -np.inf) / (stop - start)[:, None]
+    best = cover.argmax(axis=1) if size else np.zeros(len(true), dtype=int)
+    hit = cover.max(axis=1, initial=-np.inf) > _HALF
+    # a segment that swallows two true ones is found once; the other is missed
+    order = np.argsort(-cover.max(axis=1, initial=-np.inf), kind="stable")
+    taken: dict[int, int] = {}
+    for row in order[hit[order]]:
+        taken.setdefault(int(best[row]), int(row))
+    hit = np.isin(np.arange(len(true)), list(taken.values()))
+
+    table = pd.DataFrame({"run": name, "status": np.where(hit, "found", "missed")})
+    for column in ("start_s", "stop_s", "sliding_speed_m_s", "direction", "friction_coefficient"):
+        table[f"true_{column}"] = true[column].to_numpy()
+    extra = np.setdiff1d(np.arange(size), list(taken))
+    table = pd.concat(
+        [table, pd.DataFrame({"run": name, "status": ["extra"] * extra.size})], ignore_index=True
+    )
+    index = np.concatenate([np.where(hit, best, -1), extra]).astype(int)
+    for column, value in values.items():
+        table[column] = np.append(value.astype(float), np.nan)[index]
+    error = table["friction_coefficient"] - table["true_friction_coefficient"]
+    table["error_in_standard_errors"] = error / table["friction_coefficient_sem"]
+    return table
+
+
+def summary(table: pd.DataFrame) -> Comparison:
+    """Count what was found, missed and extra, and how often the truth lies within the error."""
+    status = table["status"]
+    errors = table["error_in_standard_errors"].abs()[status == "found"].dropna()
+    return Comparison(
+        table=table,
+        true=int((status != "extra").sum()),
+        found=int((status == "found").sum()),
+        missed=int((status == "missed").sum()),
+        extra=int((status == "extra").sum()),
+        within_1=float((errors <= 1).mean()) if errors.size else float("nan"),
+        within_3=float((errors <= 3).mean()) if errors.size else float("nan"),
+    )
