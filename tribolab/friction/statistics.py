@@ -1,0 +1,258 @@
+"""Mean, honest standard error and trend of a signal whose samples are not independent.
+
+Notes
+-----
+The variance of the mean of a record of length T is the signal's spectrum S(f) seen through the
+record's window, Var = int S(f) sinc^2(f T) df. The spectrum is that of an autoregressive model
+(Burg) of the record's means over up to 96 equal stretches of time, its order p chosen by
+N ln(residual variance) + 3 p. One formula thus serves white noise, noise with memory,
+and stick-slip, whose periods cancel but for the last, unfinished one [1]_.
+
+Three corrections were calibrated on simulated records (``tests/test_statistics.py`` states
+and tests the coverage): (i) a dip of the fitted spectrum at zero frequency is not believed where
+no strong line explains it; (ii) below a strong line only part of the line's fitted tail is
+counted, because whole periods cancel better than the model knows; (iii) few effective samples
+widen the error, so that three standard errors still cover 99 %.
+
+A drift is part of the signal and is not removed: it lengthens the memory and widens the error.
+
+References
+----------
+.. [1] Percival and Walden (1993), Spectral Analysis for Physical Applications, Cambridge.
+   doi:10.1017/CBO9780511622762
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+BLOCKS = 96  # stretches of a record; more resolve no slower memory
+ORDER = 24  # highest order: a quarter of the blocks, enough for five teeth of a saw
+PENALTY = 3.0  # for each coefficient
+GRID = 2048  # frequencies of the spectrum's quadrature
+LINE = 150.0  # a peak so much above the spectrum at zero is a line
+TAIL = 0.5  # share of the line's tail that is counted
+WIDENING, FEW = 0.42, 25.0  # the error grows by up to 42 % below 25 effective samples
+
+
+class Estimate(NamedTuple):
+    """What a record says of its mean and trend."""
+
+    mean: float
+    std: float
+    sem: float
+    samples: int
+    effective_samples: float
+    autocorrelation_time: float
+    trend: float
+    trend_change: float
+    trend_p_value: float
+
+
+NOTHING = Estimate(*[np.nan] * 3, 0, *[np.nan] * 5)
+
+
+def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
+    """Mean with its standard error, memory and trend of one record.
+
+    Parameters
+    ----------
+    time
+        Increasing sample times [s]; the spacing may change.
+    values
+        The samples, in any unit. Values that are not numbers are left out.
+
+    Returns
+    -------
+    Estimate
+        ``std`` is the sample standard deviation (ddof 1). Where the spacing of the samples
+        changes by more than a factor of two, mean and std are weighted by time.
+        ``effective_samples`` n_eff is std^2 over the variance of the mean, at most the number of
+        samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
+        ``trend_p_value`` tests the least-squares slope against the signal's own memory.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> found = describe(np.arange(1000.0), 0.3 + 0.01 * rng.standard_normal(1000))
+    >>> abs(found.mean - 0.3) < 3 * found.sem, 0.0002 < found.sem < 0.0005
+    (True, True)
+    """
+    good = np.isfinite(values)
+    if not good.all():
+        time, values = time[good], values[good]
+    n = values.size
+    if n == 0:
+        return NOTHING
+    if n < 3:
+        return NOTHING._replace(mean=float(np.mean(values)), samples=n)
+    weight = sample_weights(time)
+    if weight is None:
+        mean, std = float(np.mean(values)), float(np.std(values, ddof=1))
+    else:
+        mean = float(weight @ values)
+        variance = float(weight @ (values - mean) ** 2)
+        std = float(np.sqrt(variance / max(1 - weight @ weight, 1 / n)))
+    blocks = on_grid(time, values, min(n, BLOCKS))
+    duration = float((time[-1] - time[0]) * n / (n - 1))
+    if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
+        return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
+    plain, sem = error_of_mean(blocks[None, :])
+    effective = float(np.clip((std / plain[0]) ** 2, 1.0, n))
+    slope, p_value = trend(blocks)
+    change = slope * blocks.size
+    return Estimate(
+        mean,
+        std,
+        float(sem[0]),
+        n,
+        effective,
+        duration / (2 * effective),
+        change / duration,
+        change,
+        p_value,
+    )
+
+
+def sample_weights(time: np.ndarray) -> np.ndarray | None:
+    """Weights by time, summing to one, if the spacing is uneven; None if it is even."""
+    steps = np.diff(time[:: max(1, time.size // 4096)])
+    if np.quantile(steps, 0.95) <= 2 * np.quantile(steps, 0.05):
+        return None
+    weight = np.gradient(time)
+    return weight / weight.sum()
+
+
+def on_grid(time: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """Means over `count` equal stretches of time; an empty one is interpolated."""
+    if count == values.size and sample_weights(time) is None:
+        return values
+    edges = np.linspace(time[0], time[-1], count + 1)
+    first = np.searchsorted(time, edges[:-1], side="left")
+    last = np.append(first[1:], time.size)
+    full = last > first
+    sums = np.add.reduceat(values, first[full])
+    result = np.full(count, np.nan)
+    result[full] = sums / (last - first)[full]
+    place = np.arange(count)
+    result[~full] = np.interp(place[~full], place[full], result[full])
+    return result
+
+
+def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Fit autoregressive models to records by Burg's method, each of its best order.
+
+    Parameters
+    ----------
+    records
+        One record in each row, its mean removed.
+    order
+        Highest order.
+
+    Returns
+    -------
+    tuple
+        Coefficients (records, order + 1) beginning with 1, variance of the innovations, order.
+    """
+    count, n = records.shape
+    forward, backward = records, records
+    a = np.zeros((count, order + 1))
+    a[:, 0] = 1
+    sigma = np.mean(records**2, axis=1)
+    models, variances = [a], [sigma]
+    for p in range(1, order + 1):
+        f, b = forward[:, 1:], backward[:, :-1]
+        power = np.maximum((f * f + b * b).sum(axis=1), 1e-300)
+        k = -2 * (f * b).sum(axis=1) / power
+        forward, backward = f + k[:, None] * b, b + k[:, None] * f
+        a = a.copy()
+        a[:, 1 : p + 1] += k[:, None] * models[-1][:, p - 1 :: -1][:, :p]
+        sigma = sigma * (1 - k * k)
+        models.append(a)
+        variances.append(sigma)
+    chosen = np.stack(variances)
+    price = PENALTY * np.arange(order + 1)[:, None]
+    best = np.argmin(n * np.log(np.maximum(chosen, 1e-300)) + price, axis=0)
+    rows = np.arange(count)
+    sigma = chosen[best, rows] * n / np.maximum(n - best - 1, 1)
+    return np.stack(models)[best, rows], sigma, best
+
+
+def spectrum(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Model spectra of records on `GRID` / 2 + 1 frequencies, corrected near zero.
+
+    Returns
+    -------
+    tuple
+        Power per frequency (records, frequency) and whether a line stands in it (records).
+    """
+    n = records.shape[1]
+    a, sigma, _ = autoregression(records, min(ORDER, n // 4))
+    power = sigma[:, None] / np.maximum(np.abs(np.fft.rfft(a, GRID, axis=1)) ** 2, 1e-300)
+    cycles = np.arange(GRID // 2 + 1) * n / GRID  # in the record
+    peak = power.argmax(axis=1)
+    height = power[np.arange(power.shape[0]), peak]
+    line = (cycles[peak] > 2.5) & (height > LINE * power[:, 0])
+    near = np.flatnonzero(cycles <= 6)
+    filled = np.maximum.accumulate(power[:, near][:, ::-1], axis=1)[:, ::-1]
+    power[:, near] = np.where(line[:, None], power[:, near], filled)
+    below = cycles[None, :] < cycles[peak][:, None] / 2
+    floor = power.min(axis=1, keepdims=True)
+    damped = floor + TAIL * (power - floor)
+    return np.where(line[:, None] & below, damped, power), line
+
+
+def variance_of_sum(power: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Variance of a weighted sum of the samples of a process, from its spectrum."""
+    window = np.abs(np.fft.rfft(weights, GRID)) ** 2 / GRID
+    window[1:-1] *= 2
+    return power @ window
+
+
+def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Standard error of each record's mean: as the spectrum gives it, and widened for few samples.
+
+    Parameters
+    ----------
+    records
+        One evenly spaced record in each row.
+
+    Returns
+    -------
+    tuple
+        Plain and widened standard error (records). Quote the widened one.
+    """
+    n = records.shape[1]
+    centred = records - records.mean(axis=1, keepdims=True)
+    power, _ = spectrum(centred)
+    plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
+    effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
+    few = FEW * min(n / BLOCKS, 1)
+    student = stats.t.ppf(0.995, n - 1) / stats.norm.ppf(0.995)
+    return plain, plain * student * (1 + WIDENING / (1 + (effective / few) ** 4))
+
+
+def trend(record: np.ndarray) -> tuple[float, float]:
+    """Least-squares slope per sample of an even record and its two-sided p value.
+
+    The error of the slope comes from the spectrum of what the line leaves, so that a slow
+    wander is not taken for a trend.
+    """
+    n = record.size
+    place = np.arange(n) - (n - 1) / 2
+    weights = place / (place @ place)
+    slope = float(weights @ record)
+    rest = record - record.mean() - slope * place
+    if not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()):
+        return slope, 0.0 if slope else 1.0
+    power, _ = spectrum(rest[None, :])
+    error = float(np.sqrt(variance_of_sum(power, weights)[0]))
+    plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
+    effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)
+    few = FEW * min(n / BLOCKS, 1)
+    error *= 1 + WIDENING / (1 + (effective / few) ** 4)
+    freedom = max(effective - 2, 2.0)
+    return slope, float(2 * stats.t.sf(abs(slope) / error, freedom))
