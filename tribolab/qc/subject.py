@@ -119,7 +119,7 @@ class RunSubject:
         return np.array([_mean(self.signals[name][part]) for part in self.slices])
 
     def segment_stds(self, name: str) -> np.ndarray:
-        """Standard deviation of a signal over each trimmed segment."""
+        """Return the standard deviation of a signal over each trimmed segment."""
         return np.array([np.nanstd(self.signals[name][part]) for part in self.slices])
 
     @cached_property
@@ -180,7 +180,7 @@ class RunSubject:
         return float(self._periods[number])
 
     def unit(self, name: str) -> str:
-        """Unit of a variable as text, empty for pure numbers."""
+        """Return the unit of a variable as text, empty for pure numbers."""
         unit = self.run[name].attrs.get("units", "")
         return "" if unit == "1" else unit
 

@@ -106,7 +106,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5) -> np.ndarray:
-    """Samples at which the sampling rate changes for good.
+    """Find the samples at which the sampling rate changes for good.
 
     Parameters
     ----------
