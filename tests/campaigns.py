@@ -9,9 +9,9 @@ from tribolab.rig import simulate_campaign
 RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")
 
 
-def simulated(folder: Path) -> Path:
-    """Two runs in glycerol and two dry, at three speeds; returns campaign.toml."""
-    return simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=2)
+def simulated(folder: Path, repeats: int = 2) -> Path:
+    """Runs in glycerol and dry, in repeats, at three speeds; returns campaign.toml."""
+    return simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=repeats)
 
 
 def copied(campaign: Path, folder: Path) -> Path:

@@ -51,6 +51,8 @@ _ROWS = [
     ("omitted_start", "", "s", "start of a stretch that is no segment"),
     ("omitted_stop", "", "s", "end of a stretch that is no segment"),
     ("sliding_speed", "v", "m/s", "sliding speed"),
+    ("forward_speed", "v_f", "m/s", "sliding speed of the forward stroke"),
+    ("backward_speed", "v_b", "m/s", "sliding speed of the backward stroke"),
     ("direction", "", "1", "sliding direction"),
     ("sliding_distance", "s", "m", "sliding distance"),
     ("samples", "n", "1", "number of samples"),

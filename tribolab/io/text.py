@@ -17,8 +17,9 @@ from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
 
-BLOCK = 1 << 20  # bytes: few enough that memory is used again before it is given back
+BLOCK = 2 << 20  # bytes: few enough that memory is used again before it is given back
 _WORKERS = 2
+_DEPTH = 4  # blocks in work or waiting, so that no worker is idle while one is stored
 _ONE_PIECE = 1 << 19  # arrow's own block: its intermediate results stay in the cache
 _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA", "--"]
 
@@ -131,9 +132,11 @@ def _pump(
         hashed = hasher.update(view[len(rest) : full]) if hasher else None
         cut = buffer.rfind(b"\n", 0, full) + 1 if left else full
         rest = bytes(view[cut:full])
-        waiting.append(_Work(buffer, workers.submit(parser.parse, view[:cut], place, not left), hashed))
+        waiting.append(
+            _Work(buffer, workers.submit(parser.parse, view[:cut], place, not left), hashed)
+        )
         place += cut
-        if len(waiting) > _WORKERS:
+        if len(waiting) > _DEPTH:
             finish_one()
     while waiting:
         finish_one()

@@ -82,7 +82,7 @@ def strokes(
     with paper_style():
         figure = new_figure(DOUBLE_MM, height + 19.0)
         grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 8, wspace=0.07 * across, hspace=5.0 / panel_height)
+        margins(figure, 15, 3, 11, 8, wspace=0.085 * across, hspace=5.0 / panel_height)
         for axes, group in zip(grid.flat, shown, strict=False):
             _panel(figure, axes, group, signal, friction, budget, narrow=across > 4)
         for axes in grid.flat[len(shown) :]:

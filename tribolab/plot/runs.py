@@ -137,7 +137,7 @@ def _symlog(axes: Axes, values: np.ndarray, speeds: np.ndarray) -> None:
         return
     slowest = min(speeds.min() if speeds.size else largest / 100, largest)
     low = int(np.floor(np.log10(slowest) + 1e-9))
-    high = int(np.ceil(np.log10(largest) - 1e-9))
+    high = max(low, int(np.ceil(np.log10(largest) - 0.1)))  # a little overshoot needs no decade
     axes.set_yscale("symlog", linthresh=10.0**low, linscale=0.8)
     step = max(1, -(-(high - low) // 2))
     # the lowest decade would stand on top of the zero

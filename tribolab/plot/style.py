@@ -100,11 +100,11 @@ class PaperFigure(Figure):
 
     def __init__(self, *args, **kwargs) -> None:
         super().__init__(*args, **kwargs)
-        self._numbers: list[pd.DataFrame] = []
+        self._numbers: list[dict[str, object]] = []
 
     def keep(self, panel: str, series: str, **columns: np.ndarray) -> None:
         """Remember the numbers that were drawn; `figure_data` hands them out."""
-        self._numbers.append(pd.DataFrame({"panel": panel, "series": series, **columns}))
+        self._numbers.append({"panel": panel, "series": series, **columns})
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
@@ -127,7 +127,7 @@ def figure_data(figure: Figure) -> pd.DataFrame:
         A row per drawn point; `panel` and `series` say where it stands, the other columns carry
         their unit in the name (``sliding_speed_m_s``).
     """
-    numbers = getattr(figure, "_numbers", [])
+    numbers = [pd.DataFrame(columns) for columns in getattr(figure, "_numbers", [])]
     return pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
 
 

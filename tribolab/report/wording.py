@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from tribolab.plot.labels import number, speed_text
+from tribolab.plot.labels import MINUS, number, speed_text
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
 SYMBOLS = {"friction_coefficient": "µ", "half_loop": "half loop", "friction_force": "F"}
@@ -26,10 +26,10 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
         return "–"
     if error is None or not math.isfinite(error) or error <= 0:
         return number(value) + unit
-    # two digits of an error that begins with 1 or 2, else one
+    # two digits of an error that begins with 1, else one
     place = math.floor(math.log10(error))
-    decimals = min(max((error / 10**place < 2.95) - place, 0), 6)
-    text = f"{value:.{decimals}f} ± {error:.{decimals}f}"
+    decimals = min(max((error / 10**place < 1.95) - place, 0), 6)
+    text = f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", MINUS)
     return f"({text}){unit}" if unit else text
 
 

@@ -1,0 +1,224 @@
+"""Dialects: what they can say, and how they answer to what cannot be."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tribolab as tl
+from tribolab.errors import ConfigError, ReadError
+from tribolab.io.dialects import json_schema, known_dialects, load_dialect, recognise
+from tribolab.io.schema_folder import schema_folder
+
+BASE = """
+name = "mine"
+title = "My rig"
+[text]
+delimiter = ";"
+decimal = ","
+[header]
+line = 1
+[[column]]
+quantity = "time"
+name = "t"
+[[column]]
+quantity = "friction_force"
+name = "F"
+"""
+
+
+def write(folder, dialect, data, encoding="utf-8", name="run.dat"):
+    (folder / "mine.toml").write_text(dialect)
+    (folder / name).write_bytes(data.encode(encoding) if isinstance(data, str) else data)
+    return folder / name, folder / "mine.toml"
+
+
+def test_every_known_dialect_is_valid_and_named_like_its_file():
+    assert known_dialects()
+    for name in known_dialects():
+        assert load_dialect(name).name == name
+
+
+def test_the_json_schema_beside_the_dialects_is_that_of_the_model():
+    text = (schema_folder() / "dialect.schema.json").read_text(encoding="utf-8")
+    assert json.loads(text) == json_schema()
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (('delimiter = ";"', 'delimeter = ";"'), "did you mean 'delimiter'"),
+        (('quantity = "friction_force"', 'quantity = "friction_forse"'), "friction_force"),
+        (("line = 1", 'pattern = "("'), "regular expression"),
+        (('name = "F"', 'name = "F"\nunit = "mm"'), "cannot be turned into 'N'"),
+        (('name = "F"', 'name = "F"\nposition = 2'), "either name or position"),
+        (("line = 1", ""), "position and unit"),
+        (('quantity = "time"', 'quantity = "position"'), "time"),
+        (('decimal = ","', 'decimal = ";"'), "decimal"),
+        (('decimal = ","', 'decimal = ","\nencoding = "utf-9"'), "encoding"),
+        (("[header]", "[header"), "cannot be read"),
+    ],
+)
+def test_a_wrong_dialect_is_refused_with_the_place_and_the_cure(tmp_path, change, told):
+    (tmp_path / "mine.toml").write_text(BASE.replace(*change))
+    with pytest.raises(ConfigError, match=told) as error:
+        load_dialect(tmp_path / "mine.toml")
+    assert "mine.toml" in str(error.value)
+
+
+def test_an_unknown_instrument_names_the_nearest():
+    with pytest.raises(ConfigError, match="did you mean 'linear_slider"):
+        load_dialect("linear_slyder")
+
+
+def test_decimal_comma_and_units_in_brackets(tmp_path):
+    file, dialect = write(tmp_path, BASE, "t (ms);F [mN];\n0,5;-1,25;\n1,0;2,5;\n")
+    run = tl.read(file, dialect)
+    assert run["friction_force"].values.tolist() == [-0.00125, 0.0025]
+    assert run["time"].values.tolist() == [0.0, 0.0005]
+    assert run.attrs["time_origin_s"] == 0.0005
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
+def test_encodings_with_a_micro_and_a_degree_sign(tmp_path, encoding):
+    dialect = BASE.replace("[text]", f'[text]\nencoding = "{encoding}"') + (
+        '[[column]]\nquantity = "position"\nname = "x µ"\n'
+        '[[column]]\nquantity = "temperature"\nname = "T"\n'
+    )
+    file, mine = write(
+        tmp_path, dialect, "t [s];F [N];x µ [µm];T [°C]\n0;1;3;20\n1;1;4;21\n", encoding
+    )
+    mine.write_text(dialect, encoding="utf-8")
+    run = tl.read(file, mine)
+    assert run["position"].values == pytest.approx([3e-6, 4e-6])
+    assert run["temperature"].values == pytest.approx([293.15, 294.15])
+
+
+def test_the_wrong_encoding_names_the_key_to_change(tmp_path):
+    text = "# Bahn in µm\nt [s];F [N]\n0;1\n1;1\n"
+    file, dialect = write(tmp_path, BASE.replace("line = 1", "line = 2"), text, "latin-1")
+    with pytest.raises(ReadError, match="encoding = 'latin-1'"):
+        tl.read(file, dialect)
+
+
+def test_sign_scale_and_offset_act_in_the_files_unit(tmp_path):
+    calibrated = BASE.replace('name = "F"', 'name = "F"\nscale = 2.0\noffset = 1.0\nsign = -1')
+    file, dialect = write(tmp_path, calibrated, "t [s];F [mN]\n0;3\n1;4\n")
+    assert tl.read(file, dialect)["friction_force"].values == pytest.approx([-0.007, -0.009])
+
+
+def test_error_codes_and_empty_cells_are_missing_values(tmp_path):
+    data = "t [s];F [N]\n0;1\n1;Err110\n2;\n3;nan\n4;5\n"
+    file, dialect = write(
+        tmp_path, BASE.replace("[header]", 'missing = ["Err110"]\n[header]'), data
+    )
+    np.testing.assert_array_equal(tl.read(file, dialect)["friction_force"], [1, *[np.nan] * 3, 5])
+
+
+def test_columns_between_blanks_of_any_width(tmp_path):
+    spaced = BASE.replace('";"', '"whitespace"').replace('","', '"."')
+    file, dialect = write(tmp_path, spaced, "t[s]   F[N]\n  0.0   1.0\n 10.0\t -2.0  \n")
+    assert tl.read(file, dialect)["friction_force"].values.tolist() == [1.0, -2.0]
+
+
+def test_a_footer_ends_the_table(tmp_path):
+    data = "t [s];F [N]\n0;1\n1;2\nEnd of test\nmean;1,5\n"
+    file, dialect = write(tmp_path, BASE.replace("[header]", 'end = "^End of"\n[header]'), data)
+    assert tl.read(file, dialect).sizes["time"] == 2
+
+
+RATE = BASE.replace('[[column]]\nquantity = "time"\nname = "t"\n', "")
+
+
+def test_time_from_a_sample_rate_or_from_nowhere_says_so(tmp_path):
+    file, dialect = write(
+        tmp_path, RATE + '[time]\nsource = "rate"\nrate = "2 kHz"', "F [N]\n1\n2\n"
+    )
+    run = tl.read(file, dialect)
+    assert float(run["time"][1]) == 0.0005 and run.attrs["time_source"] == "sample rate"
+    file, dialect = write(tmp_path, RATE + '[time]\nsource = "none"', "F [N]\n1\n2\n")
+    assert tl.read(file, dialect).attrs["time_source"] == "row number"
+
+
+def test_speed_follows_from_rotation_and_radius(tmp_path):
+    turning = BASE + (
+        '[[column]]\nquantity = "rotation_speed"\nname = "n"\nunit = "rpm"\n'
+        '[[value]]\nname = "track_radius"\npattern = "^# radius: (\\\\S+)"\nunit = "mm"\nto = "m"\n'
+        '[speed]\nsource = "rotation"\nradius_value = "track_radius"\n'
+    ).replace("\\\\", "\\\\")
+    data = "# radius: 30\nt [s];F [N];n\n0;1;60\n1;1;120\n"
+    file, dialect = write(tmp_path, turning.replace("line = 1", "line = 2"), data)
+    run = tl.read(file, dialect)
+    assert run["sliding_velocity"].values == pytest.approx(0.03 * 2 * np.pi * np.array([1, 2]))
+
+
+def test_a_step_that_states_its_speed_gives_it_along_time(tmp_path):
+    steps = BASE.replace("line = 1", "pattern = '^t '\nrepeats = true").replace(
+        "[header]", "end = '^$'\n[header]"
+    ) + (
+        "[time]\nrestart = 'continue'\n[[value]]\nname = 'set_speed'\nsource = 'step'\n"
+        "pattern = 'v = (\\S+)'\nunit = 'mm/s'\n"
+    )
+    block = "v = {}\nt [s];F [N]\n0;1\n1;1\n\n"
+    file, dialect = write(tmp_path, steps, block.format("0,5") + block.format("2"))
+    run = tl.read(file, dialect)
+    assert run["set_speed"].values.tolist() == [0.0005, 0.0005, 0.002, 0.002]
+    assert run["time"].values.tolist() == [0, 1, 2, 3] and run["step"].values.tolist() == [
+        1,
+        1,
+        2,
+        2,
+    ]
+
+
+def test_nothing_and_too_much_recognised_name_the_way_out(tmp_path, monkeypatch):
+    file = tmp_path / "odd.csv"
+    file.write_text("a,b\n1,2\n")
+    with pytest.raises(ReadError, match="instrument=, one of .*linear_slider"):
+        recognise(file)
+    file.write_text("# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n0,1,1\n")
+    twin = (
+        (schema_folder() / "instruments/linear_slider.toml")
+        .read_text()
+        .replace('name = "linear_slider"', 'name = "twin"', 1)
+    )
+    (tmp_path / "twin.toml").write_text(twin)
+    both = known_dialects() | {"twin": tmp_path / "twin.toml"}
+    monkeypatch.setattr("tribolab.io.dialects.known_dialects", lambda: both)
+    with pytest.raises(ReadError, match="'linear_slider', 'twin'; say which with instrument="):
+        recognise(file)
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.lists(st.floats(-1e6, 1e6, allow_nan=False), min_size=1, max_size=50),
+    st.sampled_from(["\n", "\r\n", "\r", "\r\r\n"]),
+    st.sampled_from([".", ","]),
+    st.booleans(),
+)
+def test_numbers_come_back_exactly_however_they_are_written(
+    tmp_path_factory, numbers, end, decimal, trailing
+):
+    folder = tmp_path_factory.mktemp("written")
+    tail = ";" if trailing else ""
+    rows = [f"{n};{force!r}".replace(".", decimal) + tail for n, force in enumerate(numbers)]
+    data = end.join([f"t [s];F [N]{tail}", *rows, ""])
+    file, dialect = write(folder, BASE.replace('decimal = ","', f'decimal = "{decimal}"'), data)
+    assert tl.read(file, dialect)["friction_force"].values.tolist() == numbers
+
+
+def test_blocks_join_without_loss_in_a_file_longer_than_a_block(tmp_path, monkeypatch):
+    from tribolab.io import text
+
+    numbers = np.random.default_rng(1).normal(size=5000)
+    data = "t [s];F [N]\n" + "".join(f"{n};{force!r}\n" for n, force in enumerate(numbers.tolist()))
+    plain = BASE.replace('decimal = ","', 'decimal = "."')
+    file, dialect = write(tmp_path, plain, data)
+    whole = tl.read(file, dialect)
+    for block in (7, 100, 4096):
+        monkeypatch.setattr(text, "BLOCK", block)
+        run = tl.read(file, dialect)
+        assert run["friction_force"].values.tolist() == numbers.tolist()
+        assert run.attrs["source_sha256"] == whole.attrs["source_sha256"]

@@ -1,0 +1,180 @@
+"""Measured Stribeck curve: repeats of a measurement combined, with what spreads them kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.quantities import stamp
+
+
+class _Value(NamedTuple):
+    """One observation: a pair of strokes or a single stroke."""
+
+    run: int
+    speed: float
+    mu: float
+    sem: float
+    variance: float
+    segments: int
+
+
+def measured_stribeck_curve(
+    frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1
+) -> xr.Dataset:
+    """Combine the segments of one or more runs into friction coefficient over sliding speed.
+
+    Parameters
+    ----------
+    frictions
+        Results of `friction_coefficient`, one for each run of the same system.
+    speed_tolerance
+        Speeds that differ by no more than this ratio belong together. The two strokes of a pair
+        stay together at their mean speed.
+
+    Returns
+    -------
+    xarray.Dataset
+        On dim ``sliding_speed`` [m/s] (mean speed of each group): ``friction_coefficient``;
+        ``_std``, the pooled standard deviation within the segments (the paper's error bar);
+        ``_sem``; ``_within``, the standard deviation of the observations of one run about the run's
+        mean (NaN if no run has two); ``_between``, the standard deviation of the runs' means (NaN
+        for one run); ``runs`` and ``segments``.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no run, or none has a friction coefficient.
+
+    Notes
+    -----
+    Two strokes whose common offset was removed by the half loop are one observation. In each
+    run, and then over the runs, the observations y_i with errors s_i are combined by the
+    random-effects estimate of DerSimonian and Laird [1]_: weights 1/(s_i^2 + tau^2), tau^2 from
+    Q = sum (y_i - y)^2/s_i^2. The standard error is the larger of 1/sqrt(sum w_i) and
+    that of Hartung and Knapp [2]_, sqrt(sum w_i (y_i - y)^2 / ((k - 1) sum w_i)). With one run the
+    spread between runs is unknown, and the error is that run's own. With two or three runs the
+    spread is itself known poorly; look at ``runs``.
+
+    References
+    ----------
+    .. [1] DerSimonian and Laird (1986), Control. Clin. Trials 7, 177-188.
+       doi:10.1016/0197-2456(86)90046-2
+    .. [2] Hartung and Knapp (2001), Stat. Med. 20, 3875-3889. doi:10.1002/sim.1009
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> one = xr.Dataset({
+    ...     "sliding_speed": ("segment", [1e-3, 1.02e-3, 1e-2]),
+    ...     "friction_coefficient": ("segment", [0.30, 0.32, 0.5]),
+    ...     "friction_coefficient_std": ("segment", [0.01, 0.01, 0.02]),
+    ...     "friction_coefficient_sem": ("segment", [0.002, 0.002, 0.004]),
+    ... })
+    >>> curve = measured_stribeck_curve([one])
+    >>> curve.friction_coefficient.values.round(3).tolist(), curve.segments.values.tolist()
+    ([0.31, 0.5], [2, 1])
+    """
+    if len(frictions) == 0:
+        raise AnalysisError("a measured Stribeck curve needs at least one run; none was given")
+    for friction in frictions:
+        if "friction_coefficient" not in friction:
+            raise AnalysisError(
+                f"{friction.attrs.get('source', 'run')}: no 'friction_coefficient'; a run without"
+                " normal force has friction forces only and makes no Stribeck curve"
+            )
+    values = [v for i, f in enumerate(frictions) for v in _observations(f, i)]
+    values.sort(key=lambda v: v.speed)
+    speed = np.array([v.speed for v in values])
+    edges = np.flatnonzero(np.diff(np.log(speed)) > np.log1p(speed_tolerance)) + 1
+    groups = [group for group in np.split(np.arange(speed.size), edges) if group.size]
+    rows = [_combined([values[i] for i in group]) for group in groups]
+    names = (
+        "sliding_speed",
+        "friction_coefficient",
+        "friction_coefficient_std",
+        "friction_coefficient_sem",
+        "friction_coefficient_within",
+        "friction_coefficient_between",
+        "runs",
+        "segments",
+    )
+    columns = np.array(rows, dtype=float).reshape(-1, len(names)).T
+    data = {k: ("sliding_speed", v) for k, v in zip(names[1:], columns[1:], strict=True)}
+    for count in ("runs", "segments"):
+        data[count] = "sliding_speed", data[count][1].astype(int)
+    curve = xr.Dataset(data, coords={"sliding_speed": columns[0]})
+    sources = "; ".join(dict.fromkeys(str(f.attrs.get("source", "")) for f in frictions))
+    return stamp(curve, source=sources, speed_tolerance=float(speed_tolerance))
+
+
+def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
+    """Independent observations of a run: pairs of strokes, and strokes without a partner."""
+    speed = friction["sliding_speed"].values
+    mu, std, sem = (friction[f"friction_coefficient{e}"].values for e in ("", "_std", "_sem"))
+    known = np.isfinite(mu) & (speed > 0)
+    own = -1 - np.arange(mu.size)
+    key = own
+    if "pair" in friction and friction.attrs.get("offset") == "half loop":
+        key = np.where(friction["pair"].values >= 0, friction["pair"].values, own)
+    result = []
+    for one in np.unique(key[known]):
+        part = known & (key == one)
+        result.append(
+            _Value(
+                run,
+                float(speed[part].mean()),
+                float(mu[part].mean()),
+                float(sem[part].mean()),  # strokes of a pair share one error
+                float(np.mean(std[part] ** 2)),
+                int(part.sum()),
+            )
+        )
+    return result
+
+
+def _random_effects(y: np.ndarray, s: np.ndarray) -> tuple[float, float]:
+    """Mean and standard error of observations that scatter more than their own errors say."""
+    if y.size == 1:
+        return float(y[0]), float(s[0])
+    known = s[np.isfinite(s) & (s > 0)]
+    # an error that is unknown or zero is as large as the usual one; weights stay finite
+    usual = float(np.median(known)) if known.size else 1e-12 + float(np.std(y))
+    w = 1 / np.where(np.isfinite(s) & (s > 0), s, usual) ** 2
+    mean = (w @ y) / w.sum()
+    excess = w @ (y - mean) ** 2 - (y.size - 1)
+    tau2 = max(0.0, excess / (w.sum() - (w @ w) / w.sum()))
+    w = 1 / (1 / w + tau2)
+    mean = (w @ y) / w.sum()
+    spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
+    return float(mean), float(np.sqrt(max(1 / w.sum(), spread)))
+
+
+def _combined(values: list[_Value]) -> tuple[float, ...]:
+    """One row of the curve from the observations of one speed."""
+    run = np.array([v.run for v in values])
+    mu, sem = np.array([v.mu for v in values]), np.array([v.sem for v in values])
+    means, squares, freedom = [], 0.0, 0
+    for one in np.unique(run):
+        part = run == one
+        means.append(_random_effects(mu[part], sem[part]))
+        squares += float(np.sum((mu[part] - mu[part].mean()) ** 2))
+        freedom += int(part.sum()) - 1
+    y, s = np.array(means).T
+    mean, error = _random_effects(y, s)
+    weight = np.array([v.segments for v in values], dtype=float)
+    variance = weight @ np.array([v.variance for v in values]) / weight.sum()
+    return (
+        float(np.exp(np.mean(np.log([v.speed for v in values])))),
+        mean,
+        float(np.sqrt(variance)),
+        error,
+        float(np.sqrt(squares / freedom)) if freedom else np.nan,
+        float(np.std(y, ddof=1)) if y.size > 1 else np.nan,
+        float(np.unique(run).size),
+        float(weight.sum()),
+    )
