@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, nearest
-from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest
+from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest, unsteadiness
 from tribolab.friction.statistics import NOTHING, Estimate, describe
 from tribolab.quantities import stamp
 
@@ -66,7 +66,9 @@ def friction_coefficient(
     (F_f - F_b)/2 is what friction is. Both strokes then have the same mean force; their
     coefficients differ only by their own normal forces, and they are one observation, not two. Each
     keeps the standard deviation and the trend of its own stroke. Both errors are
-    sqrt(sem_f^2 + sem_b^2)/2, because each value rests on both strokes.
+    sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the scatter
+    of the offsets from pair to pair beyond their errors, a wander of the zero that no stroke shows
+    by itself (it needs at least two pairs).
     With another offset the error is sqrt(sem^2 + (sem(F_0)/F_N)^2). The zero of
     the normal force adds mu sem(F_N0)/F_N.
 
@@ -168,8 +170,8 @@ def _removed(
     zero: Zero | None,
     offset: str,
     name: str,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, str]:
-    """Offset of each segment, error of its mean without the offset, half loop, method."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, str, float]:
+    """Offset of each segment, error of its mean without it, half loop, method, unsteadiness."""
     half = _halves(means, sign, pair, lambda f, b: (f - b) / 2)
     half_error = _halves(errors, sign, pair, lambda f, b: np.hypot(f, b) / 2)
     middle = _halves(means, sign, pair, lambda f, b: (f + b) / 2)
@@ -185,17 +187,23 @@ def _removed(
             " velocity or normal force that would show it); use offset='auto'"
         )
     if offset == "none":
-        return np.zeros(means.size), errors, half, "none: not wanted"
+        return np.zeros(means.size), errors, half, "none: not wanted", 0.0
     if offset == "zero load" or (offset == "auto" and not paired.any() and zero is not None):
-        return np.full(means.size, zero.value), np.hypot(errors, zero.error), half, "zero load"
+        return np.full(means.size, zero.value), np.hypot(errors, zero.error), half, "zero load", 0.0
     if not paired.any():
-        return np.zeros(means.size), errors, half, "none: no pair of strokes, no rest without load"
+        why = "none: no pair of strokes, no rest without load"
+        return np.zeros(means.size), errors, half, why, 0.0
+    one = np.unique(pair[paired], return_index=True)[1]
+    tau = unsteadiness(middle[paired][one], half_error[paired][one])
     # a stroke without a partner: the zero without load, else what the pairs say on average
     if zero is None:
         spread = np.std(middle[paired]) if np.unique(pair[paired]).size > 1 else 0.0
-        zero = Zero(float(middle[paired].mean()), float(np.hypot(spread, half_error[paired].mean())))
+        zero = Zero(
+            float(middle[paired].mean()), float(np.hypot(spread, half_error[paired].mean()))
+        )
     removed = np.where(paired, middle, zero.value)
-    return removed, np.where(paired, half_error, np.hypot(errors, zero.error)), half, "half loop"
+    alone = np.hypot(errors, zero.error)
+    return removed, np.hypot(np.where(paired, half_error, alone), tau), half, "half loop", tau
 
 
 def _from_forces(
@@ -215,7 +223,7 @@ def _from_forces(
     zero, normal_zero = unloaded_rest(run, segments, load)
     if offset == "none":
         normal_zero = None
-    removed, errors, half, method = _removed(
+    removed, errors, half, method, tau = _removed(
         means, _column(forces, "sem"), sign, pair, zero, offset, _name(run)
     )
     data = {
@@ -245,7 +253,9 @@ def _from_forces(
         shared = _halves(own * pressed, sign, pair, lambda f, b: np.hypot(f, b) / 2) / pressed
         extra = np.sqrt(np.maximum(errors**2 - _column(forces, "sem") ** 2, 0)) / pressed
         sem = np.where(
-            np.isfinite(shared) & (method == "half loop"), shared, np.hypot(own, extra)
+            np.isfinite(shared) & (method == "half loop"),
+            np.hypot(shared, tau / pressed),
+            np.hypot(own, extra),
         )
         sem = np.hypot(sem, mu * n0.error / pressed)
     data |= {
@@ -288,9 +298,7 @@ def _ratio(
     return found, f"{left} samples without contact left out" if left else ""
 
 
-def _from_ratio(
-    run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.ndarray
-) -> xr.Dataset:
+def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.ndarray) -> xr.Dataset:
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     found = [describe(time[s], ratio[s]) for s in _slices(run, segments)]
@@ -301,7 +309,7 @@ def _from_ratio(
         sign, pair = np.ones_like(sign), np.full_like(pair, -1)
         if offset == "auto":
             offset = "none"
-    removed, errors, _, method = _removed(
+    removed, errors, _, method, _ = _removed(
         means, _column(found, "sem"), sign, pair, None, offset, _name(run)
     )
     if rectified and offset == "none":

@@ -100,3 +100,30 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
             pair[i : i + 2] = number
             number += 1
     return pair
+
+
+def unsteadiness(offset: np.ndarray, error: np.ndarray) -> float:
+    """Standard deviation of an offset from one pair of strokes to the next, beyond its errors.
+
+    A zero that wanders more slowly than a stroke lasts does not show within the stroke, but it
+    falsifies the half loop as much as the offset. The scatter of the offsets of successive
+    pairs shows it: their second differences d_i (free of a steady drift) have the variance
+    s_{i-1}^2 + 4 s_i^2 + s_{i+1}^2 + 6 tau^2. With two pairs the first difference has to do; one
+    pair tells nothing.
+
+    Parameters
+    ----------
+    offset, error
+        Offsets of the pairs in order and their standard errors, in one unit (pair).
+    """
+    known = np.isfinite(offset) & np.isfinite(error)
+    offset, variance = offset[known], error[known] ** 2
+    if offset.size < 2:
+        return 0.0
+    if offset.size == 2:
+        return float(np.sqrt(max(0.0, (np.diff(offset)[0] ** 2 - variance.sum()) / 2)))
+    second = np.diff(offset, 2) ** 2
+    expected = variance[:-2] + 4 * variance[1:-1] + variance[2:]
+    weight = 1 / np.maximum(expected, 1e-6 * expected.max() + 1e-300) ** 2
+    tau2 = (weight @ (second - expected)) / (6 * weight.sum())
+    return float(np.sqrt(max(0.0, tau2)))

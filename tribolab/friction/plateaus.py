@@ -78,7 +78,8 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
             # quantised readings repeat, so that their median difference is zero: then the
             # mean below the largest tenth stands in
             spread = max(
-                np.median(chosen) / 0.6745, np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)])
+                np.median(chosen) / 0.6745,
+                np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)]),
             )
             levels.append((np.median(middle[inside]), spread, chosen.size))
     if not levels:
@@ -207,7 +208,9 @@ def straight_pieces(
         memory = np.maximum(1.0, (left + right) / np.maximum(a[0] + b[0] - 4, 1))
         speed = np.maximum(np.abs(a[3]), np.abs(b[3]))
         # a step s under one line leaves s/4 rms: a quarter of the resolution is the limit
-        small = (resolution * speed / 4) ** 2 / (noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60)
+        small = (resolution * speed / 4) ** 2 / (
+            noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60
+        )
         cost = (both - left - right) / np.maximum(WORSE * memory, shorter * small)
         if not (cost < 1).any():
             break

@@ -20,7 +20,9 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     return float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
 
 
-def block_slopes(time: np.ndarray, position: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+def block_slopes(
+    time: np.ndarray, position: np.ndarray, size: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Mean time and least-squares slope of each block of `size` samples."""
     count = time.size // size
     t = time[: count * size].reshape(count, size)
@@ -40,9 +42,7 @@ def block_slopes(time: np.ndarray, position: np.ndarray, size: int) -> tuple[np.
     return middle[:, 0], np.where(good, better, slope)
 
 
-def velocity_blocks(
-    time: np.ndarray, position: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, int]:
+def velocity_blocks(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
     """Velocity on blocks just long enough for a slope good to a few percent.
 
     Parameters
@@ -62,7 +62,11 @@ def velocity_blocks(
         moving = np.abs(v) > 0.2 * np.quantile(np.abs(v), 0.9)
         if not moving.any():
             break
-        spacing = np.median(np.diff(t)[moving[1:]]) / size if moving[1:].any() else np.diff(t).mean() / size
+        spacing = (
+            np.median(np.diff(t)[moving[1:]]) / size
+            if moving[1:].any()
+            else np.diff(t).mean() / size
+        )
         error = noise * np.sqrt(12 / size) / (size * spacing)
         if error <= WANTED_ERROR * np.median(np.abs(v[moving])):
             break

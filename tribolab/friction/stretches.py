@@ -84,9 +84,7 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: Piece) -> Piece:
     return piece._replace(velocity=slopes.line(time[inside], position[inside])[1])
 
 
-def _kinks(
-    time: np.ndarray, position: np.ndarray, pieces: list[Piece], size: int
-) -> list[Piece]:
+def _kinks(time: np.ndarray, position: np.ndarray, pieces: list[Piece], size: int) -> list[Piece]:
     """Put the border of two neighbouring plateaus where their straight lines cross."""
     kept = [i for i, p in enumerate(pieces) if p.kind == "constant"]
     result = list(pieces)
@@ -188,7 +186,9 @@ def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:
             kind = "not a number"
         speed = _set_speed(run, first, last)
         result.append(
-            Stretch(float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed))
+            Stretch(
+                float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed)
+            )
         )
     return result
 
@@ -209,7 +209,9 @@ def from_set_speed(run: xr.Dataset, min_samples: int) -> list[Stretch]:
         if speed == 0:
             kind = "at rest"
         result.append(
-            Stretch(float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed))
+            Stretch(
+                float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed)
+            )
         )
     return result
 
