@@ -1,6 +1,7 @@
 """Dialects: what they can say, and how they answer to what cannot be."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -222,3 +223,18 @@ def test_blocks_join_without_loss_in_a_file_longer_than_a_block(tmp_path, monkey
         run = tl.read(file, dialect)
         assert run["friction_force"].values.tolist() == numbers.tolist()
         assert run.attrs["source_sha256"] == whole.attrs["source_sha256"]
+
+
+def test_the_complete_example_of_the_readme_works_as_it_stands(tmp_path):
+    blocks = re.findall(
+        r"```(\w+)\n(.*?)```", (schema_folder() / "README.md").read_text(encoding="utf-8"), re.S
+    )
+    text, toml = (next(body for kind, body in blocks if kind == k) for k in ("text", "toml"))
+    file, dialect = write(tmp_path, toml, text, "latin-1", "steel_12N.txt")
+    run = tl.read(file, dialect)
+    assert run["friction_force"].values == pytest.approx([-0.0125, -0.0131, -0.0133])
+    np.testing.assert_array_equal(run["normal_force"], [11.98, np.nan, 12.02])
+    assert run["time"].values.tolist() == [0.0, 0.002, 0.004]
+    assert run.attrs["set_normal_force_N"] == 12.0 and run.attrs["operator"] == "M. Weber"
+    assert run.attrs["recorded_at"] == "2025-04-03T10:15:00"
+    assert run.attrs["columns_not_used"] == "Fehler"

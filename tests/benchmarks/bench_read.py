@@ -66,7 +66,8 @@ def write_csv(path: Path, rows: int) -> None:
                     40.0 * np.sin(time),
                 ]
             )
-            file.writelines("%.3f,%.4f,%.4f,%.5f\n" % tuple(row) for row in table.tolist())
+            table = table.tolist()
+            file.writelines(f"{t:.3f},{x:.4f},{z:.4f},{p:.5f}\n" for t, x, z, p in table)
 
 
 def measure(name: str, path: Path, dialect: Path) -> tuple[float, float]:

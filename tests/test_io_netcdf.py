@@ -1,0 +1,113 @@
+"""What is written as netCDF comes back the same."""
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tribolab as tl
+from tribolab.errors import ReadError, TribolabError
+from tribolab.io.netcdf import CHUNK, read_netcdf, write_netcdf
+
+ATTRIBUTES = st.dictionaries(
+    st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),
+    st.one_of(
+        st.none(),
+        st.booleans(),
+        st.integers(-(2**31), 2**31 - 1),
+        st.floats(allow_nan=False),
+        st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=20),
+        st.lists(st.text(st.characters(codec="utf-8"), max_size=5), max_size=4),
+        st.dictionaries(st.text(st.characters(codec="utf-8"), max_size=4), st.integers()),
+        st.tuples(st.text(st.characters(codec="utf-8"), max_size=4), st.booleans()),
+    ),
+    max_size=5,
+)
+
+
+def example_run(n=200_000):
+    time = np.arange(n) / 1000.0
+    force = np.sin(time)
+    force[5] = np.nan
+    data = xr.Dataset(
+        {
+            "friction_force": ("time", force, {"units": "N", "ancillary_variables": "f_qc"}),
+            "f_qc": ("time", np.tile([1, 2, 3, 4], n // 4).astype(np.int8), {"flag": (1, 2)}),
+            "f_qc_tests": ("time", np.arange(n, dtype=np.uint32)),
+            "step": ("time", np.ones(n, dtype=np.int32)),
+        },
+        coords={"time": ("time", time, {"units": "s"})},
+        attrs={"source": "a.csv", "nothing": None, "sure": True, "of": {"a": [1, None]}},
+    )
+    return data
+
+
+def test_values_types_flags_and_attributes_come_back_the_same(tmp_path):
+    data = example_run()
+    back = read_netcdf(write_netcdf(data, tmp_path / "run.nc"))
+    assert back.identical(data)
+    assert {n: v.dtype for n, v in back.variables.items()} == {
+        n: v.dtype for n, v in data.variables.items()
+    }
+    assert back.attrs["sure"] is True and back.attrs["nothing"] is None
+
+
+@settings(deadline=None, max_examples=40)
+@given(ATTRIBUTES)
+def test_any_attribute_comes_back_the_same(tmp_path_factory, attrs):
+    file = tmp_path_factory.mktemp("nc") / "a.nc"
+    data = xr.Dataset({"x": ("segment", [1.5], attrs)}, attrs=attrs)
+    back = read_netcdf(write_netcdf(data, file))
+    assert back.attrs == attrs and back["x"].attrs == attrs
+    assert {k: type(v) for k, v in back.attrs.items()} == {k: type(v) for k, v in attrs.items()}
+
+
+def test_text_that_looks_encoded_stays_text(tmp_path):
+    data = xr.Dataset(attrs={"a": "json:1", "b": "json-tuple:[]", "c": ""})
+    assert read_netcdf(write_netcdf(data, tmp_path / "a.nc")).attrs == data.attrs
+
+
+def test_long_arrays_are_chunked_and_compressed(tmp_path):
+    file = write_netcdf(example_run(), tmp_path / "run.nc")
+    with netCDF4.Dataset(file) as opened:
+        variable = opened["friction_force"]
+        assert variable.chunking() == [CHUNK]
+        assert variable.filters()["zlib"] and variable.filters()["shuffle"]
+
+
+def test_groups_share_a_file_and_text_variables_survive(tmp_path):
+    file = tmp_path / "all.nc"
+    run = example_run(100)
+    omitted = xr.Dataset({"omitted_reason": ("omitted", np.array(["ramp", "at rest"], object))})
+    write_netcdf(run, file, group="run")
+    write_netcdf(omitted, file, group="segments")
+    assert read_netcdf(file, group="run").identical(run)
+    assert read_netcdf(file, group="segments")["omitted_reason"].values.tolist() == [
+        "ramp",
+        "at rest",
+    ]
+    assert tl.read(file).identical(run)
+    with pytest.raises(ReadError, match="no group 'friction'; there are run, segments"):
+        read_netcdf(file, group="friction")
+
+
+def test_an_empty_table_comes_back_empty(tmp_path):
+    data = xr.Dataset({"start": ("segment", np.empty(0)), "n": ("segment", np.empty(0, np.int8))})
+    assert read_netcdf(write_netcdf(data, tmp_path / "a.nc")).identical(data)
+
+
+def test_a_real_run_comes_back_from_its_netcdf(shared_data, tmp_path):
+    run = tl.read(shared_data / "cetr_umt2_MIT/HT-2n-6-4 2_001.csv")
+    assert tl.read(write_netcdf(run, tmp_path / "run.nc")).identical(run)
+
+
+def test_what_cannot_be_written_or_read_is_our_error(tmp_path):
+    with pytest.raises(TribolabError, match="cannot be written"):
+        write_netcdf(xr.Dataset(), tmp_path / "no" / "folder.nc")
+    with pytest.raises(ReadError, match="no such file"):
+        read_netcdf(tmp_path / "no.nc")
+    (tmp_path / "text.nc").write_text("no netCDF")
+    with pytest.raises(ReadError, match="not a netCDF"):
+        read_netcdf(tmp_path / "text.nc")
