@@ -1,14 +1,15 @@
-"""How far apart two clocks are, told from the signals: friction differs by the speed of sliding.
+"""How far apart two clocks are, told from the signals: friction answers to motion, never before.
 
-Shift the motion log by s, sort the samples of the friction force into classes of velocity (sign and
-third of a decade), and ask how much of the force's variance the classes explain. It is most where
-starts, stops and reversals of the table meet those of the force:
+Coarse: shift the motion log by s, sort the samples of the friction force into classes of velocity
+(sign and third of a decade), and ask how much of the force's variance the classes explain:
 
     R^2(s) = [sum_k S_k^2 / N_k - S^2 / N] / [Q - S^2 / N],
 
 with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
-squares of all. Every s of a coarse grid at once by FFT (each term is a cross-correlation), then
-finer from cumulative sums between the moments at which the class changes.
+squares of all; every s of a grid at once by FFT, as each term is a cross-correlation. It is late,
+for friction builds up over a distance after each start and stays on at rest.
+
+Where starts of motion are seen, they tell it finely: `tribolab.io.clock_starts`.
 """
 
 from __future__ import annotations
@@ -19,9 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
+
 Array = NDArray[np.float64]
 
-_GRID = 1 << 16  # cells of the coarse grid over the longer log
+_GRID = 1 << 14  # cells of the coarse grid over the longer log
 _OVERLAP = 0.6  # least part of the largest possible overlap
 _DECADES = 5  # slower than this many decades below the fastest is rest
 _BINS = 3  # classes per decade
@@ -33,11 +36,17 @@ _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is 
 
 
 class Estimate(NamedTuple):
-    """Motion clock + shift = force clock [s], its uncertainty [s], and the variance explained."""
+    """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
+
+    Away from the middle, `rate` times the time since then on the motion clock is added.
+    `explained` is the part of the force's variance that the classes of velocity explain.
+    """
 
     shift: float
     uncertainty: float
     explained: float
+    rate: float = 0.0
+    rate_uncertainty: float = QUARTZ
 
 
 def estimate_clock_shift(
@@ -61,11 +70,15 @@ def estimate_clock_shift(
 
     Notes
     -----
-    The uncertainty is the shift at which the explained sum of squares falls by four residual
-    variances (times their correlation), at least half a sample period of the fastest region.
+    The uncertainty is a standard deviation: that of each start (from its residual, and half a
+    sampling interval of both logs), enlarged where the starts differ by more, and that of the
+    clocks' rates as far as the starts leave it open (10 ppm if they tell nothing about it). Where
+    no start is seen, the shift is the coarse one, and its uncertainty the shift at which the
+    explained sum of squares falls by more than chance allows.
     """
     good = np.isfinite(force)
     force_time, force = force_time[good], force[good]
+    velocity = np.nan_to_num(velocity)
     if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
         return None
     classes = velocity_classes(velocity)
@@ -76,21 +89,25 @@ def estimate_clock_shift(
     if coarse is None:
         return None
     shift, half = coarse
-    fine = _Fine(force_time, force, motion_time, classes)
-    period = fine.period
-    while half > 0.2 * period:
-        shifts = shift + half * np.linspace(-1.0, 1.0, 33)
-        shift = float(shifts[np.argmax([fine.explained(s) for s in shifts])])
-        half /= 8.0
-    shift = fine.vertex(shift)
-    if fine.significance(shift) < _LEAST_SIGNIFICANCE:
+    fit = _Classes(force_time, force, motion_time, classes)
+    around = half
+    while around > 0.2 * fit.period:
+        shifts = shift + around * np.linspace(-1.0, 1.0, 33)
+        shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
+        around /= 8.0
+    if fit.significance(shift) < _LEAST_SIGNIFICANCE:
         return None
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
-    uncertainty = fine.uncertainty(shift)
-    stretch = np.ptp(motion_time) / len(np.unique(classes))
-    if uncertainty > _SHARP * stretch:
+    uncertainty = fit.uncertainty(shift)
+    if uncertainty > _SHARP * np.ptp(motion_time) / len(np.unique(classes)):
         return None
-    return Estimate(shift, uncertainty, fine.ratio(shift))
+    way = np.sign(classes - _BINS * _DECADES)
+    # late by up to a rest, as the force stays on
+    span = max(4.0 * half, 0.5 * float(np.median(np.diff(motion_time[changes(way)]))))
+    told = shift_from_starts(Logs(force_time, force, motion_time, velocity, way), shift, span)
+    if told is None:
+        return Estimate(shift, uncertainty, fit.ratio(shift))
+    return Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
@@ -149,7 +166,7 @@ def _coarse(
     return float(good[np.argmin(np.abs(good - expected))]), 2.0 * cell
 
 
-class _Fine:
+class _Classes:
     """Explained sum of squares at any shift, from cumulative sums of the force."""
 
     def __init__(
@@ -198,15 +215,6 @@ class _Fine:
         independent = len(self._force) / _correlated(self._residual(shift))
         classes = len(np.unique(self._classes)) - 1
         return ratio / classes * independent / max(1.0 - ratio, 1e-12)
-
-    def vertex(self, shift: float) -> float:
-        """Summit of a parabola through the values around a maximum."""
-        offsets = self.period * np.linspace(-1.5, 1.5, 13)
-        values = np.array([self.explained(shift + offset) for offset in offsets])
-        curvature, slope, _ = np.polyfit(offsets / self.period, values, 2)
-        if curvature >= 0:
-            return shift
-        return shift + self.period * float(np.clip(-slope / (2.0 * curvature), -1.5, 1.5))
 
     def uncertainty(self, shift: float) -> float:
         """Shift at which the explained sum of squares falls by more than chance allows."""

@@ -37,7 +37,9 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
         The part of the run that both logs cover (time), with the companion's signals linearly
         interpolated (set-points and step numbers: held). ``clock_shift_s``, its source
         ("estimated", "given", or "none" where the signals do not tell) and its uncertainty are
-        attributes.
+        attributes. An estimated shift is that in the middle of the companion log; where the
+        signals tell that one clock is faster, ``clock_rate`` is not zero, and force clock =
+        motion clock + ``clock_shift_s`` + ``clock_rate`` (motion clock - its middle).
 
     Raises
     ------
@@ -47,7 +49,8 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     force_clock = run["time"].to_numpy() + run.attrs["time_origin_s"]
     motion_clock = motion["time"].to_numpy() + motion.attrs["time_origin_s"]
     shift, source, attrs = _shift(run, motion, force_clock, motion_clock, clock_shift)
-    shifted = motion_clock + shift
+    middle = 0.5 * (motion_clock[0] + motion_clock[-1])
+    shifted = motion_clock + shift + attrs["clock_rate"] * (motion_clock - middle)
     first = int(np.searchsorted(force_clock, shifted[0], side="left"))
     last = int(np.searchsorted(force_clock, shifted[-1], side="right"))
     names = f"{run.attrs['source']} and {motion.attrs['source']}"
@@ -81,7 +84,7 @@ def _shift(
     given: float | None,
 ) -> tuple[float, str, dict[str, float]]:
     if given is not None:
-        return float(given), "given", {"clock_shift_uncertainty_s": 0.0}
+        return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
     apart = _recorded_apart(run, motion)
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]
     velocity = _velocity(motion, motion_clock)
@@ -96,10 +99,11 @@ def _shift(
                 "estimated",
                 {
                     "clock_shift_uncertainty_s": estimate.uncertainty,
+                    "clock_rate": estimate.rate,
                     "clock_shift_explained": estimate.explained,
                 },
             )
-    return expected, "none", {"clock_shift_uncertainty_s": float("nan")}
+    return expected, "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
 
 
 def _velocity(motion: xr.Dataset, clock: np.ndarray) -> np.ndarray | None:

@@ -1,0 +1,239 @@
+"""How far apart two clocks are, told by starts of motion: force changes only once the table moves.
+
+Before a start, at t_0 on the motion clock, the friction force only relaxes; after it, it is a
+function of the distance d slid, of unknown shape, for friction builds up over a distance:
+
+    F = a + b u + c u^2 + sum_j A_j [1 - exp(-d(t - s) / l_j)],   u = min(t - s - t_0, 0),
+
+with lengths l_j from the distance slid within a few samples to that within the window. How the
+residual grows as the shift s is moved tells how sharply that start sees s: a fast one to a
+millisecond, a slow one hardly. The starts are put together robustly. Stops are not used: friction
+follows the velocity while the table slows down, and stays on when it is at rest.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard deviation
+_MOST_STARTS = 64
+_REACH = 200  # samples after a start that are looked at, and at most as many before it
+_THINNED = 160  # of them, when all would be more
+_LENGTHS = 5  # exponentials that make up a start's curve
+_FLOOR = 8.0  # a start speaks against a shift by no more than this log-likelihood
+_TELLING = 0.3  # the rate is fitted if it becomes this much better known than it was
+
+
+class Told(NamedTuple):
+    """Shift in the middle of the motion log [s] and rate, each with its standard deviation."""
+
+    shift: float
+    uncertainty: float
+    rate: float
+    rate_uncertainty: float
+
+
+class _Start(NamedTuple):
+    """A start of motion: when on the motion clock, and how far to look before and after it [s]."""
+
+    time: float
+    before: float
+    after: float
+    few: float  # s, some samples of the force
+    sampling: float  # s, how finely the two logs see it
+
+
+class Logs:
+    """The two logs, and what is derived from them once: integrals over time."""
+
+    def __init__(
+        self,
+        force_time: Array,
+        force: Array,
+        motion_time: Array,
+        velocity: Array,
+        way: NDArray[np.int64],
+    ):
+        self.force_time, self.force, self.motion_time = force_time, force, motion_time
+        self.way = way  # -1 backward, 0 at rest, 1 forward
+        self.impulse = _integral(force_time, force)
+        self.speed = np.abs(velocity)
+        self.change = np.diff(self.speed) / np.diff(motion_time)
+        self.path = _integral(motion_time, self.speed)
+
+    def slid(self, start: _Start, since: Array) -> Array:
+        """Distance [m] since the start, at times since then."""
+        return np.maximum(self._path(start.time + since) - self._path(start.time), 0.0)
+
+    def _path(self, time: Array | float) -> Array:
+        """Path [m]; the velocity is linear between two samples, so the path is a parabola."""
+        time = np.clip(time, self.motion_time[0], self.motion_time[-1])
+        i = np.minimum(np.searchsorted(self.motion_time, time, "right"), len(self.path) - 1) - 1
+        since = time - self.motion_time[i]
+        return self.path[i] + (self.speed[i] + 0.5 * self.change[i] * since) * since
+
+    def shapes(self, start: _Start, since: Array) -> Array:
+        """Functions of the time since the start that make up the force (..., function)."""
+        early, end = self.slid(start, np.array([start.few, start.after]))
+        lengths = np.geomspace(max(early, 1e-3 * end), end, _LENGTHS)
+        before = np.minimum(since, 0.0) / start.before
+        after = -np.expm1(-self.slid(start, since)[..., None] / lengths)
+        constant = np.ones_like(since)
+        return np.concatenate([np.stack([constant, before, before**2], axis=-1), after], axis=-1)
+
+
+def _integral(time: Array, values: Array) -> Array:
+    return np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (values[1:] + values[:-1]))])
+
+
+def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """First samples of rests and strokes, and the last sample."""
+    return np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
+
+
+def _starts(logs: Logs, shift: float) -> list[_Start]:
+    change = changes(logs.way)
+    moving = logs.way[change[1:-1]] != 0
+    numbers = np.flatnonzero(moving & (np.diff(change[1:]) >= 8)) + 1
+    if len(numbers) > _MOST_STARTS:
+        numbers = numbers[np.linspace(0, len(numbers) - 1, _MOST_STARTS).astype(np.int64)]
+    starts = []
+    for before, first, last in zip(
+        change[numbers - 1], change[numbers], change[numbers + 1], strict=True
+    ):
+        begin = float(logs.motion_time[first - 1])
+        at = int(np.searchsorted(logs.force_time, begin + shift))
+        # some way off, as the shift is not yet known
+        after = np.diff(logs.force_time[at + 20 : at + 80])
+        ahead = np.diff(logs.force_time[max(at - 12, 0) : max(at - 1, 0)])
+        if len(after) < 20 or len(ahead) < 5:
+            continue
+        interval = float(np.median(after))
+        moved = float(np.median(np.diff(logs.motion_time[first : first + 16])))
+        rest, stroke = begin - logs.motion_time[before], logs.motion_time[last] - begin
+        starts.append(
+            _Start(
+                begin,
+                min(0.6 * rest, max(_REACH * interval, 12.0 * float(np.median(ahead)))),
+                min(0.5 * stroke, _REACH * interval),
+                3.0 * interval,
+                0.5 * float(np.hypot(interval, moved)),
+            )
+        )
+    return [start for start in starts if start.before > 0]
+
+
+def shift_from_starts(logs: Logs, shift: float, span: float) -> Told | None:
+    """Shift, its uncertainty, rate and its uncertainty; None where no start tells."""
+    starts = _starts(logs, shift)
+    if not starts:
+        return None
+    middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
+    since = np.array([start.time for start in starts]) - middle
+    sampling = np.array([start.sampling for start in starts])
+    centre = np.full(len(starts), _together(logs, starts, shift, span))
+    seen = np.full((2, len(starts)), np.inf)
+    half, sharp = 0.1 * span, np.arange(len(starts))
+    fit = None
+    while sharp.size:
+        step = half / 20.0
+        offsets = half * np.linspace(-1.0, 1.0, 41)
+        for k in sharp:
+            found = _one(logs, starts[k], centre[k] + offsets)
+            if found[1] < 0.45 * half:  # 0.58 where it tells nothing
+                seen[:, k] = found
+        told = np.isfinite(seen[1])
+        if not told.any():
+            return fit
+        # nothing is seen between samples
+        errors = np.hypot(seen[1], sampling)
+        fit = _combined(since[told], seen[0][told], errors[told], sampling.min())
+        centre = fit[0] + fit[2] * since
+        sharp = np.flatnonzero((seen[1] < 1.5 * step) & (step > sampling))
+        half = 4.0 * step
+    return fit
+
+
+def _together(logs: Logs, starts: list[_Start], shift: float, span: float) -> float:
+    """Shift on a grid at which the starts' curves fit best, in windows that move with it."""
+    shifts = shift + span * np.linspace(-1.0, 1.0, 101)
+    total = np.zeros(len(shifts))
+    half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer towards the start
+    for start in starts:
+        edges = np.concatenate([-start.before * half[::-1], start.after * half[1:]])
+        basis = np.linalg.qr(logs.shapes(start, 0.5 * (edges[1:] + edges[:-1])))[0]
+        impulse = np.interp(start.time + edges + shifts[:, None], logs.force_time, logs.impulse)
+        means = np.diff(impulse, axis=1) / np.diff(edges)
+        means -= means.mean(axis=1, keepdims=True)
+        residual = means - (means @ basis) @ basis.T
+        # relative to the variance there, or the quietest place would fit best
+        variance = np.maximum((means**2).sum(axis=1), 1e-30)
+        total += np.logaddexp(_likelihood(residual, variance, basis.shape[1]), -_FLOOR)
+    return float(shifts[np.argmax(total)])
+
+
+def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
+    """Shift that one start tells and its standard deviation, from the same samples for all."""
+    window = start.time + np.array([shifts[0] - start.before, shifts[-1] + start.after])
+    first, last = np.searchsorted(logs.force_time, window)
+    part = slice(first, last, max(1, -(-(last - first) // _THINNED)))
+    time, force = logs.force_time[part], logs.force[part]
+    force = force - force.mean()
+    shapes = logs.shapes(start, time - start.time - shifts[:, None])
+    if len(time) < shapes.shape[-1] + 8:
+        return float(shifts.mean()), np.inf
+    turned = np.swapaxes(shapes, 1, 2)
+    normal = turned @ shapes
+    # the curves are much alike; nothing hangs on the single amplitudes
+    ridge = 1e-8 * np.trace(normal, axis1=1, axis2=2)
+    normal += ridge[:, None, None] * np.eye(shapes.shape[-1])
+    amplitudes = np.linalg.solve(normal, (turned @ force)[..., None])
+    residual = force - (shapes @ amplitudes)[..., 0]
+    weight = np.exp(_likelihood(residual, np.ones(len(shifts)), shapes.shape[-1]))
+    weight /= weight.sum()
+    mean = float(weight @ shifts)
+    return mean, float(np.sqrt(weight @ (shifts - mean) ** 2 + (shifts[1] - shifts[0]) ** 2 / 12))
+
+
+def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
+    """Log-likelihood of each row relative to the best, allowing for correlated residuals."""
+    squares = np.maximum((residual**2).sum(axis=1), 1e-30)
+    relative = squares / variance
+    best = residual[np.argmin(relative)]
+    alike = float(best[1:] @ best[:-1]) / max(float(best @ best), 1e-30)
+    hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
+    freedom = max(residual.shape[1] - parameters - 1, 1) / hanging
+    return -0.5 * freedom * np.log(relative / relative.min())
+
+
+def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told:
+    """Shift in the middle and rate, each with its uncertainty, from the starts' shifts."""
+    design = np.stack([np.ones_like(since), since], axis=1)
+    prior = np.diag([0.0, QUARTZ**-2])
+    order = np.argsort(shifts)
+    half = np.cumsum(errors[order] ** -2.0)
+    # from the weighted median, so that a few that are wrong do not matter
+    middle = shifts[order][np.searchsorted(half, 0.5 * half[-1])]
+    told = np.array([middle, 0.0])
+    for _ in range(50):
+        apart = (shifts - design @ told) / errors
+        weight = errors**-2.0 / (1.0 + (apart / 2.0) ** 2)
+        told = np.linalg.solve(
+            design.T @ (weight[:, None] * design) + prior, design.T @ (weight * shifts)
+        )
+    apart = (shifts - design @ told) / errors
+    squares = float((errors**2 * weight) @ apart**2)
+    scatter = max(1.0, squares / max(len(shifts) - 1, 1))
+    normal = design.T @ (weight[:, None] * design) / scatter + prior
+    error = np.sqrt(np.diag(np.linalg.inv(normal)))
+    if error[1] > _TELLING * QUARTZ:
+        # a rate that is hardly told only moves the shift away from where it is known
+        told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
+    # the loggers see all starts in the same way, so this does not become less by their number
+    error[0] = np.hypot(error[0], common)
+    return Told(float(told[0]), float(error[0]), float(told[1]), float(error[1]))
