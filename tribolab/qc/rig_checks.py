@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.signals import quantisation_step
 from tribolab.qc.subject import RunSubject
 
 
@@ -73,7 +74,10 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     slopes = np.array([_slope(subject, part) for part in subject.slices])
     # the slope is a mean over the segment: compare it with the mean of the signed velocity
     velocity = subject.segment_means("sliding_velocity")
-    error = slopes / np.where(velocity == 0, np.nan, velocity) - 1
+    # a creep that the encoder does not resolve is no speed to compare with
+    resolution = quantisation_step(subject.signals["position"])
+    resolved = np.abs(velocity) * subject.durations > limits["steps"] * resolution
+    error = slopes / np.where(resolved & (velocity != 0), velocity, np.nan) - 1
     return by_segment(subject, "sliding_velocity", error, limits, "d(position)/dt off the velocity")
 
 
@@ -172,6 +176,7 @@ RIG_CHECKS = (
         {
             "suspect": Limit(0.03, "1", "encoder and tachometer agree to 1 %"),
             "fail": Limit(0.20, "1", "one of the two is wrong"),
+            "steps": Limit(100.0, "1", "a hundred steps of the encoder tell a speed to 1 %"),
         },
         _velocity_position,
     ),

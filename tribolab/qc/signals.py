@@ -171,7 +171,8 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
         (time)
     excess
         How many times more samples lie on the outermost value than on the next level of the
-        quantised signal; the tail of a signal that is not cut off thins out.
+        quantised signal, and by five standard deviations of that count at least; the tail of a
+        signal that is not cut off thins out.
     fewest
         Smallest number of samples on the outermost value; where the signal is quantised, at
         least two of them in a row.
@@ -193,6 +194,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
         depth = sign * (end - known)
         below = int(((depth > 0) & (depth <= step)).sum())
         in_a_row = bool((at_end[1:] & at_end[:-1]).any())
-        if count >= fewest and (in_a_row or step == 0) and count > excess * below:
+        enough = max(fewest, excess * below + 5 * np.sqrt(below))
+        if count >= enough and (in_a_row or step == 0):
             flags[at_end] = SUSPECT
     return flags

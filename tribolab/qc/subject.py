@@ -214,13 +214,8 @@ class RunSubject:
         name = self.friction_signal
         if name is None:
             raise Skip("no friction was recorded")
-        strong = self.segment_stds(name) > least * self.typical_friction
-        return np.where(strong, self._periods, np.nan)
-
-    @cached_property
-    def _periods(self) -> np.ndarray:
-        values = self.signals[str(self.friction_signal)]
-        return np.array([stick_slip_periods(values[part]) for part in self.slices])
+        values, floor = self.signals[name], least * self.typical_friction
+        return np.array([stick_slip_periods(values[part], floor) for part in self.slices])
 
     @cached_property
     def lines(self) -> list[Line]:
@@ -256,13 +251,15 @@ def _std(values: np.ndarray) -> float:
     return float(known.std()) if known.size else float("nan")
 
 
-def stick_slip_periods(values: np.ndarray, correlation: float = 0.4) -> float:
+def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: float = 0.4) -> float:
     """Count the periods of an oscillation that dominates a signal; NaN if none does.
 
     Parameters
     ----------
     values
         (time), evenly sampled.
+    least
+        Least standard deviation that counts as an oscillation, in the unit of the values.
     correlation
         Least autocorrelation at the lag of one period.
 
@@ -278,7 +275,7 @@ def stick_slip_periods(values: np.ndarray, correlation: float = 0.4) -> float:
         views.append(values[: 4096 * size].reshape(4096, size).mean(axis=1))
     for view, share in zip(views, (4096 / values.size, 1.0), strict=False):
         n = view.size
-        if n < 32 or not np.isfinite(view).all() or np.ptp(view) == 0:
+        if n < 32 or not np.isfinite(view).all() or not view.std() > least:
             continue
         place = np.linspace(-1, 1, n)
         part = view - np.polynomial.polynomial.polyval(
