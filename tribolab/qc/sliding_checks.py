@@ -186,7 +186,7 @@ SLIDING_CHECKS = (
         "Slide further at this speed.",
         {
             "contact_widths": Limit(
-                0.03, "1", "asperities (tens of um) renew many times; shear takes about as much"
+                0.01, "1", "up to about a hundredth of its width a contact shears, not slides"
             ),
             "periods": Limit(4.0, "1", "a mean over fewer periods depends on where it is cut"),
             "strength": _STRENGTH,

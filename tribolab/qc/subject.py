@@ -265,8 +265,8 @@ def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: floa
 
     Notes
     -----
-    The lag of the highest peak of the autocorrelation behind its first zero, of the straightened
-    signal: on means over stretches for slow waves, on the first samples as they are for fast ones.
+    The lag of the first high summit of the autocorrelation behind its first zero. Of the
+    straightened signal: means over stretches for slow waves, the first samples for fast ones.
     """
     best, count = correlation, float("nan")
     size = values.size // 4096
@@ -289,7 +289,12 @@ def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: floa
         below = np.flatnonzero(auto < 0)
         if below.size == 0:
             continue
-        lag = below[0] + int(np.argmax(auto[below[0] :]))
+        tail = auto[below[0] :]
+        # periods that scatter agree again by chance at long lags: the first high summit counts
+        high = tail > 0.6 * tail.max()
+        start = int(np.argmax(high))
+        stop = start + int(np.argmin(np.append(high[start:], False)))
+        lag = below[0] + start + int(np.argmax(tail[start:stop]))
         if auto[lag] > best and lag < n // 2 - 1:
             best, count = float(auto[lag]), n / lag / min(share, 1.0)
     return count
