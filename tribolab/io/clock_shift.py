@@ -32,6 +32,8 @@ _LEAST_EXPLAINED = 0.2
 _LEAST_CONTRAST = 0.1
 _LEAST_SIGNIFICANCE = 10.0  # as an F ratio
 _SHARP = 0.03  # most that the uncertainty may be, in mean durations of a class
+_WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
+_ALMOST_NOTHING = 1e-3  # and this
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 
 
@@ -84,6 +86,8 @@ def estimate_clock_shift(
     classes = velocity_classes(velocity)
     if classes.min() == classes.max():
         return None
+    way = np.sign(classes - _BINS * _DECADES)
+    classes = np.where(way == 0, _BINS * _DECADES * 2 + 2 + _last(way), classes)
     force = (force - force.mean()) / force.std()
     coarse = _coarse(force_time, force, motion_time, classes, expected)
     if coarse is None:
@@ -101,10 +105,11 @@ def estimate_clock_shift(
     uncertainty = fit.uncertainty(shift)
     if uncertainty > _SHARP * np.ptp(motion_time) / len(np.unique(classes)):
         return None
-    way = np.sign(classes - _BINS * _DECADES)
     # late by up to a rest, as the force stays on
-    span = max(4.0 * half, 0.5 * float(np.median(np.diff(motion_time[changes(way)]))))
-    told = shift_from_starts(Logs(force_time, force, motion_time, velocity, way), shift, span)
+    span = max(8.0 * half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
+    logs = Logs(force_time, force, motion_time, velocity, way)
+    unexplained = _WORSE * (1.0 - fit.ratio(shift)) + _ALMOST_NOTHING
+    told = shift_from_starts(logs, shift, span, lambda s: 1.0 - fit.ratio(s) < unexplained)
     if told is None:
         return Estimate(shift, uncertainty, fit.ratio(shift))
     return Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
@@ -124,6 +129,12 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
     rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
     return rank * np.sign(np.nan_to_num(velocity)).astype(np.int64) + _BINS * _DECADES
+
+
+def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Direction of the last motion; each has its own class of rest, as friction stays on."""
+    moved = np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))
+    return way[moved]
 
 
 def _coarse(
@@ -162,7 +173,8 @@ def _coarse(
     if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
         return None
     peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
-    good = shifts[peak & (explained >= usual + _TIE * (best - usual))]
+    tie = max(usual + _TIE * (best - usual), best - 0.5 * (1.0 - best) - _ALMOST_NOTHING)
+    good = shifts[peak & (explained >= tie)]
     return float(good[np.argmin(np.abs(good - expected))]), 2.0 * cell
 
 
@@ -175,6 +187,7 @@ class _Classes:
         self._time, self._force = force_time, force
         self._edges = np.arange(len(force) + 1.0)
         self._sum = np.concatenate([[0.0], np.cumsum(force)])
+        self._square = np.concatenate([[0.0], np.cumsum(force**2)])
         change = np.flatnonzero(np.diff(classes)) + 1
         middles = 0.5 * (motion_time[change] + motion_time[change - 1])
         self._moments = np.concatenate([motion_time[:1], middles, motion_time[-1:]])
@@ -205,9 +218,10 @@ class _Classes:
 
     def ratio(self, shift: float) -> float:
         """Part of the variance that is explained."""
-        residual = self._residual(shift)
-        explained = self.explained(shift)
-        return explained / (explained + float(residual @ residual))
+        at, _, total = self._parts(shift)
+        squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
+        whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
+        return float(self.explained(shift) / max(whole, 1e-12))
 
     def significance(self, shift: float) -> float:
         """F ratio: variance explained per class against the residual's, correlation allowed for."""

@@ -13,6 +13,7 @@ follows the velocity while the table slows down, and stays on when it is at rest
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -24,8 +25,9 @@ QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard devia
 _MOST_STARTS = 64
 _REACH = 200  # samples after a start that are looked at, and at most as many before it
 _THINNED = 160  # of them, when all would be more
-_LENGTHS = 5  # exponentials that make up a start's curve
-_FLOOR = 8.0  # a start speaks against a shift by no more than this log-likelihood
+_FIRST = 2.0  # samples: the distance slid within them is the shortest length
+_LENGTHS = 8  # exponentials that make up a start's curve
+_FLOOR = 20.0  # a start speaks against a shift by no more than this log-likelihood
 _TELLING = 0.3  # the rate is fitted if it becomes this much better known than it was
 
 
@@ -80,7 +82,7 @@ class Logs:
     def shapes(self, start: _Start, since: Array) -> Array:
         """Functions of the time since the start that make up the force (..., function)."""
         early, end = self.slid(start, np.array([start.few, start.after]))
-        lengths = np.geomspace(max(early, 1e-3 * end), end, _LENGTHS)
+        lengths = np.geomspace(max(early, 1e-5 * end), end, _LENGTHS)
         before = np.minimum(since, 0.0) / start.before
         after = -np.expm1(-self.slid(start, since)[..., None] / lengths)
         constant = np.ones_like(since)
@@ -97,6 +99,7 @@ def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _starts(logs: Logs, shift: float) -> list[_Start]:
+    """Find the starts, also by reversal, that both logs see."""
     change = changes(logs.way)
     moving = logs.way[change[1:-1]] != 0
     numbers = np.flatnonzero(moving & (np.diff(change[1:]) >= 8)) + 1
@@ -120,48 +123,67 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
             _Start(
                 begin,
                 min(0.6 * rest, max(_REACH * interval, 12.0 * float(np.median(ahead)))),
-                min(0.5 * stroke, _REACH * interval),
-                3.0 * interval,
+                min(0.5 * stroke, max(_REACH * interval, 12.0 * moved)),
+                _FIRST * interval,
                 0.5 * float(np.hypot(interval, moved)),
             )
         )
     return [start for start in starts if start.before > 0]
 
 
-def shift_from_starts(logs: Logs, shift: float, span: float) -> Told | None:
-    """Shift, its uncertainty, rate and its uncertainty; None where no start tells."""
-    starts = _starts(logs, shift)
-    if not starts:
-        return None
+def shift_from_starts(
+    logs: Logs, shift: float, span: float, allowed: Callable[[float], bool]
+) -> Told | None:
+    """Shift that the starts of motion tell.
+
+    Parameters
+    ----------
+    logs
+        Both logs.
+    shift, span
+        Where to begin, and how far on either side of it to look [s].
+    allowed
+        Whether a shift [s] is possible otherwise; `shift` itself must be.
+
+    Returns
+    -------
+    Told or None
+        None where no start tells.
+    """
+    for width in (span, 0.5 * span):  # what is around a start depends on the shift
+        starts = _starts(logs, shift)
+        if not starts:
+            return None
+        shifts = shift + width * np.linspace(-1.0, 1.0, 161)
+        shift = _together(logs, starts, shifts[[allowed(s) for s in shifts]])
     middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
     since = np.array([start.time for start in starts]) - middle
     sampling = np.array([start.sampling for start in starts])
-    centre = np.full(len(starts), _together(logs, starts, shift, span))
+    centre = np.full(len(starts), shift)
     seen = np.full((2, len(starts)), np.inf)
-    half, sharp = 0.1 * span, np.arange(len(starts))
-    fit = None
-    while sharp.size:
+    half = 0.05 * span
+    while True:
         step = half / 20.0
         offsets = half * np.linspace(-1.0, 1.0, 41)
-        for k in sharp:
-            found = _one(logs, starts[k], centre[k] + offsets)
-            if found[1] < 0.45 * half:  # 0.58 where it tells nothing
-                seen[:, k] = found
+        for k, start in enumerate(starts):
+            found, error = _one(logs, start, centre[k] + offsets)
+            # 0.58 of the half width where it tells nothing; at an end, it is cut off
+            if error < 0.4 * half and abs(found - centre[k]) < 0.7 * half:
+                seen[:, k] = found, error
         told = np.isfinite(seen[1])
         if not told.any():
-            return fit
+            return None
         # nothing is seen between samples
         errors = np.hypot(seen[1], sampling)
         fit = _combined(since[told], seen[0][told], errors[told], sampling.min())
-        centre = fit[0] + fit[2] * since
-        sharp = np.flatnonzero((seen[1] < 1.5 * step) & (step > sampling))
+        if step < sampling.min():
+            return fit
+        centre = fit.shift + fit.rate * since
         half = 4.0 * step
-    return fit
 
 
-def _together(logs: Logs, starts: list[_Start], shift: float, span: float) -> float:
+def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
     """Shift on a grid at which the starts' curves fit best, in windows that move with it."""
-    shifts = shift + span * np.linspace(-1.0, 1.0, 101)
     total = np.zeros(len(shifts))
     half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer towards the start
     for start in starts:
@@ -212,7 +234,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
 
 
 def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told:
-    """Shift in the middle and rate, each with its uncertainty, from the starts' shifts."""
+    """Put the starts' shifts together, at times since the middle; `common` error is in all."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, QUARTZ**-2])
     order = np.argsort(shifts)
