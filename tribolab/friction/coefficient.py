@@ -64,11 +64,11 @@ def friction_coefficient(
     -----
     With F_f and F_b the mean forces of a pair, F_0 = (F_f + F_b)/2 is removed and the half loop
     (F_f - F_b)/2 is what friction is. Both strokes then have the same mean force; their
-    coefficients differ only by their own normal forces, and they are one observation, not two. Each
+    coefficients differ only by their own normal forces: they are one observation, not two. Each
     keeps the standard deviation and the trend of its own stroke. Both errors are
-    sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the scatter
-    of the offsets from pair to pair beyond their errors, a wander of the zero that no stroke shows
-    by itself (it needs at least two pairs).
+    sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the
+    scatter of the offsets from pair to pair beyond their errors, a wander of the zero that no
+    stroke shows by itself (it needs at least two pairs).
     With another offset the error is sqrt(sem^2 + (sem(F_0)/F_N)^2). The zero of
     the normal force adds mu sem(F_N0)/F_N.
 

@@ -10,12 +10,13 @@ from tribolab.friction.plateaus import (
     Noise,
     estimate_noise,
     find_breaks,
+    quantum,
     running_median,
     straight_pieces,
 )
 
 MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
-FEW_BLOCKS = 2048  # in a second look
+FEW_BLOCKS = 512  # in a second look
 PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
 KEPT = ("constant", "at rest")
 
@@ -56,7 +57,7 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
 
 
 def block_size(samples: int, most: int = MOST_BLOCKS) -> int:
-    """Samples per block: 1 for small records, else a power of two of at least `PARTS`."""
+    """Return the samples per block: 1 for small records, else a power of two, `PARTS` or more."""
     if samples <= most:
         return 1
     return max(PARTS, 2 ** int(np.ceil(np.log2(samples / most))))
@@ -93,6 +94,9 @@ def _locate(
     t, v = _blocks(time, velocity, size)
     if noise is None:
         noise = estimate_noise(v)
+        # a steady reading may be half a step off, and says nothing of it
+        step = quantum(velocity)
+        noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
     else:  # the parent's noise per sample, averaged over a block
         noise = Noise(noise.floor / np.sqrt(size), noise.relative / np.sqrt(size))
     single = Noise(noise.floor * np.sqrt(size), noise.relative * np.sqrt(size))
@@ -119,7 +123,7 @@ def _locate(
         if last - first < fewest and kind != "ramp":
             kind = "too short"
         if size > 1:
-            if kind not in KEPT and not (kind == "ramp" and last - first >= 8 * size):
+            if kind not in KEPT and not (kind == "ramp" and last - first >= 4 * size):
                 continue
             pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
             pending = last
@@ -212,7 +216,7 @@ def _proven(pieces: list[Piece], limits: Limits) -> list[Piece]:
     """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
-        around = pieces[max(i - 1, 0) : i] + pieces[i + 1 : i + 2]
+        around = pieces[max(i - 2, 0) : i] + pieces[i + 1 : i + 3]
         size = piece.last - piece.first
         longest = max((p.last - p.first for p in around), default=0)
         uncertain = np.sqrt(12) * piece.error * 3 > limits.drift * abs(piece.velocity)

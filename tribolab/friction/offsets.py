@@ -79,7 +79,7 @@ def _mean_zero(found: list[tuple[float, float]]) -> Zero | None:
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
-    """Number of the pair that each segment belongs to, -1 for none (segment).
+    """Return the number of the pair that each segment belongs to, -1 for none (segment).
 
     Neighbours in time of opposite direction pair if their speeds differ by no more than
     `tolerance` of their mean and, where the run has set speeds, those agree.
@@ -103,7 +103,7 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
 
 
 def unsteadiness(offset: np.ndarray, error: np.ndarray) -> float:
-    """Standard deviation of an offset from one pair of strokes to the next, beyond its errors.
+    """Estimate how an offset moves (std) from one pair of strokes to the next, beyond its errors.
 
     A zero that wanders more slowly than a stroke lasts does not show within the stroke, but it
     falsifies the half loop as much as the offset. The scatter of the offsets of successive

@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-SIGNIFICANT = 5.0  # standard errors between neighbouring windows that make a break
-WORSE = 12.0  # squares (in variances) by which one line may be worse than two
+SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
+WORSE = 16.0  # squares (in variances) by which one line may be worse than two
 
 
 class Noise(NamedTuple):
@@ -56,6 +56,18 @@ def running_median(values: np.ndarray) -> np.ndarray:
     padded = np.concatenate([values[:1].repeat(2), values, values[-1:].repeat(2)])
     stack = np.stack([padded[i : i + values.size] for i in range(5)])
     return np.partition(stack, 2, axis=0)[2]
+
+
+def quantum(values: np.ndarray) -> float:
+    """Return the step of quantised readings; 0 if they are not quantised."""
+    some = values[:: 1 + values.size // 8192]
+    levels = np.unique(some)
+    if levels.size < 2 or 2 * levels.size > some.size:
+        return 0.0
+    gaps = np.diff(levels)
+    # what differs in the last digit only is one level
+    gaps = gaps[gaps > 1e-9 * np.abs(levels).max()]
+    return float(gaps.min()) if gaps.size else 0.0
 
 
 def estimate_noise(velocity: np.ndarray) -> Noise:
@@ -102,9 +114,9 @@ def find_breaks(
     total = np.concatenate([[0.0], np.cumsum(velocity)])
     found = np.zeros(0, dtype=int)
     free = np.zeros(m + 1, dtype=int)  # 1 where a break stands
-    width = 1
+    width, memory = 1, 1.0
     while 2 * width <= m:
-        k = np.arange(width, m - width + 1)
+        k = np.arange(width, m - width + 1, max(1, width // 64))
         before = (total[k] - total[k - width]) / width
         after = (total[k + width] - total[k]) / width
         jump = np.abs(after - before)
@@ -116,10 +128,13 @@ def find_breaks(
         crowd = np.concatenate([[0], np.cumsum(free)])
         clear = crowd[np.minimum(k + width, m + 1)] - crowd[np.maximum(k - width + 1, 0)] == 0
         if clear.any():
-            # noise with memory spreads the window means more than white noise would
-            usual = score[clear][:: 1 + m // 2048]
-            usual = usual[np.isfinite(usual)]
-            memory = max(1.0, float(np.median(usual)) / 0.6745) if usual.size > 8 else 1.0
+            # noise with memory spreads the window means more than white noise would; windows too
+            # wide to be many cannot tell, and keep what the narrower ones told
+            if 16 * width <= m:
+                usual = score[clear][:: 1 + m // 2048]
+                usual = usual[np.isfinite(usual)]
+                if usual.size > 16:
+                    memory = max(memory, float(np.median(usual)) / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
             free[found_now] = 1

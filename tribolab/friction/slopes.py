@@ -1,4 +1,4 @@
-"""Velocity from a position record: robust slopes over blocks, because pointwise dx/dt is useless."""
+"""Velocity from a position record: robust slopes over blocks; pointwise dx/dt is useless."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ FEWEST = 8  # samples in a block
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
-    """Standard deviation of the position readings [m], from their distance to the chord of both
-    neighbours, which a constant speed leaves at zero.
+    """Estimate the standard deviation of the position readings [m].
+
+    From their distance to the chord of both neighbours, which a constant speed leaves at zero.
     """
     if time.size < 3:
         return 0.0

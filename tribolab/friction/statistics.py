@@ -8,11 +8,14 @@ record's window, Var = int S(f) sinc^2(f T) df. The spectrum is that of an autor
 N ln(residual variance) + 3 p. One formula thus serves white noise, noise with memory,
 and stick-slip, whose periods cancel but for the last, unfinished one [1]_.
 
-Three corrections were calibrated on simulated records (``tests/test_statistics.py`` states
-and tests the coverage): (i) a dip of the fitted spectrum at zero frequency is not believed where
-no strong line explains it; (ii) below a strong line only part of the line's fitted tail is
-counted, because whole periods cancel better than the model knows; (iii) few effective samples
-widen the error, so that three standard errors still cover 99 %.
+Three corrections were calibrated on simulated records: (i) a dip of the fitted spectrum at zero
+frequency is not believed where no strong line explains it; (ii) below a strong line only part of
+the line's fitted tail is counted, because whole periods cancel better than the model knows;
+(iii) few effective samples widen the error. Coverage of the true mean by 1 and by 3 standard
+errors, over 8000 records each (``tests/test_statistics.py`` tests it on smaller ensembles): white
+noise 69 and 99.7 %; memory (AR(1)) of 1/100, 1/50, 1/20 of the record 75, 75, 73 % and 99.5, 99.4,
+98.7 %; stick-slip of 5 to 10 periods with 5 to 10 % jitter 63 to 83 % and at least 99 %. The
+error is too wide (75 to 92 % within 1) where a stroke holds a whole number of teeth.
 
 A drift is part of the signal and is not removed: it lengthens the memory and widens the error.
 
@@ -30,12 +33,16 @@ import numpy as np
 from scipy import stats
 
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
-ORDER = 24  # highest order: a quarter of the blocks, enough for five teeth of a saw
+ORDER = 20  # highest order: as long as one of five teeth of a saw
 PENALTY = 3.0  # for each coefficient
 GRID = 2048  # frequencies of the spectrum's quadrature
 LINE = 150.0  # a peak so much above the spectrum at zero is a line
-TAIL = 0.5  # share of the line's tail that is counted
-WIDENING, FEW = 0.42, 25.0  # the error grows by up to 42 % below 25 effective samples
+TAIL = 0.3  # share of the line's tail that is counted
+BESIDE = 0.3  # widening where the noise beside a line is all that moves the mean
+# how much the error is widened (and narrowed again where few samples were found because the memory
+# was overestimated), and below how many effective samples
+WIDENING, FEW = 0.62, 20.0
+NARROWING, FEWER = 0.2, 11.0
 
 
 class Estimate(NamedTuple):
@@ -119,10 +126,17 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:
     """Weights by time, summing to one, if the spacing is uneven; None if it is even."""
-    steps = np.diff(time[:: max(1, time.size // 4096)])
-    if np.quantile(steps, 0.95) <= 2 * np.quantile(steps, 0.05):
+    bins = min(32, time.size // 8)
+    if bins < 2:
         return None
-    weight = np.gradient(time)
+    edges = np.searchsorted(time, np.linspace(time[0], time[-1], bins + 1)[1:-1])
+    count = np.diff(np.concatenate([[0], edges, [time.size]]))
+    count = count[count > 0]  # a pause is not a slow rate
+    if count.max() <= 2 * count.min() + 2:
+        return None
+    steps = np.diff(time)
+    # the shorter neighbouring step, so that the samples beside a pause do not stand for the pause
+    weight = np.minimum(np.append(steps, steps[-1]), np.append(steps[0], steps))
     return weight / weight.sum()
 
 
@@ -187,7 +201,8 @@ def spectrum(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     tuple
-        Power per frequency (records, frequency) and whether a line stands in it (records).
+        Power per frequency (records, frequency), and the power between the lines where the
+        spectrum has lines, else 0 (records).
     """
     n = records.shape[1]
     a, sigma, _ = autoregression(records, min(ORDER, n // 4))
@@ -202,7 +217,7 @@ def spectrum(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     below = cycles[None, :] < cycles[peak][:, None] / 2
     floor = power.min(axis=1, keepdims=True)
     damped = floor + TAIL * (power - floor)
-    return np.where(line[:, None] & below, damped, power), line
+    return np.where(line[:, None] & below, damped, power), np.where(line, floor[:, 0], 0.0)
 
 
 def variance_of_sum(power: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -213,7 +228,7 @@ def variance_of_sum(power: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 
 def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Standard error of each record's mean: as the spectrum gives it, and widened for few samples.
+    """Return the standard error of each mean: plain, and widened for few samples.
 
     Parameters
     ----------
@@ -227,12 +242,21 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     n = records.shape[1]
     centred = records - records.mean(axis=1, keepdims=True)
-    power, _ = spectrum(centred)
+    power, floor = spectrum(centred)
     plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
     effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
-    few = FEW * min(n / BLOCKS, 1)
     student = stats.t.ppf(0.995, n - 1) / stats.norm.ppf(0.995)
-    return plain, plain * student * (1 + WIDENING / (1 + (effective / few) ** 4))
+    # the many coefficients that describe a line leave the noise beside it less well known
+    share = floor / n / np.maximum(plain**2, 1e-300)
+    beside = 1 + BESIDE * share**2
+    return plain, plain * student * beside * _widening(effective, n)
+
+
+def _widening(effective: np.ndarray | float, n: int) -> np.ndarray | float:
+    """Return the factor by which a spectrum known from few effective samples widens an error."""
+    share = effective / min(n / BLOCKS, 1)
+    wide = 1 + WIDENING / (1 + (share / FEW) ** 2)
+    return wide * (1 - NARROWING / (1 + (share / FEWER) ** 2))
 
 
 def trend(record: np.ndarray) -> tuple[float, float]:
@@ -252,7 +276,6 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     error = float(np.sqrt(variance_of_sum(power, weights)[0]))
     plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
     effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)
-    few = FEW * min(n / BLOCKS, 1)
-    error *= 1 + WIDENING / (1 + (effective / few) ** 4)
+    error *= _widening(effective, n)
     freedom = max(effective - 2, 2.0)
     return slope, float(2 * stats.t.sf(abs(slope) / error, freedom))

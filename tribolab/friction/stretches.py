@@ -22,14 +22,14 @@ class Stretch(NamedTuple):
 
 
 def name_of(run: xr.Dataset) -> str:
-    """What errors call the run: its source file if known."""
+    """Return what errors call the run: its source file if known."""
     return str(run.attrs.get("source", "run"))
 
 
 def velocity_source(run: xr.Dataset) -> str:
     """Say what tells the speed of the run: the best of what it has."""
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
-        if name in run and np.isfinite(run[name].values).any():
+        if name in run and _any_number(run[name].values):
             return source
     if "step" in run:
         return "step"
@@ -42,6 +42,11 @@ def velocity_source(run: xr.Dataset) -> str:
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
         " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'"
     )
+
+
+def _any_number(values: np.ndarray) -> bool:
+    """Whether there is a number among the values; the first few nearly always tell."""
+    return bool(np.isfinite(values[:1000]).any() or np.isfinite(values).any())
 
 
 def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -154,7 +159,7 @@ def _wide(time: np.ndarray, index: int, piece: Piece) -> bool:
 
 
 def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -> np.ndarray:
-    """Samples of a plateau after which too long a pause follows."""
+    """Return the samples of a plateau after which too long a pause follows."""
     inside = time[piece.first : piece.last]
     if piece.kind != "constant" or inside.size < 2:
         return np.zeros(0, dtype=int)
