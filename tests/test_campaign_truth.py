@@ -8,7 +8,7 @@ from campaigns import simulated
 
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
-from tribolab.report.truth import compare_run, compare_with_truth, summary
+from tribolab.report.truth import compare_run, summary, write_truth
 
 
 def true_segments():
@@ -78,7 +78,7 @@ def test_shares_count_the_segments_that_were_found():
 def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
     campaign = simulated(tmp_path)
     outcome = process(load_campaign(campaign), tmp_path / "results")
-    result = compare_with_truth(outcome, campaign.parent)
+    result = write_truth(outcome, campaign.parent)
     assert (result.true, result.missed, result.extra) == (24, 0, 0)
     table = pd.read_csv(tmp_path / "results" / "tables" / "truth.csv")
     speed = table["sliding_speed_m_s"] / table["true_sliding_speed_m_s"]

@@ -213,12 +213,12 @@ def test_numbers_come_back_exactly_however_they_are_written(
 def test_blocks_join_without_loss_in_a_file_longer_than_a_block(tmp_path, monkeypatch):
     from tribolab.io import text
 
-    numbers = np.random.default_rng(1).normal(size=5000)
+    numbers = np.random.default_rng(1).normal(size=1500)
     data = "t [s];F [N]\n" + "".join(f"{n};{force!r}\n" for n, force in enumerate(numbers.tolist()))
     plain = BASE.replace('decimal = ","', 'decimal = "."')
     file, dialect = write(tmp_path, plain, data)
     whole = tl.read(file, dialect)
-    for block in (7, 100, 4096):
+    for block in (17, 100, 4096):
         monkeypatch.setattr(text, "BLOCK", block)
         run = tl.read(file, dialect)
         assert run["friction_force"].values.tolist() == numbers.tolist()

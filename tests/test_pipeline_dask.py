@@ -18,16 +18,14 @@ distributed = pytest.importorskip("distributed")
 @pytest.fixture
 def cluster(tmp_path):
     """Two worker processes; what the scheduler logs about a dead worker is expected."""
-    with (
-        distributed.LocalCluster(
-            n_workers=2,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            local_directory=str(tmp_path),
-            silence_logs=logging.CRITICAL,
-        ) as cluster
-    ):
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        local_directory=str(tmp_path),
+        silence_logs=logging.CRITICAL,
+    ) as cluster:
         yield cluster
 
 

@@ -34,7 +34,8 @@ REASON = "bad.csv: column 'Fx' has no unit; name it in the header, e.g. 'Fx [N]'
 
 @pytest.fixture(scope="module")
 def outcome(tmp_path_factory):
-    made = made_outcome(tmp_path_factory.mktemp("made"), RUNS, failed=[("broken", REASON)])
+    folder = tmp_path_factory.mktemp("made")
+    made = made_outcome(folder, RUNS, failed=[("broken", REASON)], samples=60)
     write_report(made)
     return made
 
@@ -286,6 +287,7 @@ def test_a_broken_data_file_costs_only_its_own_place(tmp_path):
     made = made_outcome(
         tmp_path / "two",
         [("good", "Sb-R", "glycerol", 31.0, 0.8), ("torn", "Sb-R", "glycerol", 31.0, 0.8)],
+        samples=60,
     )
     (made.folder / made.runs[1].data_file).write_bytes(b"CDF torn")
     write_report(made)

@@ -80,7 +80,7 @@ def demo(
         from tribolab.campaign.executor import default_jobs
         from tribolab.report.run import run_campaign
         from tribolab.report.terminal import truth_lines
-        from tribolab.report.truth import compare_with_truth
+        from tribolab.report.truth import compare_with_truth, write_truth
         from tribolab.rig import simulate_campaign
 
         campaign = folder / "campaign.toml"
@@ -92,10 +92,11 @@ def demo(
                 campaign,
                 jobs=jobs,
                 progress=progress,
-                finish=lambda outcome: compared.append(compare_with_truth(outcome, folder)),
+                finish=lambda outcome: compared.append(write_truth(outcome, folder)),
             )
         code = _show(outcome)
-        for line in truth_lines(compared[0], folder, outcome):
+        comparison = compared[0] if compared else compare_with_truth(outcome, folder)
+        for line in truth_lines(comparison, folder, outcome):
             typer.echo(line)
     raise typer.Exit(code)
 

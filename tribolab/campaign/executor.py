@@ -269,7 +269,8 @@ class _Lane:
     def kill(self) -> None:
         self.killed = True
         for process in self._context.started:
-            process.kill()
+            if process.pid is not None:  # else it was interrupted while starting
+                process.kill()
         self.close()
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.executor import completed
+from tribolab.campaign.executor import WorkerDied, completed
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
@@ -72,6 +72,8 @@ def process(
         If the campaign's patterns no longer match any file.
     OutputError
         If results cannot be written.
+    WorkerDied
+        If there were runs to do and every one of them lost its worker process.
     """
     runs, problems = plan(campaign)
     if problems:
@@ -85,6 +87,7 @@ def process(
     for task, future in completed(executor, process_run, left):
         records[task.run.name] = _record(task, future.exception() or future.result(), staging)
         tell("runs", len(records), len(runs))
+    _refuse_if_all_died(records[task.run.name].outcome for task in left)
     ordered = [records[run.name] for run in runs]
     outcomes = tuple(record.outcome for record in ordered)
     curves = _curves(outcomes, staging, executor, tell)
@@ -111,6 +114,13 @@ def _record(task: RunTask, answer: RunRecord | BaseException, staging: Path) -> 
             "the workers share this folder?"
         )
     return answer
+
+
+def _refuse_if_all_died(outcomes: Iterable[RunOutcome]) -> None:
+    """Do not let results in which nothing could be done replace good ones."""
+    outcomes = list(outcomes)
+    if outcomes and all(outcome.error == WorkerDied.__name__ for outcome in outcomes):
+        raise WorkerDied(f"no run could be done: of {outcomes[0].name}, {outcomes[0].reason}")
 
 
 def _taken_over(

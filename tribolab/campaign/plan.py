@@ -93,6 +93,16 @@ def plan(campaign: Campaign) -> Plan:
     return Plan(runs, [])
 
 
+def scan_files(campaign: Campaign) -> list[Path]:
+    """Return the topography scans of all surfaces."""
+    return [
+        path
+        for surface in campaign.surface
+        for pattern in surface.scans or ()
+        for path in _matching(campaign.raw, pattern)
+    ]
+
+
 def instrument_of(campaign: Campaign, name: str) -> str:
     """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
     return str(campaign.file.parent / name) if name.endswith(".toml") else name

@@ -30,6 +30,7 @@ Source = tuple[str, str, int]
 _NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
+_PACKAGE = Path(__file__).parents[1]
 UNFINISHED = ".part"
 
 
@@ -150,7 +151,9 @@ def explain(error: BaseException) -> tuple[str, str]:
         return f"{Path(str(error.filename)).name}: {error.strerror.lower()}", name
     where = ""
     if frames := traceback.extract_tb(error.__traceback__):
-        where = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}"
+        ours = [frame for frame in frames if Path(frame.filename).is_relative_to(_PACKAGE)]
+        frame = (ours or frames)[-1]
+        where = f" at {Path(frame.filename).name}:{frame.lineno}"
     return f"crashed with {name}{where}: {text}" if text else f"crashed with {name}{where}", name
 
 

@@ -17,7 +17,7 @@ from tribolab.report.page import write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import Outcome, RunOutcome
+    from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 
 Progress = Callable[[str, int, int], None]
 
@@ -53,7 +53,7 @@ def write_report(
     summaries = _summaries(outcome, executor, tell, findings)
     for summary in summaries.values():
         findings += summary.findings
-    curves, points = _curves(outcome, findings)
+    curves, points = _curves(outcome, summaries, findings)
     figures = _figures(outcome, executor, tell, findings, {curve["name"] for curve in curves})
 
     ordered = tables.findings_table(findings)
@@ -91,21 +91,30 @@ def _summaries(
 
 
 def _curves(
-    outcome: Outcome, findings: list[dict[str, str]]
+    outcome: Outcome, summaries: dict[str, RunSummary], findings: list[dict[str, str]]
 ) -> tuple[list[dict[str, Any]], list[pd.DataFrame]]:
     records, points = [], []
+
+    def missing(curve: CurveOutcome, reason: str) -> None:
+        known = [summaries[name].facts["quantity"] for name in curve.run_names if name in summaries]
+        # without a recorded load there is no friction coefficient, so nothing is amiss
+        severity = "suspect" if "friction_coefficient" in known else "note"
+        text, members = f"no measured curve: {reason}", "; ".join(curve.run_names)
+        findings.append(
+            {"severity": severity, "run": members, "where": curve.name, "message": text}
+        )
+
     for curve in outcome.curves:
-        members = "; ".join(curve.run_names)
         if not curve.done:
-            text = f"no measured curve: {curve.reason}"
-            findings.append(
-                {"severity": "suspect", "run": members, "where": curve.name, "message": text}
-            )
+            missing(curve, curve.reason)
             continue
         try:
             record, table = curve_record(Path(outcome.folder), curve)
         except Exception as error:  # recorded, as above
-            findings.append(_error(members, curve.name, error))
+            findings.append(_error("; ".join(curve.run_names), curve.name, error))
+            continue
+        if not table["friction_coefficient"].notna().any():
+            missing(curve, "no segment has both a speed and a friction coefficient")
             continue
         records.append(record)
         points.append(tables.labelled(table, "curve", curve.name, labels(curve)))

@@ -8,12 +8,17 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
+from tribolab import __version__
 from tribolab.campaign.config import Campaign, load_campaign
 from tribolab.campaign.executor import workers
 from tribolab.campaign.outcome import Outcome
 from tribolab.campaign.pipeline import Progress, process
+from tribolab.campaign.plan import scan_files
 from tribolab.campaign.staging import staged
 from tribolab.errors import ConfigError
+from tribolab.provenance import sha256_of, sha256_of_file
+
+FINGERPRINT = ".fingerprint"
 
 
 def run_campaign(
@@ -46,7 +51,8 @@ def run_campaign(
         Called as ``progress(stage, done, total)``.
     finish
         Called with the outcome when everything else is written, before the results appear;
-        what it writes to ``outcome.folder`` appears with them.
+        what it writes to ``outcome.folder`` appears with them. Not called if nothing at all
+        has changed since the last time: then the results that are there stay.
 
     Returns
     -------
@@ -69,14 +75,46 @@ def run_campaign(
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
-    with staged(place) as folder:
-        given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
-        with given as pool:
-            outcome = process(campaign, folder, executor=pool, previous=place, progress=progress)
-            write_report(outcome, executor=pool, progress=progress)
-        if finish is not None:
-            finish(outcome)
+    try:
+        with staged(place) as folder:
+            given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
+            with given as pool:
+                outcome = process(
+                    campaign, folder, executor=pool, previous=place, progress=progress
+                )
+                fingerprint = _fingerprint(outcome)
+                if _is_complete(place, fingerprint) and all(run.reused for run in outcome.runs):
+                    raise _Unchanged
+                write_report(outcome, executor=pool, progress=progress)
+            if finish is not None:
+                finish(outcome)
+            (folder / FINGERPRINT).write_text(fingerprint, encoding="utf-8")
+    except _Unchanged:  # the staged copy is dropped; what is there is the same and complete
+        pass
     return replace(outcome, folder=place)
+
+
+class _Unchanged(Exception):  # noqa: N818 - a way out, not an error
+    pass
+
+
+def _fingerprint(outcome: Outcome) -> str:
+    """Return the checksum of all that a report is made from."""
+    campaign = outcome.campaign
+    return sha256_of(
+        {
+            "tribolab_version": __version__,
+            "campaign": sha256_of_file(campaign.file),
+            "sources": outcome.sources,
+            "scans": [sha256_of_file(path) for path in scan_files(campaign)],
+        }
+    )
+
+
+def _is_complete(place: Path, fingerprint: str) -> bool:
+    made = place / FINGERPRINT
+    there = made.is_file() and (place / "report.html").is_file()
+    return there and made.read_text(encoding="utf-8") == fingerprint
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:

@@ -45,6 +45,8 @@ def _numbers(curve: CurveOutcome, folder: Path) -> tuple[str, str, str, str]:
     data = read_netcdf(folder / curve.data_file)
     segments = f"{int(data.segments.sum())}" if "segments" in data else ""
     speed, mu = data.sliding_speed.values, data.friction_coefficient.values
+    if not speed.size:  # e.g. nothing told the speed
+        return str(len(curve.run_names)), segments, "", ""
     ends = _range(f"{speed.min():.2g}", f"{speed.max():.2g}")
     return (
         str(len(curve.run_names)),

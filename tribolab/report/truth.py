@@ -43,7 +43,7 @@ class Comparison:
 
 
 def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
-    """Compare a campaign's results with the truth and write ``tables/truth.csv``.
+    """Compare a campaign's results with the truth.
 
     Parameters
     ----------
@@ -77,11 +77,18 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
             found = read_netcdf(outcome.folder / run.data_file, group="friction")
             origin = float(found.attrs["time_origin_s"])
         tables.append(compare_run(run.name, true, found, origin))
-    table = pd.concat(tables, ignore_index=True)
+    return summary(pd.concat(tables, ignore_index=True))
+
+
+def write_truth(outcome: Outcome, folder: str | Path) -> Comparison:
+    """Compare with the truth, as `compare_with_truth`, and write ``tables/truth.csv``."""
+    comparison = compare_with_truth(outcome, folder)
     place = outcome.folder / "tables"
     place.mkdir(exist_ok=True)
-    table.to_csv(place / "truth.csv", index=False, float_format="%.9g", lineterminator="\n")
-    return summary(table)
+    comparison.table.to_csv(
+        place / "truth.csv", index=False, float_format="%.9g", lineterminator="\n"
+    )
+    return comparison
 
 
 def compare_run(

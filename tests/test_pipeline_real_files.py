@@ -1,0 +1,49 @@
+"""A campaign over measured files of real instruments, of which hardly anything is known."""
+
+import pytest
+
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.io.netcdf import read_netcdf
+
+TEXT = """
+[campaign]
+name = "what lies about in laboratories"
+raw = "{raw}"
+
+[[run]]
+files = "actuator_friction_CC0/*.csv"
+[run.segments]
+position_range = ["5 mm", "32 mm"]
+
+[[run]]
+files = "rock_velstep_MIT/*.txt"
+
+[[run]]
+files = "stickslip_paper_CeCILL-B/*.mat"
+
+[[run]]
+files = "cetr_umt2_MIT/*.csv"
+cycles = true
+"""
+
+
+@pytest.mark.slow
+def test_every_instrument_gets_as_far_as_its_files_allow(shared_data, tmp_path):
+    campaign = tmp_path / "campaign.toml"
+    campaign.write_text(TEXT.format(raw=shared_data.as_posix()), encoding="utf-8")
+    outcome = process(load_campaign(campaign), tmp_path / "new")
+    done = {run.name: run for run in outcome.runs if run.done}
+    assert {"Circle_1bar", "Kidney_2bar", "O-ring257_1bar", "k168Nm_v1100"} <= set(done)
+    half_loops = {
+        name: read_netcdf(tmp_path / "new" / done[name].data_file, group="friction").half_loop
+        for name in ("Circle_1bar", "Kidney_2bar", "O-ring257_1bar")
+    }
+    reference = {"Circle_1bar": 5.631, "Kidney_2bar": 12.541, "O-ring257_1bar": 7.002}
+    for name, newtons in reference.items():
+        assert float(half_loops[name].mean()) == pytest.approx(newtons, rel=0.02)
+    rock = read_netcdf(
+        tmp_path / "new" / done["velstep4_BRAVA_expb819_basalt"].data_file, group="friction"
+    )
+    assert rock.friction_coefficient.values == pytest.approx([0.60758, 0.60796], rel=1e-3)
+    assert done["k168Nm_v1100"].segments == 1
