@@ -61,7 +61,9 @@ def strokes(
     return Made(stamp(run, source="made.csv"), time[first], time[last - 1], targets)
 
 
-def with_friction(made: Made, mu=0.3, load=31.0, *, scatter=0.002, offset=0.0, seed=0) -> xr.Dataset:
+def with_friction(
+    made: Made, mu=0.3, load=31.0, *, scatter=0.002, offset=0.0, seed=0
+) -> xr.Dataset:
     """Add forces: friction along the velocity, normal force, and an offset of the friction."""
     rng = np.random.default_rng(seed)
     n = made.run.sizes["time"]

@@ -35,26 +35,43 @@ _PUBLIC = {
     "studies": "",
 }
 
-__all__ = ["__version__", *_PUBLIC]
+__all__ = [
+    "__version__",
+    "read",
+    "read_netcdf",
+    "write_netcdf",
+    "find_segments",
+    "friction_coefficient",
+    "half_loops",
+    "measured_stribeck_curve",
+    "load_campaign",
+    "run_campaign",
+    "TribolabError",
+    "plot",
+    "rig",
+    "studies",
+]
 
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.campaign.config import load_campaign
-    from tribolab.report.run import run_campaign
     from tribolab.errors import TribolabError
     from tribolab.friction.coefficient import friction_coefficient, half_loops
     from tribolab.friction.segments import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read
+    from tribolab.report.run import run_campaign
 
 
 def __getattr__(name: str) -> Any:
     if name not in _PUBLIC:
         raise AttributeError(f"module 'tribolab' has no attribute '{name}'")
     home = _PUBLIC[name]
-    value = getattr(importlib.import_module(home), name) if home else importlib.import_module(
-        f"tribolab.{name}"
+    value = (
+        getattr(importlib.import_module(home), name)
+        if home
+        else importlib.import_module(f"tribolab.{name}")
     )
     globals()[name] = value
     return value

@@ -1,4 +1,4 @@
-"""Units at the edge: text such as ``"31 N"`` becomes an SI float; inside there are only SI floats."""
+"""Units at the edge: text such as ``"31 N"`` becomes an SI float; inside are only SI floats."""
 
 from __future__ import annotations
 

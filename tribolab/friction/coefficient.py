@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, nearest
-from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest, unsteadiness
+from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest, wander
 from tribolab.friction.statistics import NOTHING, Estimate, describe
 from tribolab.quantities import stamp
 
@@ -62,6 +62,17 @@ def friction_coefficient(
 
     Notes
     -----
+    <<<<<<< HEAD
+    With F_f = mu N_f + F_0 and F_b = -mu N_b + F_0 the mean forces of a pair and N_f, N_b its mean
+    normal forces, F_0 = (F_f N_b + F_b N_f)/(N_f + N_b) is removed (the half sum where the load is
+    the same or unknown), and mu = (F_f - F_b)/(N_f + N_b). Both strokes then have the same
+    coefficient, and they are one observation, not two. Each keeps the standard deviation and the
+    trend of its own stroke. Both errors are
+    sqrt(max((sem_f^2 + sem_b^2)/4, s^2/2) + D dt/4)/F_N, because each value rests on both strokes:
+    sem_f and sem_b are the errors of the ratio times F_N; s^2 and D say how the zero moves from
+    pair to pair beyond those errors (they need at least two pairs); dt is the time between the
+    strokes.
+    =======
     With F_f and F_b the mean forces of a pair, F_0 = (F_f + F_b)/2 is removed and the half loop
     (F_f - F_b)/2 is what friction is. Both strokes then have the same mean force; their
     coefficients differ only by their own normal forces: they are one observation, not two. Each
@@ -69,6 +80,7 @@ def friction_coefficient(
     sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the
     scatter of the offsets from pair to pair beyond their errors, a wander of the zero that no
     stroke shows by itself (it needs at least two pairs).
+    >>>>>>> campaign
     With another offset the error is sqrt(sem^2 + (sem(F_0)/F_N)^2). The zero of
     the normal force adds mu sem(F_N0)/F_N.
 
@@ -140,6 +152,10 @@ def _slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
     return [slice(a, max(a, b)) for a, b in zip(first, last, strict=True)]
 
 
+def _middles(segments: xr.Dataset) -> np.ndarray:
+    return (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+
+
 def _signs(segments: xr.Dataset, means: np.ndarray) -> np.ndarray:
     """Direction of each segment; where it is unknown, the sign of its friction."""
     direction = segments["direction"].values.astype(float)
@@ -165,16 +181,25 @@ def _halves(
 def _removed(
     means: np.ndarray,
     errors: np.ndarray,
+    load: np.ndarray,
     sign: np.ndarray,
     pair: np.ndarray,
     zero: Zero | None,
     offset: str,
     name: str,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, str, float]:
-    """Offset of each segment, error of its mean without it, half loop, method, unsteadiness."""
+    time: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, str]:
+    """Offset of each segment, error of its mean without it, half loop, method.
+
+    `load` is the mean normal force of each segment, or one for all where it is not known; `time`
+    is the middle of each segment [s].
+    """
     half = _halves(means, sign, pair, lambda f, b: (f - b) / 2)
     half_error = _halves(errors, sign, pair, lambda f, b: np.hypot(f, b) / 2)
-    middle = _halves(means, sign, pair, lambda f, b: (f + b) / 2)
+    # F_f = mu N_f + F_0 and F_b = -mu N_b + F_0: what the load did between the strokes must not
+    # pass for an offset
+    share = _halves(load, sign, pair, lambda f, b: np.array([b, f]) / (f + b))
+    middle = _halves(means * share, sign, pair, lambda f, b: f + b)
     paired = np.isfinite(middle)
     if offset == "half loop" and not paired.any():
         raise AnalysisError(
@@ -187,23 +212,27 @@ def _removed(
             " velocity or normal force that would show it); use offset='auto'"
         )
     if offset == "none":
-        return np.zeros(means.size), errors, half, "none: not wanted", 0.0
+        return np.zeros(means.size), errors, half, "none: not wanted"
     if offset == "zero load" or (offset == "auto" and not paired.any() and zero is not None):
-        return np.full(means.size, zero.value), np.hypot(errors, zero.error), half, "zero load", 0.0
+        return np.full(means.size, zero.value), np.hypot(errors, zero.error), half, "zero load"
     if not paired.any():
         why = "none: no pair of strokes, no rest without load"
-        return np.zeros(means.size), errors, half, why, 0.0
+        return np.zeros(means.size), errors, half, why
+    when = _halves(time, sign, pair, lambda f, b: (f + b) / 2)
+    apart = _halves(time, sign, pair, lambda f, b: np.abs(f - b))
     one = np.unique(pair[paired], return_index=True)[1]
-    tau = unsteadiness(middle[paired][one], half_error[paired][one])
+    zero_moves = wander(middle[paired][one], half_error[paired][one], when[paired][one])
     # a stroke without a partner: the zero without load, else what the pairs say on average
     if zero is None:
-        spread = np.std(middle[paired]) if np.unique(pair[paired]).size > 1 else 0.0
+        spread = np.std(middle[paired]) if one.size > 1 else 0.0
         zero = Zero(
             float(middle[paired].mean()), float(np.hypot(spread, half_error[paired].mean()))
         )
     removed = np.where(paired, middle, zero.value)
-    alone = np.hypot(errors, zero.error)
-    return removed, np.hypot(np.where(paired, half_error, alone), tau), half, "half loop", tau
+    # a stroke that lasts longer than the zero's fast movements shows them in its own error
+    by_pair = np.maximum(half_error**2, zero_moves.fast / 2) + zero_moves.rate * apart / 4
+    by_pair = np.sqrt(by_pair)
+    return removed, np.where(paired, by_pair, np.hypot(errors, zero.error)), half, "half loop"
 
 
 def _from_forces(
@@ -223,9 +252,14 @@ def _from_forces(
     zero, normal_zero = unloaded_rest(run, segments, load)
     if offset == "none":
         normal_zero = None
-    removed, errors, half, method, tau = _removed(
-        means, _column(forces, "sem"), sign, pair, zero, offset, _name(run)
-    )
+    n0 = normal_zero or Zero(0.0, 0.0)
+    pressed = np.ones(means.size)
+    if loads:
+        pressed = _column(loads, "mean") - n0.value
+    held = np.where(pressed > 0, pressed, 1.0)
+    own_errors = _column(forces, "sem")
+    arguments = sign, pair, zero, offset, _name(run), _middles(segments)
+    removed, errors, half, method = _removed(means, own_errors, held, *arguments)
     data = {
         "friction_force": sign * (means - removed),
         "friction_force_std": _column(forces, "std"),
@@ -240,23 +274,19 @@ def _from_forces(
         data |= _memory(forces) | {"force_trend": sign * _column(forces, "trend")}
         return _table(data, remarks, method)
 
-    n0 = normal_zero or Zero(0.0, 0.0)
     ratios, remarks = [], []
     for s, d, f0, one in zip(parts, sign, removed, loads, strict=True):
         ratio, remark = _ratio(time[s], d * (force[s] - f0), normal[s] - n0.value, one, n0, load)
         ratios.append(ratio)
         remarks.append(remark)
-    mu, pressed = _column(ratios, "mean"), _column(loads, "mean") - n0.value
+    mu, scatter = _column(ratios, "mean"), _column(ratios, "sem")
+    # the load's fluctuations move friction and load together and leave the ratio alone: its own
+    # scatter, not the force's, says how well friction is known
+    known = np.isfinite(scatter)
+    own_errors = np.where(known, scatter * held, own_errors)
+    _, errors_by_ratio, _, _ = _removed(means, own_errors, held, *arguments)
     with np.errstate(divide="ignore", invalid="ignore"):
-        own = _column(ratios, "sem")
-        # the stroke's own scatter of the ratio, then what the offset adds to it
-        shared = _halves(own * pressed, sign, pair, lambda f, b: np.hypot(f, b) / 2) / pressed
-        extra = np.sqrt(np.maximum(errors**2 - _column(forces, "sem") ** 2, 0)) / pressed
-        sem = np.where(
-            np.isfinite(shared) & (method == "half loop"),
-            np.hypot(shared, tau / pressed),
-            np.hypot(own, extra),
-        )
+        sem = np.where(known, errors_by_ratio / pressed, np.nan)
         sem = np.hypot(sem, mu * n0.error / pressed)
     data |= {
         "friction_coefficient": mu,
@@ -309,9 +339,9 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.nda
         sign, pair = np.ones_like(sign), np.full_like(pair, -1)
         if offset == "auto":
             offset = "none"
-    removed, errors, _, method, _ = _removed(
-        means, _column(found, "sem"), sign, pair, None, offset, _name(run)
-    )
+    alike = np.ones(means.size)
+    arguments = sign, pair, None, offset, _name(run), _middles(segments)
+    removed, errors, _, method = _removed(means, _column(found, "sem"), alike, *arguments)
     if rectified and offset == "none":
         method = "none: the instrument gives the coefficient without sign"
     data = {

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy import optimize
 
 from tribolab.friction.statistics import describe
 
@@ -102,28 +103,50 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
     return pair
 
 
-def unsteadiness(offset: np.ndarray, error: np.ndarray) -> float:
-    """Estimate how an offset moves (std) from one pair of strokes to the next, beyond its errors.
+class Wander(NamedTuple):
+    """How a zero moves: variance between neighbouring strokes [u2], and rate of its walk [u2/s]."""
 
-    A zero that wanders more slowly than a stroke lasts does not show within the stroke, but it
-    falsifies the half loop as much as the offset. The scatter of the offsets of successive
-    pairs shows it: their second differences d_i (free of a steady drift) have the variance
-    s_{i-1}^2 + 4 s_i^2 + s_{i+1}^2 + 6 tau^2. With two pairs the first difference has to do; one
-    pair tells nothing.
+    fast: float
+    rate: float
+
+
+def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
+    """Tell how the zero moves from the offsets of successive pairs of strokes.
+
+    A zero that moves more slowly than a stroke lasts does not show within the stroke, but it
+    falsifies the half loop: the backward stroke comes later than the forward one.
 
     Parameters
     ----------
     offset, error
-        Offsets of the pairs in order and their standard errors, in one unit (pair).
+        Offsets of the pairs in order and their standard errors, in one unit u (pair).
+    time
+        Middle of each pair [s].
+
+    Returns
+    -------
+    Wander
+        s^2 and D of <d^2> = e_i^2 + e_{i+1}^2 + s^2 + D dt for the differences d of successive
+        offsets, by weighted moments, each taken one standard error above its estimate; zeros
+        below two pairs. One pair tells nothing, and a single difference is all s^2.
     """
     known = np.isfinite(offset) & np.isfinite(error)
-    offset, variance = offset[known], error[known] ** 2
+    offset, variance, time = offset[known], error[known] ** 2, time[known]
     if offset.size < 2:
-        return 0.0
+        return Wander(0.0, 0.0)
+    apart = np.diff(time)
+    noise = variance[1:] + variance[:-1]
+    excess = np.diff(offset) ** 2 - noise
     if offset.size == 2:
-        return float(np.sqrt(max(0.0, (np.diff(offset)[0] ** 2 - variance.sum()) / 2)))
-    second = np.diff(offset, 2) ** 2
-    expected = variance[:-2] + 4 * variance[1:-1] + variance[2:]
-    weight = 1 / np.maximum(expected, 1e-6 * expected.max() + 1e-300) ** 2
-    tau2 = (weight @ (second - expected)) / (6 * weight.sum())
-    return float(np.sqrt(max(0.0, tau2)))
+        return Wander(max(0.0, float(excess[0])), 0.0)
+    scale = apart.mean()
+    parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
+    found = np.zeros(2)
+    for _ in range(30):  # the weights depend on what is sought; this settles in a few rounds
+        expected = noise + parts @ found
+        weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-300)
+        found, _ = optimize.nnls(parts * weight[:, None], excess * weight)
+    # so few squares tell a variance poorly: one standard error above it, as Student's t would
+    inverse = np.linalg.pinv((parts * weight[:, None]).T @ (parts * weight[:, None]))
+    found = found + np.sqrt(2 * np.diag(inverse))
+    return Wander(float(found[0]), float(found[1] / scale))
