@@ -269,6 +269,8 @@ def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: floa
     straightened signal: means over stretches for slow waves, the first samples for fast ones.
     """
     best, count = correlation, float("nan")
+    if values.size < 32:
+        return count
     size = values.size // 4096
     views = [values[:4096]]
     if size > 1:

@@ -258,9 +258,10 @@ def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    slip = run.segments[run.segments["stick_slip"] != "none"]
+    strong = 0.12 * float(run.segments["friction_coefficient"].mean())
+    slip = run.segments[run.segments["stick_slip_drop"] > strong]
     if slip.empty:
-        raise ConfigError("fault 'slow_logger' needs a speed at which there is stick-slip")
+        raise ConfigError("fault 'slow_logger' needs a speed at which there is strong stick-slip")
     interval = _interval(run)
     period = slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]
     per_period = [
