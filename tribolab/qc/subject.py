@@ -292,6 +292,8 @@ def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: floa
         if below.size == 0:
             continue
         tail = auto[below[0] :]
+        if not tail.max() > 0:
+            continue
         # periods that scatter agree again by chance at long lags: the first high summit counts
         high = tail > 0.6 * tail.max()
         start = int(np.argmax(high))
