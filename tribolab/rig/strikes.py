@@ -58,10 +58,12 @@ def _interval(run: SimulatedRun) -> np.ndarray:
 
 
 def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the sign of the normal force."""
     return _normal(run, -run.force_log.normal_force.values, {})
 
 
 def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Set the clock back by some seconds in the middle of the force log."""
     time = run.force_log.time.values.copy()
     row, step = int(rng.uniform(0.2, 0.8) * time.size), float(rng.uniform(1, 4))
     time[row:] -= step
@@ -69,6 +71,7 @@ def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Start the clock anew at zero in the middle of the force log."""
     time = run.force_log.time.values.copy()
     row = int(rng.uniform(0.2, 0.8) * time.size)
     time[row:] -= time[row]
@@ -76,6 +79,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def gaps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Drop three stretches of the force log."""
     time = run.force_log.time.values
     starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
     lengths = rng.uniform(1.5, 4.0, 3)
@@ -86,6 +90,7 @@ def gaps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Move each time stamp within its interval."""
     time = run.force_log.time.values
     step = np.diff(time)
     shorter = np.minimum(np.append(step, step[-1]), np.insert(step, 0, step[0]))
@@ -95,6 +100,7 @@ def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Thin out the second half of one segment."""
     stroke, factor = int(rng.integers(len(run.segments))), int(rng.integers(3, 6))
     rows = _rows(run, stroke)
     keep = np.ones(run.force_log.sizes["time"], dtype=bool)
@@ -104,6 +110,7 @@ def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Lose single values of the friction force."""
     values = run.force_log.friction_force.values.copy()
     share = float(rng.uniform(0.01, 0.04))
     values[rng.random(values.size) < share] = np.nan
@@ -111,6 +118,7 @@ def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Hold the friction force at one value for a while."""
     values = run.force_log.friction_force.values.copy()
     length = int(rng.uniform(0.02, 0.05) * values.size)
     row = int(rng.uniform(0.1, 0.8) * values.size)
@@ -119,6 +127,7 @@ def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Cut the friction force off at both ends of a range."""
     highest = float(np.abs(run.noise_free.friction_force.values).max())
     limit = float(rng.uniform(0.6, 0.8)) * highest
     values = np.clip(run.force_log.friction_force.values, -limit, limit)
@@ -126,12 +135,14 @@ def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def coarse(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Round the friction force to 9 bits of the range."""
     step = 1000 / 2**9
     values = np.round(run.force_log.friction_force.values / step) * step
     return _force(run, values, {"step_N": step})
 
 
 def spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add single samples that stand far out."""
     values = run.force_log.friction_force.values.copy()
     rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))
     height = np.maximum(rng.uniform(0.2, 0.6, rows.size) * _typical(run), 2.0)
@@ -140,12 +151,14 @@ def spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def zero_offset(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a constant to the friction force."""
     # far beyond what the cell itself has drawn, which may have the other sign
     offset = float(rng.choice([-1, 1]) * (rng.uniform(0.8, 1.5) * _typical(run) + 4.0))
     return _force(run, run.force_log.friction_force.values + offset, {"offset_N": offset})
 
 
 def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a steady drift to the friction force."""
     time = run.force_log.time.values
     drift = float(rng.choice([-1, 1]) * (rng.uniform(0.2, 0.4) * _typical(run) + 0.6))
     values = run.force_log.friction_force.values + drift * time / time[-1]
@@ -153,11 +166,13 @@ def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def load_error(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Scale the normal force."""
     factor = float(rng.choice([-1, 1]) * rng.uniform(0.06, 0.10) + 1)
     return _normal(run, factor * run.force_log.normal_force.values, {"factor": factor})
 
 
 def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let the load oscillate, and friction with it."""
     time = run.force_log.time.values
     part, frequency = float(rng.uniform(0.06, 0.12)), float(rng.uniform(0.5, 2.0))
     wave = part * np.sin(2 * np.pi * frequency * time)
@@ -169,18 +184,21 @@ def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_table(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Raise the set speed above what the table does."""
     factor = float(rng.uniform(0.88, 0.95))
     motion = run.motion_log.assign(set_speed=run.motion_log.set_speed / factor)
     return run.force_log, motion, {"factor": factor}
 
 
 def encoder_scale(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Scale the position."""
     factor = float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.12) + 1)
     motion = run.motion_log.assign(position=run.motion_log.position * factor)
     return run.force_log, motion, {"factor": factor}
 
 
 def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the motion log round in time."""
     motion = run.motion_log
     time = motion.time.values
     turned = motion.isel(time=slice(None, None, -1)).assign_coords(
@@ -197,6 +215,7 @@ def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -
 
 
 def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add 50 Hz to the friction force, as far as the logger sees it."""
     _fast_speeds(run, "hum", 1)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     values = run.force_log.friction_force.values
@@ -205,6 +224,7 @@ def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a line at one frequency, whatever the speed."""
     _fast_speeds(run, "resonance", 2)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     frequency = float(rng.uniform(15, 40))
@@ -229,6 +249,7 @@ def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
 
 
 def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the sign of the friction force."""
     return _force(run, -run.force_log.friction_force.values, {})
 
 
@@ -243,12 +264,14 @@ def _progress(run: SimulatedRun) -> np.ndarray:
 
 
 def run_in(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let friction change linearly along every segment."""
     part = float(rng.choice([-1, 1]) * rng.uniform(0.2, 0.4))
     change = part * np.nan_to_num(_progress(run) - 0.5) * run.noise_free.friction_force.values
     return _force(run, run.force_log.friction_force.values + change, {"change": part})
 
 
 def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let friction wave three or four times along every segment."""
     part, periods = float(rng.uniform(0.12, 0.25)), float(rng.uniform(3.2, 4.2))
     phase = float(rng.uniform(0, 2 * np.pi))
     wave = np.nan_to_num(np.sin(2 * np.pi * periods * _progress(run) + phase))
@@ -258,6 +281,7 @@ def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Keep so few rows that stick-slip has three to five samples in a period."""
     strong = 0.12 * float(run.segments["friction_coefficient"].mean())
     slip = run.segments[run.segments["stick_slip_drop"] > strong]
     if slip.empty:
