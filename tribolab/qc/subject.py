@@ -177,20 +177,21 @@ class RunSubject:
         return typical
 
     def unloaded_levels(self, name: str) -> list[float]:
-        """Mean of a signal in each unloaded rest, in the order of time.
+        """Median of a signal in each unloaded rest, in the order of time.
 
-        A rest is unloaded where the normal force stays below 5 % of its mean over the segments
-        for at least 20 samples, outside the segments.
+        A rest is unloaded where the normal force stays below a tenth of its mean over the segments
+        for at least 20 samples, outside the segments. The load's ramp begins in it, hence the
+        median.
         """
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         if "normal_force" not in self.signals:
             raise Skip("no normal force was recorded that would show a rest without load")
-        low = np.abs(self.signals["normal_force"]) < 0.05 * self.typical_normal_force
+        low = np.abs(self.signals["normal_force"]) < 0.10 * self.typical_normal_force
         low &= ~self.in_segments
         edges = np.flatnonzero(np.diff(low.astype(np.int8), prepend=0, append=0))
-        values = self.signals[name]
-        return [_mean(values[a:b]) for a, b in edges.reshape(-1, 2) if b - a >= 20]
+        parts = [self.signals[name][a:b] for a, b in edges.reshape(-1, 2) if b - a >= 20]
+        return [float(np.nanmedian(part)) for part in parts if np.isfinite(part).any()]
 
     def speed_of(self, number: int) -> float:
         """Sliding speed of a segment [m/s]."""
