@@ -8,7 +8,6 @@ import numpy as np
 
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
-from tribolab.qc.signals import quantisation_step
 from tribolab.qc.subject import RunSubject
 
 
@@ -71,23 +70,29 @@ def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not {"sliding_velocity", "position"} <= set(subject.run):
         raise Skip("velocity and position were not both recorded")
-    slopes = np.array([_slope(subject, part) for part in subject.slices])
+    slopes, scatter, spread = np.array([_slope(subject, part) for part in subject.slices]).T
+    if not np.isfinite(slopes).any():
+        raise Skip("no position within the segments")
+    # readings that repeat one value do not scatter, and yet are no more exact than the others
+    errors = np.fmax(scatter, np.nanmedian(scatter)) / spread
     # the slope is a mean over the segment: compare it with the mean of the signed velocity
     velocity = subject.segment_means("sliding_velocity")
+    velocity = np.where(velocity == 0, np.nan, velocity)
     # a creep that the encoder does not resolve is no speed to compare with
-    resolution = quantisation_step(subject.signals["position"])
-    resolved = np.abs(velocity) * subject.durations > limits["steps"] * resolution
-    error = slopes / np.where(resolved & (velocity != 0), velocity, np.nan) - 1
+    resolved = limits["errors"] * errors < limits["suspect"] * np.abs(velocity)
+    error = np.where(resolved, slopes / velocity - 1, np.nan)
     return by_segment(subject, "sliding_velocity", error, limits, "d(position)/dt off the velocity")
 
 
-def _slope(subject: RunSubject, part: slice) -> float:
+def _slope(subject: RunSubject, part: slice) -> tuple[float, float, float]:
+    """Slope of the position over a segment [m/s], scatter about it [m], spread of the times [s]."""
     time, position = subject.time[part], subject.signals["position"][part]
     good = np.isfinite(position)
     if good.sum() < 3:
-        return float("nan")
-    t = time[good] - time[good].mean()
-    return float(t @ position[good] / (t @ t))
+        return float("nan"), float("nan"), float("nan")
+    t, x = time[good] - time[good].mean(), position[good] - position[good].mean()
+    slope = float(t @ x) / float(t @ t)
+    return slope, float(np.std(x - slope * t)), float(np.sqrt(t @ t))
 
 
 def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -176,7 +181,7 @@ RIG_CHECKS = (
         {
             "suspect": Limit(0.03, "1", "encoder and tachometer agree to 1 %"),
             "fail": Limit(0.20, "1", "one of the two is wrong"),
-            "steps": Limit(100.0, "1", "a hundred steps of the encoder tell a speed to 1 %"),
+            "errors": Limit(3.0, "1", "what three standard errors hide is not known"),
         },
         _velocity_position,
     ),
