@@ -9,9 +9,9 @@ The alternatives, on the same array in the same process, best of five:
 (a) exact: ``np.flatnonzero(np.diff(velocity))``, run-length grouping of the readings themselves.
     On noisy readings every sample is a run of its own, so it finds nothing; it is the price of
     looking at each sample once.
-(b) labels: ``np.flatnonzero(np.diff(np.sign(v) * np.rint(log(|v|/1 um/s) / log(ratio))))`` with the
-    ratio of the speeds known beforehand, which find_segments is not told. It finds a border
-    wherever noise or a ramp crosses into another label.
+(b) labels: ``np.flatnonzero(np.diff(np.sign(v) * np.rint(log(|v| / 1 um/s) / log(ratio))))``
+    with the ratio of the speeds known beforehand, which find_segments is not told. It finds a
+    border wherever noise or a ramp crosses into another label.
 """
 
 import sys
@@ -71,9 +71,8 @@ def main() -> None:
     right = signed.size == PLATEAUS and np.allclose(signed, speeds, rtol=0.01)
     late = found["start"].values - first * 1e-3 if right else np.nan
     print(f"{velocity.size} samples, {PLATEAUS} plateaus: found {signed.size}, all right: {right}")
-    print(
-        f"largest error of a start: {np.max(np.abs(late)):.3f} s of {samples // PLATEAUS / 1e3} s"
-    )
+    stroke = samples // PLATEAUS / 1e3
+    print(f"largest error of a start: {np.max(np.abs(late)):.3f} s of {stroke} s")
     ours = best(lambda: find_segments(run))
     exact = best(lambda: np.flatnonzero(np.diff(velocity)))
     label = best(labels)

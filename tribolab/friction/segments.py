@@ -84,7 +84,7 @@ def find_segments(
     corresponding constant-velocity segment was identified from the velocity signal. The first
     and final 10 % of each segment were excluded". A step of relative height s between two
     plateaus of N samples with white relative noise r is resolved where
-    s > max(resolution, 6 r sqrt(2/N)).
+    s > max(resolution, 18 r sqrt(2/N)).
 
     From ``position`` the velocity is a robust slope over blocks that are just long enough.
     Without velocity and position each ``step`` is a segment (speed from ``set_speed`` where

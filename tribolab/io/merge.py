@@ -103,7 +103,7 @@ def _shift(
                     "clock_shift_explained": estimate.explained,
                 },
             )
-    return expected, "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
+    return float(expected), "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
 
 
 def _velocity(motion: xr.Dataset, clock: np.ndarray) -> np.ndarray | None:
