@@ -1,0 +1,207 @@
+"""Checks on sliding itself: disturbances, direction, steadiness, and whether it says enough."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
+from tribolab.qc.lines import Line
+from tribolab.qc.per_segment import by_segment, status_of
+from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.subject import RunSubject
+
+
+def _signal(subject: RunSubject) -> str:
+    if subject.friction_signal is None:
+        raise Skip("no friction was recorded")
+    return subject.friction_signal
+
+
+def _hum(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    found = [line for line in subject.lines if line.mains]
+    return _strongest(subject, found, limits, "mains hum")
+
+
+def _resonance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    lines = [line for line in subject.lines if not line.mains]
+    frequency = np.array([line.frequency for line in lines])
+    speed = np.array([line.speed for line in lines])
+    fixed = []
+    for line in lines:
+        # stick-slip moves with the speed; a line of the rig stays where it is
+        alike = speed[np.abs(np.log(frequency / line.frequency)) < limits["width"]]
+        if alike.max() >= limits["speeds"] * alike.min():
+            fixed.append(line)
+    return _strongest(subject, fixed, limits, "a resonance")
+
+
+def _strongest(
+    subject: RunSubject, lines: list[Line], limits: Mapping[str, float], kind: str
+) -> list[Result]:
+    name = _signal(subject)
+    if not lines:
+        return [Result("pass", name, f"no line of {kind}", 0.0)]
+    worst = max(lines, key=lambda line: line.amplitude)
+    share = worst.amplitude / subject.typical_friction
+    where = subject.segment_label(worst.segment)
+    text = f"{kind} at {worst.frequency:.4g} Hz, {share:.2%} of the typical friction, {where}"
+    return [Result(status_of(share, limits), name, text, share, "1", where)]
+
+
+def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    if subject.segments.attrs.get("velocity_source") not in ("recorded", "position"):
+        raise Skip("the direction of sliding was not recorded")
+    friction, signal = subject.friction, _signal(subject)
+    name = "friction_coefficient" if "friction_coefficient" in friction else "friction_force"
+    values, error = friction[name].values, np.nan_to_num(friction[f"{name}_sem"].values)
+    if not np.isfinite(values).any():
+        raise Skip("no segment has a friction coefficient")
+    least = limits["share"] * float(np.nanmean(np.abs(values)))
+    wrong = values < -np.maximum(limits["errors"] * error, least)
+    samples = np.full(subject.time.size, NOT_EVALUATED, np.int8)
+    for part, bad in zip(subject.slices, wrong, strict=True):
+        samples[part] = FAIL if bad else GOOD
+    if not wrong.any():
+        return [Result("pass", signal, "friction opposes the motion everywhere", flags=samples)]
+    first = int(np.flatnonzero(wrong)[0])
+    where = subject.segment_label(first)
+    text = f"friction drives the motion in {int(wrong.sum())} segments, first in {where}"
+    unit = "1" if name == "friction_coefficient" else "N"
+    value, count = float(values[first]), int(wrong.sum())
+    return [Result("fail", signal, text, value, unit, where, count, samples)]
+
+
+def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    friction, signal = subject.friction, _signal(subject)
+    name = next((n for n in ("friction_coefficient", "friction_force") if n in friction), "")
+    if "trend_change" in friction:
+        change = friction["trend_change"].values
+    elif "force_trend" in friction:
+        duration = friction["trimmed_stop"].values - friction["trimmed_start"].values
+        change = friction["force_trend"].values * duration
+    else:
+        raise Skip("no trend was estimated")
+    # of the run's typical friction: at high speed in a liquid hardly any is left to divide by
+    typical = np.abs(friction[name].values)
+    if not (typical > 0).any():
+        raise Skip("there is no friction to compare with")
+    change = change / float(np.nanmean(typical))
+    change[friction["trend_p_value"].values >= limits["chance"]] = 0.0
+    return by_segment(subject, signal, change, limits, "trend within a segment")
+
+
+def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    distance = subject.segments["sliding_distance"].values
+    if not np.isfinite(subject.contact_width):
+        text = "the contact width is not known (contact_width=)"
+        results.append(Result("skipped", "sliding_distance", text))
+    elif np.isfinite(distance).any():
+        share = distance / subject.contact_width
+        shortest = int(np.nanargmin(share))
+        text = f"the shortest slide is {share[shortest]:.3g} of the contact width"
+        status = "pass" if share[shortest] >= limits["contact_widths"] else "suspect"
+        where, value = subject.segment_label(shortest), float(share[shortest])
+        results.append(Result(status, "sliding_distance", text, value, "1", where))
+    if subject.friction_signal is None:
+        return results
+    periods = subject.strong_periods(limits["strength"])
+    if np.isfinite(periods).any():
+        fewest = int(np.nanargmin(periods))
+        text = f"the fewest stick-slip periods in a segment are {periods[fewest]:.3g}"
+        status = "pass" if periods[fewest] >= limits["periods"] else "suspect"
+        where, value = subject.segment_label(fewest), float(periods[fewest])
+        results.append(Result(status, subject.friction_signal, text, value, "1", where))
+    return results
+
+
+def _sampling(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    periods = subject.strong_periods(limits["strength"])
+    if not np.isfinite(periods).any():
+        return [Result("pass", _signal(subject), "no stick-slip to resolve")]
+    per_period = subject.segments["samples"].values / periods
+    worst = int(np.nanargmin(per_period))
+    text = f"the fastest stick-slip has {per_period[worst]:.3g} samples in a period"
+    status = "pass" if per_period[worst] >= limits["samples"] else "suspect"
+    where, value = subject.segment_label(worst), float(per_period[worst])
+    return [Result(status, _signal(subject), text, value, "1", where)]
+
+
+_LINE = {
+    "suspect": Limit(0.02, "1", "as much as friction coefficients usually scatter in a segment"),
+    "fail": Limit(0.50, "1", "the signal is mostly disturbance"),
+}
+_STRENGTH = Limit(0.03, "1", "a weaker oscillation moves a mean over four periods by 0.3 %")
+
+SLIDING_CHECKS = (
+    Check(
+        "hum",
+        18,
+        "Does the mains hum in the friction signal?",
+        "Look for ground loops and unshielded cables.",
+        _LINE,
+        _hum,
+    ),
+    Check(
+        "resonance",
+        19,
+        "Does the rig itself ring?",
+        "A line that stays at its frequency at any speed is the rig's; stiffen or damp it.",
+        {
+            **_LINE,
+            "width": Limit(0.03, "1", "a line of the rig stays within 3 % of its frequency"),
+            "speeds": Limit(2.0, "1", "stick-slip at twice the speed is faster by more than 3 %"),
+        },
+        _resonance,
+    ),
+    Check(
+        "friction_sign",
+        20,
+        "Does friction oppose the motion?",
+        "Set `sign = -1` for the force or the velocity in the dialect.",
+        {
+            "errors": Limit(3.0, "1", "friction that is zero within its error has no sign"),
+            "share": Limit(0.01, "1", "nor has what is below 1 % of the run's typical friction"),
+        },
+        _sign,
+    ),
+    Check(
+        "steadiness",
+        21,
+        "Is friction steady within each trimmed segment?",
+        "Slide longer, or trim more: the mean of a trend is a mean over the run-in.",
+        {
+            "suspect": Limit(0.05, "1", "5 % is above the usual spread of repeats"),
+            "fail": Limit(0.50, "1", "the number has no meaning as a mean"),
+            "chance": Limit(0.01, "1", "so that noise is rarely called a trend"),
+        },
+        _steadiness,
+    ),
+    Check(
+        "distance",
+        22,
+        "Is the sliding distance long enough?",
+        "Slide further at this speed.",
+        {
+            "contact_widths": Limit(
+                0.01, "1", "up to about a hundredth of its width a contact shears, not slides"
+            ),
+            "periods": Limit(4.0, "1", "a mean over fewer periods depends on where it is cut"),
+            "strength": _STRENGTH,
+        },
+        _distance,
+    ),
+    Check(
+        "sampling",
+        23,
+        "Is stick-slip sampled fast enough?",
+        "Sample faster at this speed.",
+        {
+            "samples": Limit(8.0, "1", "fewer than 8 in a period round off the drop"),
+            "strength": _STRENGTH,
+        },
+        _sampling,
+    ),
+)
