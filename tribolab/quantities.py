@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
-from tribolab.errors import TribolabError, nearest
+from tribolab.errors import AnalysisError, TribolabError, nearest
+from tribolab.units import to_si
 
 
 class Quantity(NamedTuple):
@@ -84,6 +87,21 @@ _ROWS = [
     ("rms_roughness", "h_rms", "m", "root-mean-square roughness"),
     ("rms_slope", "\\xi", "1", "root-mean-square slope"),
     ("rms_curvature", "\\kappa", "1/m", "root-mean-square curvature"),
+    # surfaces, measured (surface room)
+    ("scan", "", "1", "number of the scan"),
+    ("dropout", "", "1", "1 where the height was filled"),
+    ("form_tilt", "", "1", "tilt that was removed"),
+    ("form_curvature", "", "1/m", "curvature that was removed, positive where hollow"),
+    ("independent_values", "", "1", "effective number of independent values"),
+    ("mean_square_height", "<h^2>", "m2", "mean square height held by the bin"),
+    ("trusted", "", "1", "1 where the spectrum can be trusted, else 0"),
+    ("origin", "", "1", "where the value comes from"),
+    ("Ra", "Ra", "m", "arithmetic mean deviation of the profile"),
+    ("Rq", "Rq", "m", "root-mean-square deviation of the profile"),
+    ("Rz", "Rz", "m", "greatest height of the profile, mean over sampling lengths"),
+    ("Rsk", "Rsk", "1", "skewness of the profile"),
+    ("Rku", "Rku", "1", "kurtosis of the profile"),
+    ("Rdq", "Rdq", "1", "root-mean-square slope of the profile"),
     # contact, adhesion
     ("pressure", "p", "Pa", "nominal contact pressure"),
     ("contact_area_ratio", "A/A_0", "1", "relative contact area"),
@@ -91,6 +109,14 @@ _ROWS = [
     ("work_of_adhesion", "\\gamma", "J/m2", "work of adhesion"),
     ("effective_work_of_adhesion", "\\gamma_eff", "J/m2", "effective work of adhesion"),
     ("magnification", "\\zeta", "1", "magnification"),
+    # contact: gaps and line contacts
+    ("gap", "u", "m", "local interfacial gap"),
+    ("gap_density", "P(u)", "1/m", "probability density of the gap"),
+    ("gap_weight", "P(u) du", "1", "quadrature weight of the gap"),
+    ("gap_scale", "", "1", "factor that makes the mean gap the mean separation"),
+    ("max_pressure", "p_max", "Pa", "maximum contact pressure"),
+    ("contact_width", "2a", "m", "width of the nominal contact"),
+    ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
@@ -156,3 +182,52 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
         variable.attrs.update(units=known.unit, long_name=known.long_name)
     result.attrs.update(attrs)
     return result
+
+
+def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
+    """Return the array under the quantity's name with its ``units`` and ``long_name`` only."""
+    known = quantity(name)
+    result = data.rename(name)
+    result.attrs = {"units": known.unit, "long_name": known.long_name}
+    return result
+
+
+def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
+    """Return a quantity as a DataArray of floats, whichever way it was given.
+
+    Parameters
+    ----------
+    value
+        Text with a unit, a number, a one-dimensional array (it becomes its own coordinate) or a
+        DataArray (any dims), in the quantity's SI unit.
+    name
+        The quantity.
+
+    Raises
+    ------
+    AnalysisError
+        If an array has two or more dimensions and no names for them.
+
+    Examples
+    --------
+    >>> labelled([1e4, 1e5], "pressure").dims
+    ('pressure',)
+    """
+    if isinstance(value, xr.DataArray):
+        return value.astype(float)
+    number = to_si(value, quantity(name).unit, name=name) if isinstance(value, str) else value
+    values = np.asarray(number, dtype=float)
+    if values.ndim > 1:
+        raise AnalysisError(
+            f"{name}: an array with two or more dimensions must be a DataArray that names them"
+        )
+    dims = (name,)[: values.ndim]
+    data = xr.DataArray(values, coords={dim: values for dim in dims}, dims=dims)
+    return stamp_array(data, name)
+
+
+def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str):
+    """Return values the way an argument was given: a float, an array or a stamped DataArray."""
+    if isinstance(given, xr.DataArray):
+        return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
+    return values[()] if np.ndim(values) else float(values)

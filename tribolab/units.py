@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import functools
+import math
 import re
 from typing import TYPE_CHECKING
 
-from tribolab.errors import UnitError
+from tribolab.errors import AnalysisError, UnitError
 
 if TYPE_CHECKING:
     import pint
@@ -145,3 +146,24 @@ def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
     except UnitError as error:
         raise UnitError(f"{name}: {error}; a value in {si_unit} is wanted") from error
     return float(f"{number * scale + offset:.15g}")
+
+
+def positive(value: str | float, unit: str, name: str) -> float:
+    """Return text with a unit, or an SI number, as an SI float above zero.
+
+    Raises
+    ------
+    UnitError
+        If the text has no unit or one of the wrong dimension.
+    AnalysisError
+        If the number is not positive and finite.
+
+    Examples
+    --------
+    >>> positive("2 MPa", "Pa", "effective_modulus")
+    2000000.0
+    """
+    number = to_si(value if isinstance(value, str) else float(value), unit, name=name)
+    if not 0 < number < math.inf:
+        raise AnalysisError(f"{name}: a positive, finite value in {unit} is wanted; got {number:g}")
+    return number

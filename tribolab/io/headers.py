@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mmap
 import re
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -94,7 +95,7 @@ def _mended(file: File, dialect: Dialect) -> bytes | None:
     head = file.head
     wide = dialect.text.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
     wide = wide or head.startswith((b"\xff\xfe", b"\xfe\xff"))
-    odd_ends = re.search(rb"\r(?!\n)", head[:-1]) is not None
+    odd_ends = b"\r" in head and re.search(rb"\r(?!\n)", head[:-1]) is not None
     spaced = dialect.text.delimiter == "whitespace"
     if not (wide or odd_ends or spaced):
         return None
@@ -147,8 +148,10 @@ def _header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> 
     first = 3 if content[:3] == _BOM else 0
     if header.pattern is not None:
         found = compiled(header.pattern, dialect).finditer(content, first)
-        starts = [max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in found]
-        starts = starts if header.repeats else starts[:1]
+        wanted = None if header.repeats else 1  # looking for more would read the whole head
+        starts = [
+            max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(found, wanted)
+        ]
         if not starts:
             raise ReadError(
                 f"{file.path}: no line matches '{header.pattern}', which begins the table in "

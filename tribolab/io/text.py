@@ -109,6 +109,7 @@ def _pump(
     """Pass a table on in blocks of whole lines, in a few buffers that are used in turn."""
     file.seek(table.start)
     place, left, rest = table.start, table.stop - table.start, b""
+    block = min(BLOCK, left // _WORKERS + 1)  # a small table is shared between the workers too
     free: list[bytearray] = []
     waiting: deque[_Work] = deque()
 
@@ -120,8 +121,8 @@ def _pump(
         free.append(work.buffer)
 
     while left > 0:
-        wanted = min(BLOCK, left)
-        buffer = free.pop() if free else bytearray(len(rest) + BLOCK)
+        wanted = min(block, left)
+        buffer = free.pop() if free else bytearray(len(rest) + block)
         if len(buffer) < len(rest) + wanted:
             buffer = bytearray(len(rest) + wanted)
         view = memoryview(buffer)

@@ -1,0 +1,180 @@
+"""The modulus of rubber: causality, tables, and the DMA files of a real instrument."""
+
+import warnings
+
+import numpy as np
+import pytest
+from contact_cases import properties
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from tribolab.errors import AnalysisError, ReadError
+from tribolab.rubber.modulus import (
+    PDMS_STAND_IN,
+    FractionalZener,
+    TabulatedModulus,
+    read_modulus,
+)
+
+CSV = "dma_pyvisco_BSD3/freq_user_master.csv"
+
+
+@pytest.mark.parametrize("exponent", [0.3, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("frequency", [1e6, 1e9, 1e11])
+def test_storage_follows_from_loss_by_kramers_and_kronig(exponent, frequency):
+    solid = FractionalZener("1.5 MPa", "1 GPa", "1 ns", exponent)
+
+    # E'(w) = E'(0) + (2/pi) P int E''(x) w^2 / (x (w^2 - x^2)) dx; over ln x the two sides of the
+    # pole cancel when folded onto t = |ln(x/w)|: 1/(1 - e^2t) and 1/(1 - e^-2t)
+    def folded(t):
+        high, low = (solid(frequency * np.exp(s * t)).imag for s in (1, -1))
+        return high / -np.expm1(2 * t) - low / np.expm1(-2 * t)
+
+    value = quad(folded, 1e-12, 60, limit=400, epsrel=1e-10, points=[1, 5])[0]
+    storage = solid.relaxed + 2 / np.pi * value
+    assert solid(frequency).real == pytest.approx(storage, rel=1e-5)
+
+
+@properties
+@given(exponent=st.floats(0.1, 1), log_omega=st.floats(-6, 18), log_time=st.floats(-12, 0))
+def test_the_model_stays_between_its_plateaus_and_never_gives_energy(exponent, log_omega, log_time):
+    solid = FractionalZener(1.5e6, 1e9, 10**log_time, exponent)
+    value = complex(solid(10**log_omega))
+    assert 1.5e6 <= value.real <= 1e9 * (1 + 1e-12)
+    assert 0 <= value.imag <= 0.5e9
+    assert complex(solid(-(10**log_omega))) == value.conjugate()
+
+
+def test_the_model_at_rest_is_the_rubber_and_the_loss_peaks_at_the_relaxation_time():
+    assert complex(PDMS_STAND_IN(0.0)) == 1.5e6
+    omega = np.geomspace(1e8, 1e12, 4001)
+    peak = omega[np.argmax(PDMS_STAND_IN(omega).imag)]
+    assert peak == pytest.approx(1 / PDMS_STAND_IN.relaxation_time, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((1e9, 1e6, 1e-9, 0.5), "softer"),
+        ((0.0, 1e9, 1e-9, 0.5), "relaxed"),
+        ((1e6, 1e9, -1.0, 0.5), "relaxation_time"),
+        ((1e6, 1e9, 1e-9, 1.5), "exponent"),
+    ],
+)
+def test_what_is_no_solid_is_refused(arguments, words):
+    with pytest.raises(AnalysisError, match=words):
+        FractionalZener(*arguments)
+
+
+def test_a_fine_table_of_the_model_is_the_model():
+    omega = np.geomspace(1e-2, 1e14, 400)
+    exact = PDMS_STAND_IN(omega)
+    table = TabulatedModulus(omega, exact.real, exact.imag)
+    np.testing.assert_allclose(table(omega), exact, rtol=1e-12)
+    between = np.sqrt(omega[1:] * omega[:-1])
+    np.testing.assert_allclose(table(between), PDMS_STAND_IN(between), rtol=1e-3)
+    np.testing.assert_array_equal(table(-between), np.conj(table(between)))
+
+
+def test_outside_a_table_the_loss_fades_and_the_storage_stays():
+    table = TabulatedModulus([1.0, 10.0], [1e6, 2e6], [1e5, 4e5])
+    assert complex(table(0.0)) == pytest.approx(1e6, rel=1e-14)
+    assert complex(table(0.01)) == pytest.approx(1e6 + 1e3j)
+    assert complex(table(1e3)) == pytest.approx(2e6 + 4e3j)
+
+
+def test_a_table_with_zero_loss_is_interpolated_straight():
+    table = TabulatedModulus([1.0, 100.0], [1e6, 1e6], [0.0, 2e5])
+    assert complex(table(10.0)) == pytest.approx(1e6 + 1e5j)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        (([2.0, 1.0], [1e6, 1e6], [1.0, 1.0]), "increase strictly"),
+        (([1.0, 2.0], [1e6, -1e6], [1.0, 1.0]), "positive"),
+        (([1.0, 2.0], [1e6, 1e6], [1.0, np.nan]), "finite"),
+        (([1.0], [1e6], [1.0]), "two or more rows"),
+    ],
+)
+def test_what_is_no_table_is_refused(columns, words):
+    with pytest.raises(AnalysisError, match=words):
+        TabulatedModulus(*columns)
+
+
+def test_a_table_keeps_its_own_frozen_numbers():
+    omega = np.array([1.0, 2.0])
+    table = TabulatedModulus(omega, [1e6, 2e6], [1e4, 1e4])
+    omega[0] = 5.0
+    assert table.angular_frequency[0] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        table.storage[0] = 0.0
+
+
+def test_a_master_curve_in_csv_is_read_in_si(shared_data):
+    table = read_modulus(shared_data / CSV)
+    assert table.angular_frequency.size == 206
+    assert table.angular_frequency[0] == pytest.approx(2 * np.pi * 1e-12)
+    assert table.storage[0] == pytest.approx(88.79651575665739e6, rel=1e-14)
+    assert table.loss[0] == pytest.approx(10.502460140936773e6, rel=1e-14)
+    assert table.storage[-1] == pytest.approx(9580.501294188056e6, rel=1e-14)
+
+
+def test_a_raw_file_with_a_bom_holds_sweeps_and_one_must_be_named(shared_data):
+    path = shared_data / "dma_pyvisco_BSD3/freq_user_raw.csv"
+    with pytest.raises(ReadError, match="freq_user_raw.csv: .*21 sweeps.*sweep=0 to 20"):
+        read_modulus(path)
+    with pytest.raises(ReadError, match="21 sweeps"):
+        read_modulus(path, sweep=21)
+    last = read_modulus(path, sweep=20)
+    assert last.angular_frequency[[0, -1]] == pytest.approx([0.2 * np.pi, 200 * np.pi])
+    assert last.storage[-1] == pytest.approx(585.8391184e6)
+
+
+def test_the_instruments_own_spreadsheet_holds_the_same_as_its_csv(shared_data):
+    pytest.importorskip("python_calamine")
+    folder = shared_data / "dma_pyvisco_BSD3"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        book = read_modulus(folder / "freq_Eplexor_raw.xls", sweep=20)
+        master = read_modulus(folder / "freq_Eplexor_master.xls")
+    text = read_modulus(folder / "freq_user_raw.csv", sweep=20)
+    np.testing.assert_allclose(book.angular_frequency, text.angular_frequency, rtol=1e-5)
+    np.testing.assert_allclose(book.storage, text.storage, rtol=1e-9)
+    assert master.angular_frequency.size == 210
+
+
+def test_a_spreadsheet_without_its_reader_says_what_to_install(shared_data, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "python_calamine", None)
+    with pytest.raises(ReadError, match="install"):
+        read_modulus(shared_data / "dma_pyvisco_BSD3/freq_Eplexor_raw.xls")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("f,E_stor\nHz,MPa\n1,2\n", "columns for frequency, storage and loss.*it has f, E_stor"),
+        ("f,E',E''\nHz,MPa,furlong\n1,2,3\n2,3,4\n", "column 'E'''.*furlong"),
+        ("f,E',E''\n1,2,3\n2,3,4\n", "row of units"),
+    ],
+)
+def test_a_file_that_is_no_dma_table_is_refused_with_the_column(tmp_path, text, words):
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ReadError, match=f"dma.csv: .*{words}"):
+        read_modulus(path)
+
+
+def test_units_and_order_of_the_rows_do_not_matter(tmp_path):
+    path = tmp_path / "dma.txt"
+    path.write_text("omega;E'';E'\nrad/s;kPa;GPa\n20;5;2\n10;4;1\n", encoding="utf-8")
+    table = read_modulus(path)
+    np.testing.assert_allclose(table.angular_frequency, [10, 20])
+    np.testing.assert_allclose(table.storage, [1e9, 2e9])
+    np.testing.assert_allclose(table.loss, [4e3, 5e3])
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(ReadError, match="nowhere.csv"):
+        read_modulus(tmp_path / "nowhere.csv")

@@ -1,0 +1,147 @@
+"""Profilometers' own formats, read by the SurfaceTopography package."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError, TribolabError
+from tribolab.io.scan_grid import even
+from tribolab.units import conversion, to_si
+
+
+def read_foreign(
+    path: Path, x_unit: str | None = None, height_unit: str | None = None
+) -> xr.Dataset:
+    """Read a scan with SurfaceTopography: Mitutoyo xlsx, SDF, X3P, SUR, GWY, AL3D and others.
+
+    Parameters
+    ----------
+    path
+        The file.
+    x_unit, height_unit
+        Units of positions and heights, for files that state none.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (x) or (y, x), with what the file says of the instrument as attributes.
+
+    Raises
+    ------
+    ReadError
+        If SurfaceTopography is missing or does not know the format, or no unit is known.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImportWarning)  # of optional parts that it goes without
+            from SurfaceTopography.Exceptions import CannotDetectFileFormat
+            from SurfaceTopography.IO import open_topography
+    except ImportError as error:
+        raise ReadError(
+            f"{path}: no dialect fits, and other formats need the package SurfaceTopography: "
+            "pip install 'tribolab[formats]'"
+        ) from error
+    try:
+        with warnings.catch_warnings():
+            # pictures in a workbook are no concern of ours
+            warnings.filterwarnings("ignore", module="openpyxl")
+            with open_topography(str(path)) as reader:
+                return _dataset(path, reader, x_unit, height_unit)
+    except TribolabError:
+        raise
+    except CannotDetectFileFormat as error:
+        raise ReadError(
+            f"{path}: neither a known dialect nor a format that SurfaceTopography reads; name the "
+            "dialect with instrument=, or describe the file in a TOML dialect of your own"
+        ) from error
+    except Exception as error:  # its readers raise whatever the file makes them stumble over
+        raise ReadError(
+            f"{path}: SurfaceTopography cannot read the file: {type(error).__name__}: {error}"
+        ) from error
+
+
+def _dataset(path: Path, reader: Any, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    channel = reader.default_channel
+    given: dict[str, Any] = {}
+    if channel.physical_sizes is None:
+        if x_unit is None:
+            raise ReadError(
+                f"{path}: the file does not say how large the scan is ({_name(reader)})"
+            )
+        given["physical_sizes"] = tuple(float(n) for n in np.atleast_1d(channel.nb_grid_pts))
+    if channel.unit is None:
+        if x_unit is None or height_unit is None:
+            raise ReadError(
+                f"{path}: the file states no units ({_name(reader)}); say them with x_unit= and "
+                "height_unit=, e.g. x_unit='mm', height_unit='um', or name a dialect with "
+                "instrument="
+            )
+        given["unit"] = x_unit
+    topography = channel.topography(**given)
+    lateral = conversion(topography.unit, "m")[0]
+    vertical = lateral if channel.unit is not None else conversion(height_unit, "m")[0]
+    heights = topography.heights()
+    heights = np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan) * vertical
+    attrs = _instrument(channel.info or {})
+    attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
+    if topography.dim == 2:
+        sizes, points = topography.physical_sizes, topography.nb_grid_pts
+        # SurfaceTopography's first index is x
+        steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
+        return xr.Dataset(
+            {"height": (("y", "x"), heights.T)},
+            {"y": steps[1] * np.arange(points[1]), "x": steps[0] * np.arange(points[0])},
+            attrs,
+        )
+    x = np.asarray(topography.positions(), dtype=float) * lateral
+    pitch, heights, evened = even(str(path), x, heights)
+    return xr.Dataset(
+        {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, {**attrs, **evened}
+    )
+
+
+def _name(reader: Any) -> str:
+    return str(reader.format())
+
+
+def _instrument(info: dict[str, Any]) -> dict[str, str | float]:
+    """Attributes from what SurfaceTopography found beside the heights."""
+    attrs: dict[str, str | float] = {}
+    if "acquisition_time" in info:
+        attrs["recorded_at"] = str(info["acquisition_time"])
+    instrument = info.get("instrument", {})
+    for key in ("vendor", "name", "serial"):
+        if key in instrument:
+            attrs[f"instrument_{key}"] = str(instrument[key])
+    tip = instrument.get("parameters", {}).get("tip_radius")
+    if tip:
+        attrs["tip_radius_m"] = to_si(f"{tip['value']} {tip['unit']}", "m", "tip radius")
+    raw = info.get("raw_metadata", {})
+    if "cut_off" in raw:
+        cut = raw["cut_off"]
+        attrs["lambda_c_m"] = to_si(f"{cut['value']} {cut['unit']}", "m", "cut-off")
+    for metric in raw.get("roughness_metrics", []):
+        attrs.update(result(str(metric["key"]), float(metric["value"]), str(metric["unit"])))
+    return attrs
+
+
+def result(name: str, value: float, unit: str) -> dict[str, float]:
+    """Return an instrument's own result as an attribute in SI, its unit in the name.
+
+    >>> result("Rq", 3.959, "µm")
+    {'instrument_Rq_m': 3.959e-06}
+    """
+    key = "instrument_" + re.sub(r"[^A-Za-z0-9]+", "_", name.replace("µ", "u")).strip("_")
+    if unit == "%":
+        return {f"{key}_percent": value}
+    if unit in ("", "1", "-"):
+        return {key: value}
+    si_unit, ending = ("1/m", "_1_m") if unit.startswith("/") else ("m", "_m")
+    scale = conversion(f"1{unit}" if unit.startswith("/") else unit, si_unit)[0]
+    return {key + ending: float(f"{value * scale:.15g}")}

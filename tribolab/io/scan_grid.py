@@ -1,0 +1,109 @@
+"""Even grids for scans: rounded positions are made even, rows of x, y, z become a map."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError
+
+_JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
+_ROUNDED = 0.6  # in units of the last digit
+
+
+def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarray, dict]:
+    """Bring a profile on an even grid.
+
+    Parameters
+    ----------
+    where
+        The file's name, for messages.
+    x, height
+        Positions and heights [m] (x).
+
+    Returns
+    -------
+    tuple
+        The pitch [m], the heights from the smallest x on, and attributes that say what was done:
+        ``x_origin_m``; ``x_unevenness`` (largest deviation in pitches); ``resampled``, if the
+        positions are uneven by more than their rounding explains and heights were interpolated.
+
+    Raises
+    ------
+    ReadError
+        If the positions are missing, do not proceed in one direction, or do not proceed at all.
+    """
+    if x.size < 2:
+        raise ReadError(f"{where}: a profile needs at least two points, it has {x.size}")
+    if x[0] > x[-1]:
+        x, height = x[::-1], height[::-1]
+    pitch = float(x[-1] - x[0]) / (x.size - 1)
+    if not (np.isfinite(x).all() and pitch > 0):
+        raise ReadError(
+            f"{where}: x does not proceed, or holds gaps; a profile's positions must run from one "
+            "end to the other"
+        )
+    count = np.arange(x.size, dtype=float)
+    ideal = x[0] + pitch * count
+    unevenness = float(np.abs(ideal - x).max()) / pitch
+    if unevenness > _JITTER:
+        pitch, start = (float(c) for c in np.polyfit(count, x, 1))
+        ideal = start + pitch * count
+        unevenness = float(np.abs(ideal - x).max()) / pitch
+    attrs = {"x_origin_m": float(ideal[0]), "x_unevenness": unevenness}
+    if unevenness <= _JITTER or unevenness * pitch <= _ROUNDED * _last_digit(x):
+        return pitch, height, attrs
+    steps = np.diff(x)
+    if steps.min() <= 0:
+        at = int(np.argmin(steps))
+        raise ReadError(
+            f"{where}: x goes back after point {at + 1} ({x[at]:.9g} m, then {x[at + 1]:.9g} m); "
+            "is the file more than one scan?"
+        )
+    attrs["resampled"] = (
+        f"positions deviate from an even grid by up to {unevenness:.2g} steps, more than their "
+        "rounding; heights were interpolated along straight lines"
+    )
+    return pitch, np.interp(ideal, x, height), attrs
+
+
+def _last_digit(x: np.ndarray) -> float:
+    """Value of the last decimal digit that the positions [m] were written with; 0 if unknown."""
+    for power in range(-4, -13, -1):
+        counts = x / 10.0**power
+        if np.abs(counts - np.round(counts)).max() < 1e-3:
+            return 10.0**power
+    return 0.0
+
+
+def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.Dataset:
+    """Make a map (y, x) of rows of x, y and height [m], in whatever order they come.
+
+    Raises
+    ------
+    ReadError
+        If the points do not fill a rectangular grid of even steps once each.
+    """
+    axes = []
+    for name, values in (("x", x), ("y", y)):
+        levels = np.unique(values)
+        if levels.size < 2:
+            raise ReadError(f"{where}: all points have the same {name}, this is no map")
+        pitch = float(np.median(np.diff(levels)))
+        number = int(round(float(np.ptp(levels)) / pitch)) + 1
+        index = np.rint((values - levels[0]) / pitch).astype(np.intp)
+        if np.abs(values - levels[0] - index * pitch).max() > 0.1 * pitch:
+            raise ReadError(f"{where}: the points do not lie on an even grid along {name}")
+        axes.append((pitch, number, index))
+    (dx, nx, column), (dy, ny, row) = axes
+    place = row * nx + column
+    if x.size != nx * ny or np.unique(place).size != nx * ny:
+        raise ReadError(
+            f"{where}: {x.size} points do not fill a grid of {nx} x {ny} points once each"
+        )
+    grid = np.empty(nx * ny)
+    grid[place] = height
+    return xr.Dataset(
+        {"height": (("y", "x"), grid.reshape(ny, nx))},
+        {"y": dy * np.arange(ny, dtype=float), "x": dx * np.arange(nx, dtype=float)},
+    )

@@ -1,0 +1,1 @@
+"""Rubber: its viscoelastic modulus and the friction that hysteresis causes on roughness."""

@@ -1,0 +1,126 @@
+"""Hysteretic rubber friction: the loss that roughness causes in rubber that slides over it."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.special import erf
+
+from tribolab.errors import AnalysisError
+from tribolab.quantities import labelled, stamp
+from tribolab.rubber.modulus import Modulus
+from tribolab.surface.moments import bin_integrals, cumulative, refined, spectrum_arrays
+
+_PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
+_ANGLES = 24  # Gauss-Legendre points on a quarter of a turn
+
+
+def viscoelastic_friction(
+    sliding_speed: str | ArrayLike | xr.DataArray,
+    pressure: str | ArrayLike | xr.DataArray,
+    psd: xr.Dataset,
+    modulus: Modulus,
+    poisson_ratio: float = 0.5,
+    complete_contact: bool = False,
+) -> xr.Dataset:
+    """Viscoelastic friction coefficient and contact area of rubber sliding on a rough surface.
+
+    Parameters
+    ----------
+    sliding_speed
+        v [m/s], not negative; its dim is ``sliding_speed``.
+    pressure
+        Nominal pressure sigma_0 [Pa] (any dims), above zero.
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+    modulus
+        Complex modulus over angular frequency, see `tribolab.rubber.modulus`.
+    poisson_ratio
+        Poisson's ratio of the rubber [1].
+    complete_contact
+        Take contact as complete at every wavenumber (P = S = 1), as adhesion may make it.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``friction_coefficient`` [1] and ``contact_area_ratio`` [1] over the dims of `pressure` and
+        `sliding_speed`.
+
+    Raises
+    ------
+    AnalysisError
+        If a speed is negative, a pressure not above zero and finite, or Poisson's ratio is not
+        above -1 and at most 0.5.
+
+    Notes
+    -----
+    With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq
+    int_0^{2 pi} cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``,
+    ``S = 1/2 + P^2/2``, ``G = (1/8) int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_.
+    At rest G is that of the elastic contact with the relaxed modulus. Flash temperature is left
+    out.
+
+    References
+    ----------
+    .. [1] B. N. J. Persson, J. Chem. Phys. 115, 3840 (2001). doi:10.1063/1.1388626
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from tribolab.rubber.modulus import PDMS_STAND_IN
+    >>> q = np.array([1e3, 1e5, 1e9])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-3 * q**-4.0)}, coords={"wavenumber": q})
+    >>> viscoelastic_friction(0.0, "42 kPa", psd, PDMS_STAND_IN).friction_coefficient.item()
+    0.0
+    """
+    if not -1 < poisson_ratio <= 0.5:
+        raise AnalysisError(
+            f"poisson_ratio: a value above -1 and at most 0.5 is wanted; got {poisson_ratio:g}"
+        )
+    speed, over = labelled(sliding_speed, "sliding_speed"), labelled(pressure, "pressure")
+    if speed.ndim > 1 or np.any(speed.values < 0) or not np.all(np.isfinite(speed.values)):
+        raise AnalysisError(
+            "sliding_speed: finite speeds of at least 0 m/s along one dimension are wanted"
+        )
+    if not np.all((over.values > 0) & (over.values < np.inf)):
+        raise AnalysisError(
+            f"pressure: it must be above zero and finite; the lowest is {over.values.min():g} Pa"
+        )
+    q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
+    stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
+    # pressures first, then speeds and wavenumbers
+    relative = 1 / ((1 - poisson_ratio**2) * over.values.reshape(*over.shape, 1, 1))
+    g = relative**2 / 8 * cumulative(q, spectrum * stored, 3)
+    with np.errstate(divide="ignore"):
+        area = np.ones_like(g) if complete_contact else erf(1 / (2 * np.sqrt(g)))
+    integrand = spectrum * area * (1 + area**2) / 2 * lost
+    friction = relative[..., 0] / 2 * bin_integrals(q, integrand, 3).sum(axis=-1)
+    dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
+    return stamp(
+        xr.Dataset(
+            {
+                "friction_coefficient": (dims, friction.reshape(shape)),
+                "contact_area_ratio": (dims, area[..., -1].reshape(shape)),
+            },
+            coords={**over.coords, **speed.coords},
+        ),
+        poisson_ratio=poisson_ratio,
+        complete_contact=int(complete_contact),
+        modulus=repr(modulus),
+    )
+
+
+def _turn_averages(frequency: np.ndarray, modulus: Modulus) -> tuple[np.ndarray, np.ndarray]:
+    """Integrate |E|^2 and cos(phi) Im E over a turn of phi, E taken at frequency cos(phi).
+
+    Both are four times their integral over a quarter: E(-omega) is the conjugate of E(omega).
+    """
+    t, weight = np.polynomial.legendre.leggauss(_ANGLES)
+    cosine, weight = np.cos(np.pi / 4 * (1 + t)), np.pi * weight
+    stored, lost = np.zeros(frequency.shape), np.zeros(frequency.shape)
+    for c, w in zip(cosine, weight, strict=True):
+        value = modulus(frequency * c)
+        stored += w * (value.real**2 + value.imag**2)
+        lost += w * c * value.imag
+    return stored, lost

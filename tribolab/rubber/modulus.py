@@ -1,0 +1,226 @@
+"""The complex modulus of rubber over frequency: a fractional Zener model, or a measured table."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from tribolab.errors import AnalysisError, ReadError, UnitError
+from tribolab.units import conversion, positive
+
+
+class Modulus(Protocol):
+    """Whatever gives the complex modulus E(omega) [Pa] at angular frequencies [rad/s]."""
+
+    def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
+        """Complex modulus [Pa], with the shape of the frequencies; E(-omega) = conj(E(omega))."""
+        ...
+
+
+@dataclass(frozen=True)
+class FractionalZener:
+    """Rubber between a rubbery and a glassy plateau, with a power law of loss between them.
+
+    Parameters
+    ----------
+    relaxed, unrelaxed
+        Modulus of the rubber at zero and of the glass at infinite frequency [Pa].
+    relaxation_time
+        tau [s]; the loss modulus is largest at omega = 1/tau.
+    exponent
+        alpha [1], above 0 and at most 1; 1 is the standard linear solid.
+
+    Notes
+    -----
+    ``E = E_0 + (E_inf - E_0) z/(1 + z)``, ``z = (i omega tau)^alpha``: analytic in the half-plane
+    that causality asks for, so that storage and loss obey the Kramers-Kronig relations.
+
+    Examples
+    --------
+    >>> solid = FractionalZener("1.5 MPa", "1 GPa", "1 ns", 0.5)
+    >>> complex(solid(0.0))
+    (1500000+0j)
+    """
+
+    relaxed: float
+    unrelaxed: float
+    relaxation_time: float
+    exponent: float
+
+    def __post_init__(self) -> None:
+        """Turn text into SI floats and refuse what is no solid."""
+        for name, unit in (("relaxed", "Pa"), ("unrelaxed", "Pa"), ("relaxation_time", "s")):
+            object.__setattr__(self, name, positive(getattr(self, name), unit, name))
+        if self.unrelaxed < self.relaxed:
+            raise AnalysisError(
+                f"unrelaxed: the glass cannot be softer than the rubber; got {self.unrelaxed:g} "
+                f"below {self.relaxed:g} Pa"
+            )
+        if not 0 < self.exponent <= 1:
+            raise AnalysisError(
+                f"exponent: a value above 0 and at most 1 is wanted; got {self.exponent:g}"
+            )
+
+    def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
+        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        omega = np.asarray(angular_frequency, dtype=float)
+        turn = np.exp(0.5j * np.pi * self.exponent)
+        z = (np.abs(omega) * self.relaxation_time) ** self.exponent * turn
+        modulus = self.relaxed + (self.unrelaxed - self.relaxed) * z / (1 + z)
+        return np.where(omega < 0, np.conj(modulus), modulus)
+
+
+# PDMS at 20 C as a stand-in: the paper shows its modulus in a picture only, itself interpolated
+# between rubber and glass. Plateaus as stated there; a glass-transition frequency of about 1e9 Hz
+# and an exponent of one half are usual for PDMS networks. Good for orders of magnitude.
+PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedModulus:
+    """A measured modulus, interpolated in the logarithm of the frequency.
+
+    Between entries storage and loss are power laws of the frequency (straight lines in its
+    logarithm where the loss is not positive). Outside the table the storage modulus stays what it
+    is at the end, and the loss falls as omega below and as 1/omega above, as for one relaxation.
+
+    Parameters
+    ----------
+    angular_frequency
+        [rad/s], strictly increasing, positive (n).
+    storage, loss
+        E' and E'' [Pa] (n).
+    """
+
+    angular_frequency: np.ndarray = field(repr=False)
+    storage: np.ndarray = field(repr=False)
+    loss: np.ndarray = field(repr=False)
+
+    def __post_init__(self) -> None:
+        """Check the table and keep copies nobody can change."""
+        for name in ("angular_frequency", "storage", "loss"):
+            values = np.array(getattr(self, name), dtype=float)
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+        omega, storage, loss = self.angular_frequency, self.storage, self.loss
+        if omega.ndim != 1 or omega.size < 2 or not omega.shape == storage.shape == loss.shape:
+            raise AnalysisError("modulus: three columns of equal length, two or more rows, wanted")
+        if not (np.all(np.diff(omega) > 0) and omega[0] > 0):
+            raise AnalysisError("modulus: frequencies must be positive and increase strictly")
+        if not (np.all(storage > 0) and np.all(np.isfinite(storage + loss)) and np.all(loss >= 0)):
+            raise AnalysisError("modulus: E' must be positive, E'' not negative, both finite")
+
+    def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
+        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        omega = np.asarray(angular_frequency, dtype=float)
+        size, ends = np.abs(omega), self.angular_frequency[[0, -1]]
+        at, nodes = np.log(np.clip(size, *ends)), np.log(self.angular_frequency)
+        storage = np.exp(np.interp(at, nodes, np.log(self.storage)))
+        if np.all(self.loss > 0):
+            loss = np.exp(np.interp(at, nodes, np.log(self.loss)))
+        else:
+            loss = np.interp(at, nodes, self.loss)
+        loss = loss * np.minimum(size / ends[0], 1) * ends[1] / np.maximum(size, ends[1])
+        return storage + 1j * np.sign(omega) * loss
+
+
+_COLUMNS = {
+    "frequency": re.compile(r"f|freq(uency)?|omega|ω|w", re.IGNORECASE),
+    "storage": re.compile(r"E'|E_?stor(age)?|storage[ _]modulus", re.IGNORECASE),
+    "loss": re.compile(r"E''|E\"|E_?loss|loss[ _]modulus", re.IGNORECASE),
+}
+
+
+def read_modulus(
+    path: str | Path, sweep: int | None = None, sheet: str | None = None
+) -> TabulatedModulus:
+    """Read storage and loss modulus from a DMA file, a master curve or one sweep of a raw file.
+
+    Parameters
+    ----------
+    path
+        Delimited text (a BOM does no harm) or a spreadsheet (.xls needs python-calamine): a row of
+        names, a row of units, then numbers. Names known are f, freq, omega; E', E_stor, storage
+        modulus; E'', E_loss, loss modulus.
+    sweep
+        Number of the sweep, from 0, where frequencies start anew (a raw file, one sweep for each
+        temperature). Not for a master curve.
+    sheet
+        Name of the spreadsheet's sheet; if not given, the one that has the three columns.
+
+    Returns
+    -------
+    TabulatedModulus
+        Sorted by frequency, in rad/s and Pa.
+
+    Raises
+    ------
+    ReadError
+        If a column or its unit is missing, or the file has several sweeps and none is chosen.
+    """
+    path = Path(path)
+    table = _find_table(path, sheet)
+    columns = {}
+    for role, pattern in _COLUMNS.items():
+        name = next(n for n in table.columns if pattern.fullmatch(n))
+        unit = str(table[name].iloc[0]).strip()
+        if role == "frequency" and "rad" in unit:
+            target, factor = "rad/s", 1.0
+        else:
+            target, factor = ("Hz", 2 * np.pi) if role == "frequency" else ("Pa", 1.0)
+        try:
+            scale, _ = conversion(unit, target)
+        except UnitError as error:
+            raise ReadError(
+                f"{path.name}: column '{name}': {error}; a row of units must follow the names"
+            ) from error
+        numbers = pd.to_numeric(table[name].iloc[1:], errors="coerce").to_numpy(dtype=float)
+        columns[role] = numbers * scale * factor
+    data = np.stack(list(columns.values()))
+    data = data[:, np.isfinite(data).all(axis=0)]
+    if np.unique(data[0]).size < data.shape[1] or sweep is not None:
+        data = _one_sweep(data, sweep, path.name)
+    return TabulatedModulus(*data[:, np.argsort(data[0])])
+
+
+def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:
+    """Return the sweep asked for; a new one begins where the frequency falls back."""
+    sweeps = np.split(data, np.flatnonzero(np.diff(data[0]) <= 0) + 1, axis=1)
+    if sweep is None or not 0 <= sweep < len(sweeps):
+        raise ReadError(
+            f"{name}: frequencies repeat, {len(sweeps)} sweeps are in it; name one with sweep=0 "
+            f"to {len(sweeps) - 1}, or give a master curve"
+        )
+    return sweeps[sweep]
+
+
+def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
+    """Return the table that has the three columns, its row of units first."""
+    if not path.is_file():
+        raise ReadError(f"{path}: there is no such file")
+    if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
+        try:
+            sheets = pd.read_excel(path, sheet_name=sheet, dtype=object, engine="calamine")
+        except ImportError as error:
+            raise ReadError(
+                f"{path.name}: spreadsheets need the package python-calamine; install it, or "
+                "save the table as .csv"
+            ) from error
+        tables = list(sheets.values()) if sheet is None else [sheets]
+    else:
+        tables = [pd.read_csv(path, sep=None, engine="python", dtype=str, encoding="utf-8-sig")]
+    for table in tables:
+        table = table.rename(columns=lambda name: str(name).strip())
+        if all(any(map(p.fullmatch, table.columns)) for p in _COLUMNS.values()):
+            return table
+    seen = ", ".join(str(name).strip() for name in tables[0].columns)
+    raise ReadError(
+        f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
+        f"E''; it has {seen}"
+    )

@@ -1,0 +1,100 @@
+"""Power spectrum of a topography map: two-dimensional transform and mean over annuli."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.quantities import stamp
+from tribolab.surface.annuli import confidence_band
+from tribolab.surface.binning import correlation, log_bins, window
+from tribolab.surface.form import remove_form
+
+_FEWEST = 16
+
+
+def psd_2d_of_map(
+    scan: xr.Dataset, *, form: str = "auto", bins_per_decade: float = 12
+) -> xr.Dataset:
+    """Radially averaged power spectrum of a map of heights.
+
+    Parameters
+    ----------
+    scan
+        ``height`` [m] (y, x), evenly spaced, without dropouts.
+    form
+        What to take away first: ``"auto"`` (a polynomial of second order unless form was removed
+        before), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
+    bins_per_decade
+        Width of the annuli.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
+        that along x, and both it and the mean hide what a lay of the surface does.
+
+    Raises
+    ------
+    AnalysisError
+        If the map is too small, holds NaN, or does not vary.
+
+    Notes
+    -----
+    ``C(q) = |FT(w h)|^2 dx dy / (4 pi^2 N_x N_y <w^2>)`` with a Hann window along both axes, so
+    that ``<h^2> = int C d^2q = 2 pi int q C dq``. Wavenumbers beyond the smaller of the two
+    Nyquist wavenumbers, in the corners of the plane, are left out of the annuli. Half of the
+    Fourier lines of an annulus mirror the other half.
+    """
+    if form == "auto":
+        form = "none" if "form_removed" in scan.attrs else "polynomial"
+    scan = remove_form(scan, "mean" if form == "none" else form)
+    height = scan.height.transpose("y", "x").values
+    if min(height.shape) < _FEWEST:
+        raise AnalysisError(f"psd_2d: a map of {height.shape} points is too small for a spectrum")
+    if not np.isfinite(height).all():
+        raise AnalysisError("psd_2d: the map holds NaN; fill the dropouts with fill_dropouts()")
+    if not np.ptp(height) > 0:
+        raise AnalysisError("psd_2d: all heights are equal, there is no roughness to transform")
+    steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
+    tapered = height * np.outer(window(height.shape[0]), window(height.shape[1]))
+    power = np.abs(np.fft.fft2(tapered)) ** 2
+    scale = steps[0] * steps[1] / (4 * np.pi**2 * height.size)
+    ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(height.shape, steps, strict=True))
+    q = np.hypot(ky[:, None], kx)
+    spacing = max(2 * np.pi / (n * d) for n, d in zip(height.shape, steps, strict=True))
+    bins = log_bins(int(min(np.pi / d for d in steps) / spacing), 3, bins_per_decade, 1)
+    edges = bins.edges * spacing
+    index = np.digitize(q.ravel(), edges) - 1
+    inside = (index >= 0) & (index < bins.starts.size)
+    index = index[inside]
+    lines = np.bincount(index, minlength=bins.starts.size)
+    mean = np.bincount(index, power.ravel()[inside], bins.starts.size) * scale / lines
+    node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
+    correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
+    independent = np.maximum(0.5 * lines / correlated, 1.0)
+    low, high = confidence_band(mean, independent)
+    known = np.arange(node.size) > 0  # the first annulus is what form and window take
+    cell = (2 * np.pi) ** 2 / (height.size * steps[0] * steps[1])
+    along_x, along_y = (power * kx**2).sum(), (power * ky[:, None] ** 2).sum()
+    whole = float(np.mean(tapered**2))
+    data = xr.Dataset(
+        {
+            "psd_2d": ("wavenumber", mean[known]),
+            "psd_2d_low": ("wavenumber", low[known]),
+            "psd_2d_high": ("wavenumber", high[known]),
+            "independent_values": ("wavenumber", independent[known]),
+            "origin": ("wavenumber", np.zeros(int(known.sum()), np.int8)),
+        },
+        {"wavenumber": node[known]},
+    )
+    attrs = {
+        **scan.attrs,
+        "convention": "<h^2> = 2 pi int q C dq",
+        "scans": 1,
+        "mean_square_height_m2": whole,
+        "anisotropy": float(np.sqrt(along_y / along_x)),
+        "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
+    }
+    return stamp(data.assign_attrs(attrs))

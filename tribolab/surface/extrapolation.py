@@ -1,0 +1,249 @@
+"""Carry a measured spectrum on to the wavenumbers that the contact asks for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.provenance import history_line
+from tribolab.quantities import stamp
+from tribolab.surface.moments import at_wavenumber, spectrum_arrays
+from tribolab.units import to_si
+
+MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
+_PER_DECADE = 20
+_ABOVE_ROLLOFF = 1.5  # the fit keeps so far above the roll-off
+_NORMAL = 1.959963984540054  # 95 % of a normal distribution
+
+
+class PowerLaw(NamedTuple):
+    """Straight line in log-log: ``ln C = level + slope (ln q - centre)``."""
+
+    level: float
+    slope: float
+    centre: float
+    level_error: float
+    slope_error: float
+
+    def at(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return ln C and its standard error."""
+        x = np.log(wavenumber) - self.centre
+        return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
+
+
+class _Part(NamedTuple):
+    """A stretch of a spectrum; the band is relative to the values (2, wavenumber)."""
+
+    wavenumber: np.ndarray
+    value: np.ndarray
+    spread: np.ndarray
+    origin: int
+
+    def between(self, low: float, high: float) -> _Part:
+        """Cut at two wavenumbers, with nodes there if they lie inside."""
+        q = self.wavenumber
+        ends = np.array([end for end in (low, high) if q[0] < end < q[-1] and end not in q])
+        nodes = np.unique(np.concatenate([q[(q >= low) & (q <= high)], ends]))
+        near = np.minimum(np.searchsorted(q, nodes), q.size - 1)
+        value = np.where(q[near] == nodes, self.value[near], at_wavenumber(nodes, q, self.value))
+        return _Part(nodes, value, self.spread[:, near], self.origin)
+
+
+def extrapolate(
+    psd: xr.Dataset,
+    *,
+    q_low: str | float | None = None,
+    q_high: str | float = np.pi / 1e-9,
+    fit_decade: tuple[str | float, str | float] | None = None,
+) -> xr.Dataset:
+    """Extrapolate a 2D spectrum: a plateau to small wavenumbers, a power law to large ones.
+
+    Parameters
+    ----------
+    psd
+        ``psd_2d`` [m4] (wavenumber), with ``psd_2d_low``, ``psd_2d_high`` if known.
+    q_low
+        Smallest wavenumber q0 [1/m], usually pi over the width of the contact; by default that
+        of the spectrum. Above the spectrum's first one the spectrum is cut there.
+    q_high
+        Largest wavenumber q1 [1/m]; by default pi / 1 nm.
+    fit_decade
+        Wavenumbers (from, to) [1/m] of the power law's fit; by default the last decade of the
+        spectrum, as far as it lies 1.5 times above the roll-off.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``psd_2d`` with its band from `q_low` to `q_high`, and ``origin``: 0 measured, 1
+        extrapolated to small, 2 to large wavenumbers. Attributes ``hurst_exponent`` and its
+        standard error, ``fit_low_1_m``, ``fit_high_1_m``, ``rolloff_wavenumber_1_m`` and
+        ``rolloff`` (what is known of it).
+
+    Raises
+    ------
+    AnalysisError
+        If q_low is not below q_high, the spectrum is none, it does not fall over the fitted
+        decade, or that decade holds fewer than three points.
+
+    Notes
+    -----
+    ``C = C_0 (q/q_r)^(-2(1+H))``, by weighted regression of ln C on ln q. The band widens with
+    the distance from the fitted decade by the standard errors of level and exponent; if the
+    points scatter more than their bands say, the errors grow by that ratio.
+
+    Examples
+    --------
+    >>> q = np.geomspace(1e4, 1e6, 21)
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-5 * q**-3.6)}, {"wavenumber": q})
+    >>> wide = extrapolate(psd, q_low="1e3 1/m", q_high=1e9)
+    >>> round(wide.attrs["hurst_exponent"], 12), float(wide.wavenumber[-1])
+    (0.8, 1000000000.0)
+    """
+    q, c = spectrum_arrays(psd)
+    low = float(q[0]) if q_low is None else to_si(q_low, "1/m", "q_low")
+    high = to_si(q_high, "1/m", "q_high")
+    if not 0 < low < high:
+        raise AnalysisError(
+            f"extrapolate: q_low must lie below q_high; got {low:.4g} and {high:.4g} 1/m"
+        )
+    if not (c > 0).any():
+        raise AnalysisError("extrapolate: the spectrum is zero everywhere")
+    law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
+    measured = _Part(q, c, _relative_band(psd, c), MEASURED)
+    parts = [measured.between(low, high)]
+    if low < q[0]:
+        grid = _grid(low, min(high, float(q[0])))
+        grid = grid[:-1] if high >= q[0] else grid
+        level, spread = np.full(grid.size, c[0]), np.repeat(measured.spread[:, :1], grid.size, 1)
+        parts.insert(0, _Part(grid, level, spread, TO_SMALL))
+    if high > q[-1]:
+        grid = _grid(max(low, float(q[-1])), high)
+        grid = grid[1:] if low <= q[-1] else grid
+        log_c, log_error = law.at(grid)
+        spread = np.exp(_NORMAL * np.stack([-log_error, log_error]))
+        parts.append(_Part(grid, np.exp(log_c), spread, TO_LARGE))
+    value = np.concatenate([part.value for part in parts])
+    below, above = np.concatenate([part.spread for part in parts], axis=1) * value
+    origin = np.concatenate([np.full(part.wavenumber.size, part.origin, np.int8) for part in parts])
+    data = xr.Dataset(
+        {
+            "psd_2d": ("wavenumber", value),
+            "psd_2d_low": ("wavenumber", below),
+            "psd_2d_high": ("wavenumber", above),
+            "origin": ("wavenumber", origin, origin_flags()),
+        },
+        {"wavenumber": np.concatenate([part.wavenumber for part in parts])},
+    )
+    action = f"extrapolated to {low:.4g} ... {high:.4g} 1/m"
+    kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
+    kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
+    seen = rolloff > 1.05 * q[0]
+    attrs = {
+        **kept,
+        "hurst_exponent": -0.5 * law.slope - 1,
+        "hurst_exponent_standard_error": 0.5 * law.slope_error,
+        "fit_low_1_m": decade[0],
+        "fit_high_1_m": decade[1],
+        "rolloff_wavenumber_1_m": rolloff,
+        "rolloff": "seen in the spectrum"
+        if seen
+        else f"not reached: C(q) still rises towards {q[0]:.3g} 1/m, so the plateau below is an "
+        "assumption; longer scans would show it",
+    }
+    return stamp(data.assign_attrs(attrs))
+
+
+def origin_flags() -> dict[str, str | list[int]]:
+    """Attributes that say what the values of ``origin`` mean (CF flags)."""
+    return {
+        "flag_values": [MEASURED, TO_SMALL, TO_LARGE],
+        "flag_meanings": "measured extrapolated_to_small_q extrapolated_to_large_q",
+    }
+
+
+def _grid(low: float, high: float) -> np.ndarray:
+    grid = np.geomspace(low, high, max(2, int(np.ceil(_PER_DECADE * np.log10(high / low))) + 1))
+    grid[0], grid[-1] = low, high
+    return grid
+
+
+def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
+    """Lower and upper end of the band over C; 1 where there is none."""
+    if "psd_2d_low" not in psd:
+        return np.ones((2, c.size))
+    band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
+    return np.divide(band, c, out=np.ones_like(band), where=c > 0)
+
+
+def _log_error(psd: xr.Dataset) -> np.ndarray | None:
+    """Read the standard error of ln C from the width of the 95 % band."""
+    if "psd_2d_low" not in psd:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        width = np.log(psd.psd_2d_high.values / psd.psd_2d_low.values)
+    error = width / (2 * _NORMAL)
+    return error if np.isfinite(error).all() and (error > 0).all() else None
+
+
+def _fit(
+    q: np.ndarray,
+    c: np.ndarray,
+    error: np.ndarray | None,
+    fit_decade: tuple[str | float, str | float] | None,
+) -> tuple[PowerLaw, tuple[float, float], float]:
+    """Power law over the decade, the decade, and the wavenumber where it meets the plateau."""
+    if fit_decade is not None:
+        low, high = (to_si(value, "1/m", "fit_decade") for value in fit_decade)
+        law = _regress(q, c, error, low, high)
+        return law, (low, high), _crossing(law, c[0])
+    high, floor = float(q[-1]), float(q[-1]) / 10
+    low = max(floor, float(q[0]))
+    rolloff = float(q[0])
+    for _ in range(20):
+        law = _regress(q, c, error, low, high)
+        rolloff = _crossing(law, c[0])
+        # at least four points stay in the fit, whatever the roll-off
+        new = min(max(floor, float(q[0]), _ABOVE_ROLLOFF * rolloff), float(q[-min(4, q.size)]))
+        if abs(new - low) <= 1e-9 * low:
+            break
+        low = new
+    return law, (low, high), rolloff
+
+
+def _crossing(law: PowerLaw, plateau: float) -> float:
+    if not plateau > 0:
+        return 0.0
+    return float(np.exp(law.centre + (np.log(plateau) - law.level) / law.slope))
+
+
+def _regress(
+    q: np.ndarray, c: np.ndarray, error: np.ndarray | None, low: float, high: float
+) -> PowerLaw:
+    chosen = (q >= low * (1 - 1e-9)) & (q <= high * (1 + 1e-9)) & (c > 0)
+    number = int(chosen.sum())
+    if number < 3:
+        raise AnalysisError(
+            f"extrapolate: {number} points lie between {low:.4g} and {high:.4g} 1/m, three are the "
+            f"least for a power law; the spectrum reaches from {q[0]:.4g} to {q[-1]:.4g} 1/m: give "
+            "another fit_decade"
+        )
+    x, y = np.log(q[chosen]), np.log(c[chosen])
+    sigma = np.ones(number) if error is None else error[chosen]
+    weight = sigma**-2.0
+    centre = float(np.average(x, weights=weight))
+    level = float(np.average(y, weights=weight))
+    norm = float(np.sum(weight * (x - centre) ** 2))
+    slope = float(np.sum(weight * (x - centre) * y) / norm)
+    if not slope < -1e-9:
+        raise AnalysisError(
+            f"extrapolate: C(q) does not fall between {low:.4g} and {high:.4g} 1/m (exponent "
+            f"{slope:.2f}); choose a decade where it does with fit_decade=(from, to)"
+        )
+    misfit = np.sum(weight * (y - level - slope * (x - centre)) ** 2) / max(number - 2, 1)
+    growth = np.sqrt(misfit) if error is None else np.sqrt(max(1.0, misfit))
+    return PowerLaw(
+        level, slope, centre, float(growth / np.sqrt(weight.sum())), float(growth / np.sqrt(norm))
+    )

@@ -1,0 +1,194 @@
+"""Roughness as numbers: profile parameters of ISO 21920 (ISO 4287), and moments of a spectrum."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.provenance import history_line
+from tribolab.quantities import stamp
+from tribolab.surface.filters import gaussian_filter
+from tribolab.surface.moments import cumulative, spectrum_arrays
+from tribolab.units import to_si
+
+
+def roughness_parameters(
+    scans: xr.Dataset,
+    *,
+    lambda_c: str | float | None = "auto",
+    lambda_s: str | float | None = "auto",
+    sampling_lengths: bool = True,
+) -> xr.Dataset:
+    """Ra, Rq, Rz, Rsk, Rku and Rdq of profiles, after the standard Gaussian filter.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (..., x) without form and dropouts.
+    lambda_c
+        Long-wave cut-off [m] or text; None leaves long waves in. ``"auto"``: nothing for a
+        profile that the instrument filtered (attribute ``lambda_c_m``), else the standard 0.8 mm,
+        or a fifth of a shorter profile.
+    lambda_s
+        Short-wave cut-off; None leaves short waves in. ``"auto"``: nothing.
+    sampling_lengths
+        True: Ra, Rq, Rsk, Rku are means over whole sampling lengths of one lambda_c (ISO 4287,
+        what most instruments show); False: they are taken over the whole evaluation length
+        (ISO 21920). Without lambda_c there are no sampling lengths.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1], with the dims of the heights
+        but x. The attributes say which cut-offs were applied and over which length.
+
+    Raises
+    ------
+    AnalysisError
+        If the heights hold NaN, or the profile is shorter than two cut-offs.
+
+    Notes
+    -----
+    The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
+    where the filter runs in, is left out. Heights count from the mean line; only without
+    lambda_c from their mean. Rz is the mean over sampling lengths of the height from the deepest
+    valley to the highest peak. Rdq is taken from the seven-point formula of ISO 4287.
+
+    References
+    ----------
+    .. [1] ISO 21920-2:2021; ISO 4287:1997; ISO 16610-21:2011.
+
+    Examples
+    --------
+    >>> x = 0.5e-6 * np.arange(20_000)
+    >>> wave = xr.Dataset({"height": ("x", 1e-6 * np.sin(2 * np.pi * x / 1e-4))}, {"x": x})
+    >>> found = roughness_parameters(wave, lambda_c=None)
+    >>> round(float(found.Rq) * 1e6, 4), round(float(found.Ra) * 1e6, 4)
+    (0.7071, 0.6366)
+    """
+    x = scans.x.values
+    pitch, points = float((x[-1] - x[0]) / (x.size - 1)), x.size
+    if not np.isfinite(scans.height).all():
+        raise AnalysisError(
+            "roughness_parameters: the heights hold NaN; fill the dropouts with fill_dropouts()"
+        )
+    cut, filtered = _long_cutoff(lambda_c, scans, pitch * points)
+    profile = scans
+    fine = None if lambda_s in ("auto", None) else to_si(lambda_s, "m", "lambda_s")
+    if fine is not None:
+        profile = gaussian_filter(profile, fine)
+    height = profile.height.transpose(..., "x")
+    if cut is not None and not filtered:
+        edge = int(round(0.5 * cut / pitch))
+        if points - 2 * edge < cut / pitch:
+            raise AnalysisError(
+                f"roughness_parameters: {pitch * points:.3g} m are shorter than two cut-offs "
+                f"lambda_c = {cut:.3g} m; give a smaller lambda_c"
+            )
+        rough = height - gaussian_filter(profile, cut).height
+        height = rough.isel(x=slice(edge, points - edge))
+    rows = height.values
+    lengths = 5 if cut is None else max(1, int(round(rows.shape[-1] * pitch / cut - 0.25)))
+    size = rows.shape[-1] // lengths
+    parts = rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
+    deviation = parts if sampling_lengths and cut is not None else rows[..., None, :]
+    if cut is None:  # else the filter's mean line is the zero of the profile
+        deviation = deviation - deviation.mean(-1, keepdims=True)
+    square = np.mean(deviation**2, -1)
+    if not (square > 0).all():
+        raise AnalysisError("roughness_parameters: all heights are equal, the profile is level")
+    dims = height.dims[:-1]
+    values = {
+        "Ra": np.abs(deviation).mean(-1).mean(-1),
+        "Rq": np.sqrt(square).mean(-1),
+        "Rz": np.ptp(parts, axis=-1).mean(-1),
+        "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
+        "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
+        "Rdq": np.sqrt(np.mean(_slope(rows, pitch) ** 2, -1)),
+    }
+    data = xr.Dataset({name: (dims, value) for name, value in values.items()})
+    applied = {"lambda_c_m": cut, "lambda_s_m": fine}
+    return stamp(
+        data,
+        **{k: v for k, v in applied.items() if v is not None},
+        filtered_by="instrument" if filtered else "tribolab" if cut or fine else "nothing",
+        evaluation_length_m=rows.shape[-1] * pitch,
+        sampling_lengths=lengths,
+        history=history_line("roughness parameters"),
+    )
+
+
+def _long_cutoff(
+    lambda_c: str | float | None, scans: xr.Dataset, length: float
+) -> tuple[float | None, bool]:
+    """Cut-off [m], and whether the instrument applied it already."""
+    if lambda_c is None:
+        return None, False
+    if lambda_c != "auto":
+        return to_si(lambda_c, "m", "lambda_c"), False
+    if "lambda_c_m" in scans.attrs:
+        return float(scans.attrs["lambda_c_m"]), True
+    return min(0.8e-3, length / 5), False
+
+
+def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
+    """Local slope by the seven-point formula of ISO 4287 (4.4.1)."""
+    if rows.shape[-1] < 7:
+        raise AnalysisError("roughness_parameters: seven points are the least")
+    ahead = 45 * rows[..., 4:-2] - 9 * rows[..., 5:-1] + rows[..., 6:]
+    behind = 45 * rows[..., 2:-4] - 9 * rows[..., 1:-5] + rows[..., :-6]
+    return (ahead - behind) / (60 * pitch)
+
+
+def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
+    """Roughness, slope and curvature of the surface from its spectrum, cumulative in q.
+
+    Parameters
+    ----------
+    psd
+        ``psd_2d`` [m4] (wavenumber), with its band if known.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``rms_roughness`` [m], ``rms_slope`` [1], ``rms_curvature`` [1/m] of all waves up to each
+        ``wavenumber``; the last value is the whole. With a band, ``..._low`` and ``..._high``:
+        outer bounds, as if every point erred to the same side.
+
+    Notes
+    -----
+    ``h_rms^2 = 2 pi int q C dq``, ``xi^2 = 2 pi int q^3 C dq`` (Eq. 12 of [1]_),
+    ``kappa^2 = (pi/2) int q^5 C dq``, the mean square of half the Laplacian. A straight profile
+    shows a slope smaller by ``sqrt(2)``.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+
+    Examples
+    --------
+    >>> q = np.geomspace(1e3, 1e7, 41)
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", q**-4.0)}, {"wavenumber": q})
+    >>> slope = spectral_roughness(psd).rms_slope
+    >>> bool(abs(float(slope[-1]) - np.sqrt(2 * np.pi * np.log(1e4))) < 1e-12)
+    True
+    """
+    q, _ = spectrum_arrays(psd)
+    result = {}
+    for ending in ("", "_low", "_high"):
+        name = f"psd_2d{ending}"
+        if name not in psd:
+            continue
+        spectrum = psd[name].values
+        for quantity, order, factor in (
+            ("rms_roughness", 1, 2 * np.pi),
+            ("rms_slope", 3, 2 * np.pi),
+            ("rms_curvature", 5, 0.5 * np.pi),
+        ):
+            value = np.sqrt(factor * cumulative(q, spectrum, order))
+            result[f"{quantity}{ending}"] = ("wavenumber", value)
+    return stamp(
+        xr.Dataset(result, {"wavenumber": q}), history=history_line("moments of the spectrum")
+    )
