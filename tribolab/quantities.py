@@ -109,6 +109,19 @@ _ROWS = [
     ("work_of_adhesion", "\\gamma", "J/m2", "work of adhesion"),
     ("effective_work_of_adhesion", "\\gamma_eff", "J/m2", "effective work of adhesion"),
     ("magnification", "\\zeta", "1", "magnification"),
+    # adhesion
+    (
+        "macroscopic_work_of_adhesion",
+        "\\gamma_eff(1)",
+        "J/m2",
+        "work of adhesion at magnification 1",
+    ),
+    ("apparent_contact_area_ratio", "P", "1", "relative contact area seen at a magnification"),
+    ("contact_area_ratio_no_adhesion", "A/A_0", "1", "relative contact area without adhesion"),
+    ("area_enhancement", "A/A(\\gamma=0)", "1", "contact area relative to that without adhesion"),
+    ("pull_off", "", "1", "1 where there is a pull-off force, else 0"),
+    ("iterations", "", "1", "steps of the root search"),
+    ("residual", "", "1", "relative misfit of the equation solved"),
     # contact: gaps and line contacts
     ("gap", "u", "m", "local interfacial gap"),
     ("gap_density", "P(u)", "1/m", "probability density of the gap"),

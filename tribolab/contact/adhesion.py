@@ -1,0 +1,216 @@
+"""Adhesion of rough contacts in Persson's theory: contact area and effective work of adhesion."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
+from tribolab.errors import AnalysisError
+from tribolab.quantities import labelled, stamp
+
+Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
+
+
+def adhesion(
+    pressure: str | Pressure,
+    psd: xr.Dataset,
+    effective_modulus: str | float,
+    work_of_adhesion: str | float,
+    *,
+    kappa: float = 0.4,
+    c_a: float = 1.0,
+    nodes: int = 200,
+    max_iterations: int = 100,
+) -> xr.Dataset:
+    """Contact area and effective work of adhesion of a rough adhesive contact.
+
+    Parameters
+    ----------
+    pressure
+        Nominal pressure [Pa] (any dims), zero or above; text with a unit if scalar. Not a number
+        stays not a number.
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+    effective_modulus
+        E* [Pa].
+    work_of_adhesion
+        Work of adhesion gamma_0 of smooth surfaces [J/m2], e.g. ``"51 mJ/m^2"``.
+    kappa
+        Elastic energy reduction factor at vanishing contact [1], 0 to 1.
+    c_a
+        Factor of the detachment stress [1]; 1 is a crack of diameter lambda/2.
+    nodes
+        Number of wavenumbers on which the equations are solved.
+    max_iterations
+        Largest number of steps of the root search.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_area_ratio`` A/A0 [1] at the largest wavenumber, the same without adhesion as
+        ``contact_area_ratio_no_adhesion``, ``area_enhancement`` their ratio, ``iterations`` and
+        ``residual`` (dims of pressure); ``apparent_contact_area_ratio`` P(q) [1] and
+        ``effective_work_of_adhesion`` gamma_eff(q) [J/m2] (dims of pressure, wavenumber), with
+        the coordinate ``magnification``.
+
+    Raises
+    ------
+    AnalysisError
+        If an argument has no meaning, or Eq. (11) could not be solved.
+
+    Notes
+    -----
+    ``gamma_eff(q) P(q) = gamma_0 [P(q1) int (1 + xi^2 x)^(1/2) e^-x dx - (2 pi/delta)
+    int_q^q1 q'^2 P S C dq']``, ``delta = 4 gamma_0/E*``, ``S = kappa + (1 - kappa) P^2``: Eqs. (11)
+    and (12) of [1]_; gamma_eff is clipped at zero. P(q) is the part of a stress that diffuses from
+    the nominal pressure with the variance ``(pi/2) E*^2 int q^3 C dq`` and has not yet fallen to
+    ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion that is Eqs. (6) and (7). Doubling
+    `nodes` from 200 changes areas by less than 0.1 %.
+
+    The residual is the misfit of Eq. (11) at the largest wavenumber, relative to its terms; at the
+    other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa for a
+    smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant if
+    gamma_eff(1) > 0.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+    .. [2] B. N. J. Persson, Eur. Phys. J. E 8, 385 (2002), doi:10.1140/epje/i2002-10025-1.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> q = np.array([423.0, 9.05e4, 3.14e9])  # a plateau and a power law
+    >>> c = 1.63e-22 * np.array([1, 1, (q[2] / q[1]) ** -4.31])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> result = adhesion("0.0417 MPa", psd, "2 MPa", work_of_adhesion="51 mJ/m^2")
+    >>> print(f"{float(result.contact_area_ratio):.3f} {float(result.area_enhancement):.2f}")
+    0.122 1.76
+    """
+    surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
+    work = work_value(work_of_adhesion)
+    over = finite_pressures(pressure)
+    flat = over.values.ravel()
+    least = surface.small_pressure
+    pushed = np.maximum(flat, least)
+    solved = balance(surface, pushed, np.full(flat.size, work), max_iterations)
+    without = surface.without_adhesion(pushed)[:, -1]
+    share = flat / pushed  # 1, but for pressures so small that the area is proportional to them
+    sticks = solved.start > 0
+    area = solved.area.copy()
+    area[:, 1:] *= np.where(sticks, 1.0, share)[:, None]
+    with np.errstate(divide="ignore"):
+        ratio = solved.area[:, -1] / without / np.where(sticks, share, 1.0)
+
+    dims, shape, q = over.dims, over.shape, surface.wavenumber
+    both = (*dims, "wavenumber")
+
+    def over_both(values: np.ndarray) -> tuple[tuple, np.ndarray]:
+        return both, values.reshape(*shape, q.size)
+
+    data = {
+        "contact_area_ratio": (dims, area[:, -1].reshape(shape)),
+        "contact_area_ratio_no_adhesion": (dims, (without * share).reshape(shape)),
+        "area_enhancement": (dims, ratio.reshape(shape)),
+        "apparent_contact_area_ratio": over_both(area),
+        "effective_work_of_adhesion": over_both(solved.binding),
+        "iterations": (dims, solved.iterations.reshape(shape)),
+        "residual": (dims, solved.residual.reshape(shape)),
+    }
+    return stamp(
+        xr.Dataset(data, coords=pressure_coords(over))
+        .assign_coords(wavenumber=q)
+        .assign_coords(magnification=("wavenumber", q / q[0])),
+        work_of_adhesion_J_m2=work,
+        **parameters(surface),
+    )
+
+
+def macroscopic_work_of_adhesion(
+    psd: xr.Dataset,
+    effective_modulus: str | float,
+    work_of_adhesion: str | float,
+    *,
+    kappa: float = 0.4,
+    c_a: float = 1.0,
+    nodes: int = 200,
+    max_iterations: int = 100,
+) -> xr.Dataset:
+    """Effective work of adhesion at magnification 1 and vanishing load: the verdict on pull-off.
+
+    Parameters
+    ----------
+    psd, effective_modulus, work_of_adhesion, kappa, c_a, nodes, max_iterations
+        As for `adhesion`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``macroscopic_work_of_adhesion`` gamma_eff(1) [J/m2]; ``pull_off``, 1 where it is above
+        zero, so that a force is needed to part the bodies, else 0; ``contact_area_ratio`` that
+        remains at p -> 0 [1], zero without pull-off. All without dims; the attribute ``verdict``
+        says it in words.
+
+    Raises
+    ------
+    AnalysisError
+        As for `adhesion`.
+
+    Notes
+    -----
+    Eq. (11) of [1]_ at q0. Its sign is a statement about p -> 0: under load gamma_eff(1) is
+    another number, and it may vanish at a load although a pull-off force exists.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> q = np.array([423.0, 4.67e4, 3.14e9])  # smooth: 1.4 um rms, slope 0.15
+    >>> c = 1.44e-22 * np.array([1, 1, (q[2] / q[1]) ** -4.18])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> macroscopic_work_of_adhesion(psd, "2 MPa", "64 mJ/m^2").verdict
+    'gamma_eff(1) > 0: the pull-off force is not zero'
+    """
+    surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
+    work = work_value(work_of_adhesion)
+    least = np.array([surface.small_pressure])
+    solved = balance(surface, least, np.array([work]), max_iterations)
+    sticks = bool(solved.start[0] > 0)
+    verdict = "> 0: the pull-off force is not zero" if sticks else "= 0: no pull-off force"
+    data = {
+        "macroscopic_work_of_adhesion": float(solved.binding[0, 0]),
+        "pull_off": np.int8(sticks),
+        "contact_area_ratio": float(solved.area[0, -1]) if sticks else 0.0,
+    }
+    return stamp(
+        xr.Dataset(data),
+        verdict=f"gamma_eff(1) {verdict}",
+        work_of_adhesion_J_m2=work,
+        **parameters(surface),
+    )
+
+
+def finite_pressures(pressure: str | Pressure) -> xr.DataArray:
+    """Return pressures as a DataArray, none of them infinite or negative."""
+    over = labelled(pressure, "pressure")
+    wrong = over.values[(over.values < 0) | np.isinf(over.values)]
+    if wrong.size:
+        raise AnalysisError(
+            f"pressure: it must be finite, and zero or above; got {wrong[0]:g} Pa. Contact under a "
+            "pull (negative pressure) is not described here"
+        )
+    return over
+
+
+def pressure_coords(over: xr.DataArray) -> dict:
+    """Coordinates of the pressures, and the pressures themselves."""
+    kept = {name: values for name, values in over.coords.items() if name != "pressure"}
+    return {**kept, "pressure": (over.dims, over.values)}

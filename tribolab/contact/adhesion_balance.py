@@ -1,0 +1,265 @@
+"""The energy balance of adhesion: Eqs. (11) and (12) solved together with the contact area P(q).
+
+Differentiated, Eq. (11) runs forward in wavenumber: the binding energy g(q) = gamma_eff P grows by
+the elastic energy that finer roughness would cost, and P(q) is lost where the diffusing stress
+meets the boundary that gamma_eff sets at that same wavenumber. So one number decides everything, g
+at the smallest wavenumber: it must be such that at the largest one g = gamma_0 P(q1) I(xi). That is
+one bracketed root for each pressure. Relaxation of Eq. (11) from P to gamma_eff and back finds the
+same root, but goes round in circles where gamma_eff(1) is about to lift off from zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.special import erf, erfcx
+
+from tribolab.contact.first_passage import Diffusion
+from tribolab.errors import AnalysisError
+from tribolab.surface.moments import cumulative_at, spectrum_arrays
+from tribolab.units import positive, to_si
+
+# Share of the nodes that is spread evenly in ln q; the others follow the growth of the stress.
+_EVEN_SHARE = 0.2
+_SMALLEST_AREA = 1e-15
+_LARGEST_RESIDUAL = 1e-8
+# Below this share of E* xi/2 a pressure is the limit p -> 0: the theory is linear in p there, and
+# differences of probabilities near 1 lose the digits that are left.
+_SMALL_PRESSURE = 1e-4
+
+
+class Balance(NamedTuple):
+    """Solution of Eq. (11) at each wavenumber, for each of k problems."""
+
+    area: np.ndarray  # P(q) [1] (k, n)
+    binding: np.ndarray  # gamma_eff [J/m2] (k, n)
+    start: np.ndarray  # right-hand side of Eq. (11) at q0 before it is clipped at 0 [J/m2] (k)
+    residual: np.ndarray  # misfit of Eq. (11) at q1, relative to its terms (k)
+    iterations: np.ndarray  # steps of the root search (k)
+
+
+@dataclass(frozen=True)
+class Interface:
+    """A rough surface on an elastic solid, prepared on nodes of wavenumber for Eq. (11)."""
+
+    wavenumber: np.ndarray  # [rad/m] (n)
+    modulus: float  # E* [Pa]
+    kappa: float
+    c_a: float  # factor of the detachment stress
+    slope: float  # xi of Eq. (12)
+    diffusion: Diffusion
+    elastic: np.ndarray  # E*/4 2 pi int q^2 C dq over each step [J/m2] (n - 1)
+
+    @classmethod
+    def on_nodes(
+        cls,
+        q: np.ndarray,
+        spectrum: np.ndarray,
+        modulus: float,
+        *,
+        nodes: int,
+        kappa: float,
+        c_a: float,
+    ) -> Interface:
+        """Choose graded nodes of wavenumber and integrate the spectrum between them.
+
+        Raises
+        ------
+        AnalysisError
+            If the spectrum is zero everywhere.
+        """
+        fine = np.union1d(np.geomspace(q[0], q[-1], 4001)[1:-1], q)
+        stress = cumulative_at(fine, q, spectrum, 3)
+        if not stress[-1] > 0:
+            raise AnalysisError("psd: C is zero everywhere, there is no roughness to adhere to")
+        # the range where stress has yet to grow matters as much as the last decade: fourth root
+        even = np.log(fine / q[0]) / np.log(q[-1] / q[0])
+        measure = _EVEN_SHARE * even + (1 - _EVEN_SHARE) * (stress / stress[-1]) ** 0.25
+        node = np.exp(np.interp(np.linspace(0, 1, nodes), measure, np.log(fine)))
+        node[0], node[-1] = q[0], q[-1]
+        cubic = cumulative_at(node, q, spectrum, 3)
+        return cls(
+            wavenumber=node,
+            modulus=modulus,
+            kappa=kappa,
+            c_a=c_a,
+            slope=float(np.sqrt(2 * np.pi * cubic[-1])),
+            diffusion=Diffusion.over(np.pi / 2 * modulus**2 * np.maximum.accumulate(cubic)),
+            elastic=np.pi / 2 * modulus * np.diff(cumulative_at(node, q, spectrum, 2)),
+        )
+
+    @property
+    def small_pressure(self) -> float:
+        """Pressure [Pa] that stands for the limit p -> 0: 1e-4 of the stress scale E* xi/2."""
+        return _SMALL_PRESSURE * float(np.sqrt(self.diffusion.time[-1]))
+
+    @property
+    def area_gain(self) -> float:
+        """Growth of the surface by its slopes, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
+        return float(1 + np.sqrt(np.pi) / 2 * self.slope * erfcx(1 / self.slope))
+
+    def without_adhesion(self, pressure: np.ndarray) -> np.ndarray:
+        """P(q) of Eqs. (6) and (7) at the nodes (k, n)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            area = erf(pressure[:, None] / np.sqrt(2 * self.diffusion.time))
+        area[:, 0] = 1.0
+        return area
+
+    def reduced(self, area: np.ndarray) -> np.ndarray:
+        """S(q) P(q), the share of the elastic energy that is stored at a wavenumber."""
+        return area * (self.kappa + (1 - self.kappa) * area * area)
+
+    def march(self, start: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Carry P and g = gamma_eff P from q0 to q1.
+
+        Parameters
+        ----------
+        start
+            g at q0 [J/m2] (k); if negative, gamma_eff is zero until g has grown above zero.
+        pressure
+            Nominal pressure [Pa] (k).
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            P [1] and g [J/m2], both (n, k).
+        """
+        n = self.wavenumber.size
+        area, energy = np.ones((n, start.size)), np.empty((n, start.size))
+        levels, losses = np.empty((n - 1, start.size)), np.empty((n - 1, start.size))
+        energy[0] = start
+        stiffness = self.c_a**2 * self.modulus * self.wavenumber
+        height = -np.sqrt(np.maximum(start, 0.0) * stiffness[0])
+        for i in range(n - 1):
+            before, stored = area[i], self.reduced(area[i])
+            # P at the next node is guessed by its last ratio and corrected once, which is enough:
+            # a second correction changes areas by 1e-8
+            guess = before * np.maximum(before / area[i - 1], 0.5) if i else before
+            for _ in range(2):
+                grown = energy[i] + self.elastic[i] * (stored + self.reduced(guess)) / 2
+                below = -np.sqrt(np.maximum(grown, 0.0) / guess * stiffness[i + 1])
+                levels[i] = (height + below) / 2
+                losses[i] = self.diffusion.lost(i, levels[i], pressure, levels, losses)
+                guess = np.maximum(before - losses[i], _SMALLEST_AREA)
+            area[i + 1] = guess
+            energy[i + 1] = energy[i] + self.elastic[i] * (stored + self.reduced(guess)) / 2
+            height = -np.sqrt(np.maximum(energy[i + 1], 0.0) / guess * stiffness[i + 1])
+        return area, energy
+
+    def solve(self, pressure: np.ndarray, work: np.ndarray, iterations: int) -> Balance:
+        """Find g at q0 so that Eq. (11) holds at q1, for each pressure and work of adhesion (k).
+
+        The root is bracketed: below, no adhesion at any wavenumber; above, gamma_eff(1) at the
+        largest value that Eq. (11) can have. `pressure` and `work` must be above zero.
+        """
+        from scipy.optimize.elementwise import find_root
+
+        dry = self.reduced(self.without_adhesion(pressure))
+        unit = (self.elastic * (dry[:, 1:] + dry[:, :-1]) / 2).sum(axis=1)
+        gained = work * self.area_gain
+
+        def misfit(area, energy, unit, gained):
+            return (energy - gained * area) / (unit + gained * area)
+
+        def at(x, pressure, unit, gained):
+            area, energy = self.march(np.sinh(x) * unit, pressure)
+            return misfit(area[-1], energy[-1], unit, gained)
+
+        # on the scale of asinh roots that are tiny (small pressure) and large are found as fast
+        found = find_root(
+            at,
+            (np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)),
+            args=(pressure, unit, gained),
+            tolerances={"xatol": 0.0, "xrtol": 4e-16, "fatol": 1e-11, "frtol": 0.0},
+            maxiter=iterations,
+        )
+        start = np.sinh(found.x) * unit
+        area, energy = (values.T for values in self.march(start, pressure))
+        residual = np.abs(misfit(area[:, -1], energy[:, -1], unit, gained))
+        return Balance(area, np.maximum(energy, 0.0) / area, start, residual, found.nit)
+
+
+def rough_interface(
+    psd: xr.Dataset, effective_modulus: str | float, kappa: float, c_a: float, nodes: int
+) -> Interface:
+    """Prepare a rough interface from what a caller states.
+
+    Raises
+    ------
+    AnalysisError
+        If a parameter has no meaning or the spectrum is none.
+    """
+    if not 0 <= kappa <= 1:
+        raise AnalysisError(f"kappa: a value from 0 to 1 is wanted; got {kappa:g}")
+    if not 0 <= c_a < np.inf:
+        raise AnalysisError(f"c_a: a value of about 1, zero or above, is wanted; got {c_a:g}")
+    if nodes < 50:
+        raise AnalysisError(f"nodes: at least 50 are needed, 200 are usual; got {nodes}")
+    modulus = positive(effective_modulus, "Pa", "effective_modulus")
+    q, spectrum = spectrum_arrays(psd)
+    return Interface.on_nodes(q, spectrum, modulus, nodes=int(nodes), kappa=kappa, c_a=c_a)
+
+
+def work_value(work_of_adhesion: str | float) -> float:
+    """Return a work of adhesion [J/m2], zero or above.
+
+    Raises
+    ------
+    AnalysisError
+        If it is negative or not finite.
+    """
+    given = work_of_adhesion if isinstance(work_of_adhesion, str) else float(work_of_adhesion)
+    work = to_si(given, "J/m^2", name="work_of_adhesion")
+    if not 0 <= work < np.inf:
+        raise AnalysisError(
+            f"work_of_adhesion: zero or above is wanted; got {work:g} J/m2. Where Eq. (14) gives a "
+            "negative value the liquid wets and keeps the solids apart: there is no adhesion, use 0"
+        )
+    return work
+
+
+def balance(
+    surface: Interface, pressure: np.ndarray, work: np.ndarray, max_iterations: int
+) -> Balance:
+    """Solve Eq. (11) for each pressure and work of adhesion (k).
+
+    Zero work of adhesion gives Eqs. (6) and (7), a pressure that is not a number gives NaN.
+
+    Raises
+    ------
+    AnalysisError
+        If the equation is not met; the message names the pressure and what to change.
+    """
+    k, n = pressure.size, surface.wavenumber.size
+    area, binding = surface.without_adhesion(pressure), np.zeros((k, n))
+    start, residual, iterations = np.zeros(k), np.zeros(k), np.zeros(k, dtype=int)
+    unknown = np.isnan(pressure)
+    area[unknown], binding[unknown], residual[unknown] = np.nan, np.nan, np.nan
+    todo = (work > 0) & ~unknown
+    if todo.any():
+        part = surface.solve(pressure[todo], work[todo], max_iterations)
+        worst = int(np.argmax(np.where(np.isnan(part.residual), np.inf, part.residual)))
+        if not part.residual[worst] <= _LARGEST_RESIDUAL:
+            raise AnalysisError(
+                f"adhesion: Eq. (11) is not solved at p = {pressure[todo][worst]:.4g} Pa and "
+                f"gamma_0 = {work[todo][worst]:.4g} J/m2: after {part.iterations[worst]} steps its "
+                f"relative misfit is {part.residual[worst]:.2g} and {_LARGEST_RESIDUAL:g} is "
+                f"wanted; raise max_iterations (now {max_iterations}) or nodes (now {n})"
+            )
+        area[todo], binding[todo], start[todo] = part.area, part.binding, part.start
+        residual[todo], iterations[todo] = part.residual, part.iterations
+    return Balance(area, binding, start, residual, iterations)
+
+
+def parameters(surface: Interface) -> dict[str, float | int]:
+    """Parameters that a result must carry to be read."""
+    return {
+        "effective_modulus_Pa": surface.modulus,
+        "kappa": surface.kappa,
+        "c_a": surface.c_a,
+        "nodes": surface.wavenumber.size,
+        "rms_slope": surface.slope,
+    }

@@ -1,0 +1,98 @@
+"""How far the uncertainty of surface energies reaches into the adhesive contact area."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+
+from tribolab.contact.adhesion import Pressure, finite_pressures, pressure_coords
+from tribolab.contact.adhesion_balance import balance, parameters, rough_interface
+from tribolab.contact.work_of_adhesion import (
+    PDMS_PMMA_GLYCEROL,
+    SurfaceEnergies,
+    sample_work_of_adhesion,
+    work_of_adhesion_spread,
+)
+from tribolab.quantities import stamp
+
+
+def adhesion_uncertainty(
+    pressure: str | Pressure,
+    psd: xr.Dataset,
+    effective_modulus: str | float,
+    energies: SurfaceEnergies = PDMS_PMMA_GLYCEROL,
+    *,
+    samples: int = 1000,
+    seed: int = 0,
+    kappa: float = 0.4,
+    c_a: float = 1.0,
+    nodes: int = 200,
+    max_iterations: int = 100,
+) -> xr.Dataset:
+    """Contact area with the spread that uncertain surface energies and contact angles give it.
+
+    Parameters
+    ----------
+    pressure, psd, effective_modulus, kappa, c_a, nodes, max_iterations
+        As for `adhesion`.
+    energies
+        Surface energies and contact angles with their bounds.
+    samples, seed
+        Number of random draws for the standard deviation, and their seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_area_ratio`` [1] (medium, dims of pressure) at the chosen values, ``_low`` and
+        ``_high`` at the smallest and largest work of adhesion inside the bounds, ``_std`` over the
+        random draws; ``macroscopic_work_of_adhesion`` [J/m2] (medium) at vanishing load, with
+        ``_low`` and ``_high``: where the first is zero and the second is not, the surface energies
+        do not decide whether there is a pull-off force; the variables of
+        `work_of_adhesion_spread` (medium).
+
+    Raises
+    ------
+    AnalysisError
+        As for `adhesion`.
+
+    Notes
+    -----
+    The area grows with the work of adhesion, so the bounds on it are exact. Draws are read off a
+    monotonic curve of area over work of adhesion, solved at 15 values or more. A liquid that wets
+    (negative work of adhesion) gives the area without adhesion. The spread is that of the inputs;
+    that Eqs. (11), (13) and (14) are approximations is not in it.
+    """
+    surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
+    over = finite_pressures(pressure)
+    flat = over.values.ravel()
+    spread = work_of_adhesion_spread(energies, samples=samples, seed=seed)
+    endings = ("", "_low", "_high")
+    works = np.stack([spread[f"work_of_adhesion{ending}"].values for ending in endings]).clip(0)
+    drawn = sample_work_of_adhesion(energies, samples, seed).clip(0)
+    curve = np.union1d(works, np.linspace(works.min(), works.max(), 13))
+
+    # the limit p -> 0 is solved beside the pressures asked for
+    pushed = np.append(np.maximum(flat, surface.small_pressure), surface.small_pressure)
+    solved = balance(
+        surface, np.tile(pushed, curve.size), np.repeat(curve, pushed.size), max_iterations
+    )
+    table = (curve.size, pushed.size)
+    sticks = solved.start.reshape(table)[:, :-1] > 0
+    area = solved.area[:, -1].reshape(table)[:, :-1] * np.where(sticks, 1.0, flat / pushed[:-1])
+    macroscopic = solved.binding[:, 0].reshape(table)[:, -1]
+
+    def read(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+        if curve.size == 1:
+            return np.broadcast_to(values[0], (*at.shape, *values.shape[1:]))
+        return PchipInterpolator(curve, values, axis=0)(at)
+
+    dims = ("medium", *over.dims)
+    for ending, work in zip(endings, works, strict=True):
+        areas = read(area, work).reshape(2, *over.shape)
+        spread[f"contact_area_ratio{ending}"] = (dims, areas)
+        at_rest = macroscopic[np.searchsorted(curve, work)]
+        spread[f"macroscopic_work_of_adhesion{ending}"] = ("medium", at_rest)
+    deviation = read(area, drawn).std(axis=1, ddof=1).reshape(2, *over.shape)
+    spread["contact_area_ratio_std"] = (dims, deviation)
+    return stamp(spread.assign_coords(pressure_coords(over)), **parameters(surface))

@@ -1,0 +1,150 @@
+"""First passage of a diffusion through a moving, absorbing boundary, for many starts at once.
+
+The stress at a point of a rough contact diffuses as finer roughness is let in: "time" is its
+variance, and contact is lost where the stress falls to the boundary (zero without adhesion, a
+detachment stress with it). What survives is the apparent contact area.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ndtr
+
+from tribolab.errors import AnalysisError
+
+
+@dataclass(frozen=True)
+class Diffusion:
+    """Time nodes of a diffusion and the Volterra weights that depend on them alone.
+
+    Notes
+    -----
+    The boundary is taken as constant inside a step. Then the diagonal of the Volterra equation is
+    exactly 1/2 however fast the boundary recedes, so one step can be solved after the other without
+    loss of digits; with the boundary of the nodes the diagonal vanishes and the sum is unstable.
+    """
+
+    time: np.ndarray  # (n), starts with 0, never decreases
+    inverse_root: np.ndarray  # 1/sqrt(t_i - t_jm) of node i and step j < i, (n, n - 1)
+    runs: np.ndarray  # whether time passes in a step, (n - 1)
+
+    @classmethod
+    def over(cls, time: ArrayLike) -> Diffusion:
+        """Prepare the nodes in time.
+
+        Raises
+        ------
+        AnalysisError
+            If time does not start with 0, decreases, or never passes.
+        """
+        t = np.asarray(time, dtype=float)
+        good = t.ndim == 1 and t.size > 1 and t[0] == 0 and (np.diff(t) >= 0).all()
+        if not (good and 0 < t[-1] < np.inf):
+            raise AnalysisError(
+                "first passage: time must start with 0, never decrease and end above 0; it is "
+                f"{np.array2string(t, threshold=6, edgeitems=2, precision=4)}"
+            )
+        runs = np.diff(t) > 1e-14 * t[-1]
+        middle = (t[1:] + t[:-1]) / 2
+        gap = np.maximum(t[:, None] - middle[None, :], 1e-16 * t[-1])
+        return cls(t, 1 / np.sqrt(gap), runs)
+
+    def lost(
+        self,
+        step: int,
+        level: np.ndarray,
+        start: np.ndarray,
+        levels: np.ndarray,
+        losses: np.ndarray,
+    ) -> np.ndarray:
+        """Probability of reaching the boundary in one step, given all steps before it.
+
+        Parameters
+        ----------
+        step
+            Number of the step; it ends at node ``step + 1``.
+        level
+            Height of the boundary in this step (k).
+        start
+            Where the diffusion starts (k).
+        levels, losses
+            Heights and losses of the steps before (step or more, k).
+
+        Returns
+        -------
+        numpy.ndarray
+            The loss (k).
+
+        Notes
+        -----
+        Whoever is at or below the boundary b_i at time t_i has met it before; from the meeting
+        place it is a coin's throw, a diffusion with the time that is left:
+        Phi((b_i - p)/sqrt(t_i)) = sum_j dF_j Phi((b_i - b_j)/sqrt(t_i - t_jm)), solved for dF_i.
+        """
+        if not self.runs[step]:
+            return np.zeros_like(level)
+        below = ndtr((level - start) / np.sqrt(self.time[step + 1]))
+        if step:
+            weight = ndtr((level - levels[:step]) * self.inverse_root[step + 1, :step, None])
+            below -= np.einsum("jk,jk->k", weight, losses[:step])
+        # rounding alone can make it negative where next to nothing is lost
+        return np.maximum(2 * below, 0.0)
+
+
+def survival(start: ArrayLike, boundary: ArrayLike, time: ArrayLike) -> np.ndarray:
+    """Probability that a diffusion has not yet met a moving boundary below it.
+
+    Parameters
+    ----------
+    start
+        Where the diffusion starts, above the boundary (k) or a number.
+    boundary
+        Height of the boundary at the nodes (n), or for each start (k, n).
+    time
+        Variance of the diffusion at the nodes (n), starting with 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        The probability at the nodes (k, n), or (n) for one start.
+
+    Raises
+    ------
+    AnalysisError
+        If the shapes do not fit, time runs backwards, or a start lies below the boundary.
+
+    Notes
+    -----
+    The error falls with the 3/2 power of the step of time. A boundary at rest gives
+    erf((p - b)/sqrt(2 t)) exactly, whatever the nodes: that of [1]_ when b = 0.
+
+    References
+    ----------
+    .. [1] B. N. J. Persson, J. Chem. Phys. 115, 3840 (2001), doi:10.1063/1.1388626.
+
+    Examples
+    --------
+    >>> survival(1.0, [0.0, 0.0], [0.0, 0.5]).round(6)  # erf(1)
+    array([1.      , 0.842701])
+    """
+    diffusion = Diffusion.over(time)
+    origin = np.atleast_1d(np.asarray(start, dtype=float))
+    height = np.atleast_2d(np.asarray(boundary, dtype=float))
+    if origin.ndim != 1 or height.shape[-1] != diffusion.time.size or height.ndim != 2:
+        raise AnalysisError(
+            f"first passage: boundary {np.shape(boundary)} must have one value for each of the "
+            f"{diffusion.time.size} times, and one row for each start {np.shape(start)} or one"
+        )
+    if not (origin > height[:, 0]).all():
+        raise AnalysisError("first passage: every start must lie above the boundary at time 0")
+    levels = ((height[:, 1:] + height[:, :-1]) / 2).T
+    levels = np.ascontiguousarray(np.broadcast_to(levels, (levels.shape[0], origin.size)))
+    losses = np.zeros_like(levels)
+    for step in range(levels.shape[0]):
+        losses[step] = diffusion.lost(step, levels[step], origin, levels, losses)
+    result = np.ones((origin.size, diffusion.time.size))
+    result[:, 1:] -= np.cumsum(losses, axis=0).T
+    return result[0] if np.ndim(start) == 0 and np.ndim(boundary) == 1 else result

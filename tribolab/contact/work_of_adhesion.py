@@ -1,0 +1,286 @@
+"""Work of adhesion from surface energies: dry, and under a liquid, with its literature spread."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.quantities import stamp
+from tribolab.units import to_si
+
+
+class Range(NamedTuple):
+    """A value and the bounds between which it is reported."""
+
+    value: float
+    low: float
+    high: float
+
+
+Stated = str | float | tuple[str | float, str | float, str | float] | Range
+
+
+def dry_work_of_adhesion(surface_energy_1: str | float, surface_energy_2: str | float) -> float:
+    """Work of adhesion of two dry solids from their surface energies.
+
+    Parameters
+    ----------
+    surface_energy_1, surface_energy_2
+        Surface energies [J/m2], or text such as ``"22 mJ/m^2"``.
+
+    Returns
+    -------
+    float
+        gamma_dry [J/m2].
+
+    Raises
+    ------
+    AnalysisError
+        If a surface energy is not positive.
+
+    Notes
+    -----
+    ``gamma_dry = 2 sqrt(gamma_1 gamma_2)``, Eq. (13) of [1]_: an estimate, good for solids that
+    attract each other by dispersion forces.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+
+    Examples
+    --------
+    >>> round(1e3 * dry_work_of_adhesion("22 mJ/m^2", "46 mJ/m^2"), 1)
+    63.6
+    """
+    return float(
+        _dry(
+            _energy(surface_energy_1, "surface_energy_1"),
+            _energy(surface_energy_2, "surface_energy_2"),
+        )
+    )
+
+
+def wet_work_of_adhesion(
+    dry: str | float,
+    surface_tension: str | float,
+    contact_angle_1: str | float,
+    contact_angle_2: str | float,
+) -> float:
+    """Work of adhesion of two solids under a liquid.
+
+    Parameters
+    ----------
+    dry
+        Work of adhesion of the dry solids [J/m2].
+    surface_tension
+        Surface tension of the liquid [J/m2].
+    contact_angle_1, contact_angle_2
+        Equilibrium contact angles of the liquid on the two solids [rad], or ``"104 deg"``.
+
+    Returns
+    -------
+    float
+        gamma_wet [J/m2]. Negative where the liquid wets: it then keeps the solids apart.
+
+    Raises
+    ------
+    AnalysisError
+        If an energy is not positive or an angle lies outside 0 to 180 degrees.
+
+    Notes
+    -----
+    ``gamma_wet = gamma_dry - gamma (cos theta_1 + cos theta_2)``, Eq. (14) of [1]_.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+
+    Examples
+    --------
+    >>> round(1e3 * wet_work_of_adhesion("63.6 mJ/m^2", "64 mJ/m^2", "104 deg", "64 deg"), 1)
+    51.0
+    """
+    return float(
+        _wet(
+            _energy(dry, "dry"),
+            _energy(surface_tension, "surface_tension"),
+            _angle(contact_angle_1, "contact_angle_1"),
+            _angle(contact_angle_2, "contact_angle_2"),
+        )
+    )
+
+
+@dataclass(frozen=True)
+class SurfaceEnergies:
+    """Surface energies and contact angles of two solids and a liquid, each with its bounds.
+
+    Parameters
+    ----------
+    solid_1, solid_2
+        Surface energies of the solids [J/m2]: a value, or (value, lowest, highest).
+    liquid
+        Surface tension of the liquid [J/m2].
+    angle_1, angle_2
+        Contact angles of the liquid on the solids [rad], or text such as ``"104 deg"``.
+
+    Examples
+    --------
+    >>> energies = SurfaceEnergies(
+    ...     solid_1=("22 mJ/m^2", "19.4 mJ/m^2", "24.3 mJ/m^2"), solid_2="46 mJ/m^2",
+    ...     liquid="64 mJ/m^2", angle_1="104 deg", angle_2="64 deg")
+    >>> round(1e3 * energies.wet, 1)
+    51.1
+    """
+
+    solid_1: Stated
+    solid_2: Stated
+    liquid: Stated
+    angle_1: Stated
+    angle_2: Stated
+
+    def __post_init__(self) -> None:
+        """Turn text into SI ranges and refuse bounds that do not hold the value."""
+        for field in fields(self):
+            read = _angle if field.name.startswith("angle") else _energy
+            stated = getattr(self, field.name)
+            parts = stated if isinstance(stated, tuple) else (stated, stated, stated)
+            if len(parts) != 3:
+                raise AnalysisError(
+                    f"{field.name}: a value or (value, lowest, highest) is wanted; got {stated}"
+                )
+            given = Range(*(read(part, field.name) for part in parts))
+            if not given.low <= given.value <= given.high:
+                raise AnalysisError(
+                    f"{field.name}: the value {given.value:g} must lie between its bounds "
+                    f"{given.low:g} and {given.high:g}; the order is (value, lowest, highest)"
+                )
+            object.__setattr__(self, field.name, given)
+
+    @property
+    def dry(self) -> float:
+        """Work of adhesion of the dry solids [J/m2], Eq. (13), at the chosen values."""
+        return float(_dry(self.solid_1.value, self.solid_2.value))
+
+    @property
+    def wet(self) -> float:
+        """Work of adhesion under the liquid [J/m2], Eq. (14), at the chosen values."""
+        return float(_wet(self.dry, self.liquid.value, self.angle_1.value, self.angle_2.value))
+
+
+def sample_work_of_adhesion(
+    energies: SurfaceEnergies, samples: int = 1000, seed: int = 0
+) -> np.ndarray:
+    """Draw dry and wet works of adhesion, each input uniform and independent between its bounds.
+
+    Returns
+    -------
+    numpy.ndarray
+        gamma_dry and gamma_wet [J/m2] (2, samples).
+    """
+    random = np.random.default_rng(seed)
+    draws = (random.uniform(r.low, r.high, samples) for r in _ranges(energies))
+    return np.stack(_works(*draws))
+
+
+def work_of_adhesion_spread(
+    energies: SurfaceEnergies, *, samples: int = 1000, seed: int = 0
+) -> xr.Dataset:
+    """Dry and wet work of adhesion with the spread that uncertain surface energies give.
+
+    Parameters
+    ----------
+    energies
+        Surface energies and contact angles with their bounds.
+    samples, seed
+        Number of random draws for the standard deviation, and their seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``work_of_adhesion`` [J/m2] (medium) at the chosen values, ``_low`` and ``_high``: the
+        smallest and largest values inside the bounds, ``_std``: standard deviation when every
+        input is uniform between its bounds and independent. Media are ``dry`` and ``wet``.
+
+    Notes
+    -----
+    Eqs. (13) and (14) are monotonic in each input, so the bounds are those of the corners: exact,
+    and they hold whatever the distribution. The chosen values need not lie in the middle.
+
+    Examples
+    --------
+    >>> spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL)
+    >>> (1e3 * spread.work_of_adhesion_low).round(1).values
+    array([50.6, 21.2])
+    """
+    corners = np.array(list(itertools.product(*((r.low, r.high) for r in _ranges(energies)))))
+    bounds = np.stack(_works(*corners.T))
+    drawn = sample_work_of_adhesion(energies, samples, seed)
+    return stamp(
+        xr.Dataset(
+            {
+                "work_of_adhesion": ("medium", [energies.dry, energies.wet]),
+                "work_of_adhesion_low": ("medium", bounds.min(axis=1)),
+                "work_of_adhesion_high": ("medium", bounds.max(axis=1)),
+                "work_of_adhesion_std": ("medium", drawn.std(axis=1, ddof=1)),
+            },
+            coords={"medium": ["dry", "wet"]},
+        ),
+        samples=samples,
+        seed=seed,
+        distribution="uniform and independent between the bounds",
+    )
+
+
+def _ranges(energies: SurfaceEnergies) -> list[Range]:
+    return [getattr(energies, field.name) for field in fields(energies)]
+
+
+def _works(solid_1, solid_2, liquid, angle_1, angle_2):
+    dry = _dry(solid_1, solid_2)
+    return dry, _wet(dry, liquid, angle_1, angle_2)
+
+
+def _dry(first, second):
+    return 2 * np.sqrt(first * second)
+
+
+def _wet(dry, tension, first, second):
+    return dry - tension * (np.cos(first) + np.cos(second))
+
+
+def _energy(value: str | float, name: str) -> float:
+    energy = to_si(value if isinstance(value, str) else float(value), "J/m^2", name=name)
+    if not 0 < energy < math.inf:
+        raise AnalysisError(
+            f"{name}: a positive surface energy is wanted, e.g. '22 mJ/m^2'; got {energy:g} J/m2"
+        )
+    return energy
+
+
+def _angle(value: str | float, name: str) -> float:
+    angle = to_si(value if isinstance(value, str) else float(value), "rad", name=name)
+    if not 0 <= angle <= math.pi:
+        raise AnalysisError(
+            f"{name}: a contact angle lies between 0 and 180 deg; got {math.degrees(angle):.4g} "
+            "deg. A bare number is in radians: write e.g. '104 deg'"
+        )
+    return angle
+
+
+# Values and literature bounds of Sec. 5 of Xu et al. (2026). One value only is given there for the
+# surface tension of glycerol.
+PDMS_PMMA_GLYCEROL = SurfaceEnergies(
+    solid_1=(22e-3, 19.4e-3, 24.3e-3),
+    solid_2=(46e-3, 33e-3, 46e-3),
+    liquid=64e-3,
+    angle_1=(math.radians(104), math.radians(94), math.radians(104)),
+    angle_2=(math.radians(64), math.radians(58), math.radians(69)),
+)
