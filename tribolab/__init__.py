@@ -27,6 +27,27 @@ _PUBLIC = {
     "friction_coefficient": "tribolab.friction.coefficient",
     "half_loops": "tribolab.friction.coefficient",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
+    "read_scans": "tribolab.io.scans",
+    "read_results": "tribolab.io.scan_results",
+    "remove_form": "tribolab.surface.form",
+    "psd_1d": "tribolab.surface.psd",
+    "psd_2d": "tribolab.surface.psd",
+    "extrapolate": "tribolab.surface.extrapolation",
+    "roughness_parameters": "tribolab.surface.roughness",
+    "spectral_roughness": "tribolab.surface.roughness",
+    "LineContact": "tribolab.contact.geometry",
+    "contact_area_ratio": "tribolab.contact.persson",
+    "mean_separation": "tribolab.contact.persson",
+    "separation_table": "tribolab.contact.separation",
+    "gap_distribution": "tribolab.contact.gap",
+    "rough_line_contact": "tribolab.contact.line",
+    "adhesion": "tribolab.contact.adhesion",
+    "macroscopic_work_of_adhesion": "tribolab.contact.adhesion",
+    "adhesion_uncertainty": "tribolab.contact.adhesion_uncertainty",
+    "SurfaceEnergies": "tribolab.contact.work_of_adhesion",
+    "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
+    "viscoelastic_friction": "tribolab.rubber.friction",
+    "read_modulus": "tribolab.rubber.modulus",
     "load_campaign": "tribolab.campaign.config",
     "run_campaign": "tribolab.report.run",
     "TribolabError": "tribolab.errors",
@@ -44,6 +65,27 @@ __all__ = [
     "friction_coefficient",
     "half_loops",
     "measured_stribeck_curve",
+    "read_scans",
+    "read_results",
+    "remove_form",
+    "psd_1d",
+    "psd_2d",
+    "extrapolate",
+    "roughness_parameters",
+    "spectral_roughness",
+    "LineContact",
+    "contact_area_ratio",
+    "mean_separation",
+    "separation_table",
+    "gap_distribution",
+    "rough_line_contact",
+    "adhesion",
+    "macroscopic_work_of_adhesion",
+    "adhesion_uncertainty",
+    "SurfaceEnergies",
+    "work_of_adhesion_spread",
+    "viscoelastic_friction",
+    "read_modulus",
     "load_campaign",
     "run_campaign",
     "TribolabError",
@@ -55,13 +97,29 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.campaign.config import load_campaign
+    from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
+    from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
+    from tribolab.contact.gap import gap_distribution
+    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.line import rough_line_contact
+    from tribolab.contact.persson import contact_area_ratio, mean_separation
+    from tribolab.contact.separation import separation_table
+    from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.errors import TribolabError
     from tribolab.friction.coefficient import friction_coefficient, half_loops
     from tribolab.friction.segments import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read
+    from tribolab.io.scan_results import read_results
+    from tribolab.io.scans import read_scans
     from tribolab.report.run import run_campaign
+    from tribolab.rubber.friction import viscoelastic_friction
+    from tribolab.rubber.modulus import read_modulus
+    from tribolab.surface.extrapolation import extrapolate
+    from tribolab.surface.form import remove_form
+    from tribolab.surface.psd import psd_1d, psd_2d
+    from tribolab.surface.roughness import roughness_parameters, spectral_roughness
 
 
 def __getattr__(name: str) -> Any:

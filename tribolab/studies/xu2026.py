@@ -12,10 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import xarray as xr
 
+from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, nearest
+from tribolab.studies.published import Published, read_published
 from tribolab.surface.self_affine import SelfAffine, tabulate
 
 CITATION = (
@@ -98,6 +101,10 @@ class Surface:
 
 system = System()
 profilometer = Profilometer()
+contact = LineContact(system.radius, system.length, system.youngs_modulus, system.poisson_ratio)
+
+# The numbers that the paper prints, as it prints them.
+published: tuple[Published, ...] = read_published(Path(__file__).with_name("xu2026_published.csv"))
 
 # 1, 2.15 and 4.64 times each decade: three equal steps on a logarithmic scale.
 SPEEDS = tuple(round(m * 10.0**e, 9) for e in range(-6, -2) for m in (1.0, 2.15, 4.64)) + (1e-2,)

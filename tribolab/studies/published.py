@@ -1,0 +1,126 @@
+"""Numbers as a paper prints them: the text, what it says, and how far its last digit reaches."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from tribolab.errors import AnalysisError, ReadError
+
+# What one printed unit is in SI; "h_rms" is a multiple of the roughness.
+_SI = {"1": 1.0, "m/s": 1.0, "h_rms": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "mJ/m2": 1e-3}
+_NUMBER = re.compile(r"\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
+
+
+@dataclass(frozen=True)
+class Published:
+    """One number that a paper prints.
+
+    Parameters
+    ----------
+    quantity, surface, condition
+        What it is the value of.
+    text
+        As printed: a number, or words and numbers such as ``"about 8 %"``, ``"1.75 to 1.95"``.
+    unit
+        Unit of the numbers in the text.
+    where
+        Section of the paper.
+    kind
+        How the paper comes by it (``"computed"``, ``"fit to measurement"``, ...).
+    note
+        A reader's remark.
+
+    Examples
+    --------
+    >>> width = Published("hertz_contact_width", "Smooth", "", "7.43", "mm", "App. B", "", "")
+    >>> f"{width.si:.5g} m, {width.last_digit:.0e}"
+    '0.00743 m, 1e-05'
+    """
+
+    quantity: str
+    surface: str
+    condition: str
+    text: str
+    unit: str
+    where: str
+    kind: str
+    note: str
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be used as a number."""
+        if self.unit not in _SI or not _NUMBER.search(self.text):
+            raise ReadError(
+                f"published {self.quantity}: '{self.text}' in '{self.unit}' is no number in a unit "
+                f"that is known here: {', '.join(_SI)}"
+            )
+
+    @property
+    def factor(self) -> float:
+        """What one of the printed unit is in SI."""
+        return _SI[self.unit]
+
+    @property
+    def relation(self) -> str:
+        """The words before the number: ``""``, ``"about"``, ``"at most"``, ``">"``, ``"below"``."""
+        return self.text[: _NUMBER.search(self.text).start()].strip()
+
+    @property
+    def si(self) -> float:
+        """The number in SI; of a range its middle."""
+        found = [float(match[0]) for match in _NUMBER.finditer(self.text)]
+        return sum(found) / len(found) * self._scale
+
+    @property
+    def last_digit(self) -> float:
+        """One unit of the last digit that is printed, in SI."""
+        match = _NUMBER.search(self.text)
+        return 10.0 ** (int(match[2] or 0) - len(match[1] or "")) * self._scale
+
+    @property
+    def _scale(self) -> float:
+        return self.factor * (0.01 if "%" in self.text else 1.0)
+
+
+def read_published(path: str | Path) -> tuple[Published, ...]:
+    """Read a table of published numbers.
+
+    Parameters
+    ----------
+    path
+        CSV with the columns quantity, surface, condition, published, unit, where, kind, note.
+
+    Raises
+    ------
+    ReadError
+        If a row's number or unit cannot be used.
+    """
+    with Path(path).open(encoding="utf-8", newline="") as file:
+        return tuple(
+            Published(text=row.pop("published"), **{k: v or "" for k, v in row.items()})
+            for row in csv.DictReader(file)
+        )
+
+
+def find_published(
+    table: tuple[Published, ...], quantity: str, surface: str, condition: str = ""
+) -> Published:
+    """Return the one row of a quantity, a surface and a part of the condition's text.
+
+    Raises
+    ------
+    AnalysisError
+        If there is none, or more than one.
+    """
+    rows = [
+        row
+        for row in table
+        if row.quantity == quantity and row.surface == surface and condition in row.condition
+    ]
+    if len(rows) != 1:
+        raise AnalysisError(
+            f"{len(rows)} published numbers for {quantity}, {surface}, '{condition}'; one is wanted"
+        )
+    return rows[0]

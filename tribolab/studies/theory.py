@@ -1,0 +1,160 @@
+"""What the theory gives for the reference system, each number computed once."""
+
+from __future__ import annotations
+
+import functools
+import re
+
+import numpy as np
+
+from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
+from tribolab.contact.hertz import (
+    hertz_half_width,
+    hertz_max_pressure,
+    hertz_mean_pressure,
+    jkr_half_width,
+)
+from tribolab.contact.line import rough_line_contact
+from tribolab.contact.persson import contact_area_ratio
+from tribolab.contact.separation import separation_table
+from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
+from tribolab.errors import AnalysisError
+from tribolab.rubber.friction import viscoelastic_friction
+from tribolab.rubber.modulus import PDMS_STAND_IN
+from tribolab.studies import xu2026
+from tribolab.studies.published import Published
+from tribolab.surface.moments import rms_roughness, rms_slope
+
+_LOAD = re.compile(r"([\d.]+) N/m")
+_PRESSURE = re.compile(r"([\d.]+) MPa")
+_WORK = re.compile(r"w = ([\d.]+) J/m2")
+_OTHER_PRESSURE = 1e5  # Pa, Sec. 7
+
+
+class Theory:
+    """The reference system computed: Hertz, JKR, Persson contact, adhesion, rubber.
+
+    A row of published numbers says by its surface and its condition which number is meant.
+    """
+
+    media = ("dry", "glycerol")
+
+    def __init__(self) -> None:
+        self._contact = xu2026.contact
+        self._modulus = self._contact.effective_modulus
+        loads = [force / self._contact.length for force in xu2026.system.loads]
+        self._pressures = np.append(hertz_mean_pressure(loads, self._contact), _OTHER_PRESSURE)
+        self._adhesive = functools.cache(self._adhesion)
+        self._lines = functools.cache(self._line)
+
+    def load(self, row: Published) -> float:
+        """Load [N/m] of a condition; a published pressure stands for the load that makes it."""
+        if match := _LOAD.search(row.condition):
+            return float(match[1])
+        if match := _PRESSURE.search(row.condition):
+            for other in xu2026.published:
+                if other.quantity == "nominal_pressure" and float(other.text) == float(match[1]):
+                    return self.load(other)
+        raise AnalysisError(f"published {row.quantity}: no load in '{row.condition}'")
+
+    def pressure(self, row: Published) -> float:
+        """Exact mean Hertz pressure [Pa] of the load; a pressure without a load as it stands."""
+        try:
+            return float(hertz_mean_pressure(self.load(row), self._contact))
+        except AnalysisError:
+            return 1e6 * float(_PRESSURE.search(row.condition)[1])
+
+    def medium(self, row: Published) -> str:
+        """Medium of a condition with adhesion, "" without."""
+        if "no adhesion" in row.condition:
+            return ""
+        return next((medium for medium in self.media if medium in row.condition), "")
+
+    def hertz_half_width(self, row: Published) -> float:
+        """Half-width [m], Eq. (16)."""
+        return float(hertz_half_width(self.load(row), self._contact))
+
+    def hertz_max_pressure(self, row: Published) -> float:
+        """Maximum pressure [Pa]."""
+        return float(hertz_max_pressure(self.load(row), self._contact))
+
+    def jkr_half_width(self, row: Published) -> float:
+        """Half-width [m], Eq. (15), with the work of adhesion of the condition."""
+        work = float(_WORK.search(row.condition)[1])
+        return float(jkr_half_width(self.load(row), self._contact, work))
+
+    def roughness(self, surface: str) -> float:
+        """Root-mean-square roughness [m] of the stand-in spectrum."""
+        return rms_roughness(xu2026.psd(surface))
+
+    def slope(self, surface: str) -> float:
+        """Root-mean-square slope [1] of the stand-in spectrum."""
+        return rms_slope(xu2026.psd(surface))
+
+    def area(self, row: Published) -> float:
+        """A/A0 without adhesion."""
+        return contact_area_ratio(self.pressure(row), xu2026.psd(row.surface), self._modulus)
+
+    def work(self, medium: str) -> float:
+        """Work of adhesion [J/m2], Eqs. (13) and (14)."""
+        return PDMS_PMMA_GLYCEROL.dry if medium == "dry" else PDMS_PMMA_GLYCEROL.wet
+
+    def work_bounds(self, medium: str) -> tuple[float, float]:
+        """Smallest and largest work of adhesion [J/m2] that the surface energies allow."""
+        spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2)
+        mine = spread.sel(medium="dry" if medium == "dry" else "wet")
+        return float(mine.work_of_adhesion_low), float(mine.work_of_adhesion_high)
+
+    def adhesive_area(self, row: Published, medium: str) -> float:
+        """A/A0 with adhesion."""
+        areas, _ = self._adhesive(row.surface, medium)
+        return float(areas[np.argmin(np.abs(self._pressures - self.pressure(row)))])
+
+    def enhancement(self, surface: str, medium: str) -> list[float]:
+        """Contact area relative to that without adhesion, at each load."""
+        return self._adhesive(surface, medium)[1][:-1].tolist()
+
+    def macroscopic_work(self, surface: str, medium: str) -> float:
+        """gamma_eff(1) [J/m2] as the load vanishes."""
+        work = self._published_work(medium)
+        found = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
+        return float(found.macroscopic_work_of_adhesion)
+
+    def viscoelastic_friction(self) -> dict[str, float]:
+        """Largest mu_visc of each surface at the speeds of the paper; Smooth in full contact."""
+        speeds = np.array(xu2026.SPEEDS)
+        largest = {}
+        for name in xu2026.surfaces:
+            full = name == "Smooth"  # adhesion nearly completes that contact (Sec. 6)
+            found = viscoelastic_friction(
+                speeds, self._pressures[0], xu2026.psd(name), PDMS_STAND_IN, complete_contact=full
+            )
+            label = f"{name} (complete contact)" if full else name
+            largest[label] = float(found.friction_coefficient.max())
+        return largest
+
+    def line(self, row: Published) -> tuple[float, float]:
+        """Maximum pressure [Pa] and width [m] of the dry rough line contact."""
+        return self._lines(row.surface, self.load(row))
+
+    def separation_decay(self, surface: str) -> float:
+        """Alpha = h_rms/u0 of p ~ exp(-alpha u/h_rms)."""
+        table = separation_table(xu2026.psd(surface), self._modulus)
+        return table.rms_roughness / table.decay_length
+
+    def _published_work(self, medium: str) -> float:
+        """Return the rounded work of adhesion that the paper goes on with [J/m2]."""
+        return next(
+            row.si
+            for row in xu2026.published
+            if row.quantity == "work_of_adhesion" and row.condition == medium
+        )
+
+    def _adhesion(self, surface: str, medium: str) -> tuple[np.ndarray, np.ndarray]:
+        work = self._published_work(medium)
+        found = adhesion(self._pressures, xu2026.psd(surface), self._modulus, work)
+        return found.contact_area_ratio.values, found.area_enhancement.values
+
+    def _line(self, surface: str, load: float) -> tuple[float, float]:
+        found = rough_line_contact(load, self._contact, xu2026.psd(surface))
+        return float(found.max_pressure), float(found.contact_width)
