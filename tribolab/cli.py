@@ -378,6 +378,7 @@ def _progress(quiet: bool) -> Iterator[Callable[[str, int, int], None] | None]:
 
 def _show(outcome: Outcome) -> int:
     """Show what a campaign came to; return the exit code."""
+    from tribolab.qc.findings import exit_code
     from tribolab.report import terminal
 
     table = terminal.outcome_table(outcome)
@@ -389,7 +390,9 @@ def _show(outcome: Outcome) -> int:
         typer.echo(f"tribolab: {line}", err=True)
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
-    return UNREADABLE if outcome.failed or not outcome.segments else 0
+    if outcome.failed or not outcome.segments:
+        return UNREADABLE
+    return exit_code({run.quality for run in outcome.runs}, outcome.campaign.qc.fail_on)
 
 
 def main() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -14,9 +14,10 @@ from pydantic import (
     PrivateAttr,
     ValidationInfo,
     WithJsonSchema,
+    model_validator,
 )
 
-from tribolab.errors import ConfigError, UnitError
+from tribolab.errors import ConfigError, TribolabError, UnitError, nearest
 from tribolab.units import to_si
 
 SCHEMA_FILE = "campaign.schema.json"
@@ -166,6 +167,24 @@ class Qc(Table):
 
     fail_on: Literal["suspect", "fail", "never"] = "fail"
     """The mildest finding that gives exit code 1."""
+    skip: tuple[Text, ...] = ()
+    """Checks that are left out."""
+    limits: dict[Text, dict[Text, float | Text]] = {}
+    """Limits of checks by name, e.g. limits.spikes.noise = 10; numbers in SI or with a unit."""
+
+    @model_validator(mode="after")
+    def _names_are_known(self) -> Self:
+        from tribolab.qc.register import resolve_limits
+        from tribolab.qc.run_checks import RUN_CHECKS
+
+        try:
+            resolve_limits(RUN_CHECKS, self.limits)
+            for name in self.skip:
+                if name not in RUN_CHECKS:
+                    raise ConfigError(f"no check is called '{name}'{nearest(name, RUN_CHECKS)}")
+        except TribolabError as error:
+            raise ValueError(str(error)) from error
+        return self
 
 
 class Campaign(Table):
@@ -186,6 +205,19 @@ class Campaign(Table):
     def file(self) -> Path:
         """The campaign file; all its paths are relative to its folder."""
         return self._file
+
+    def quality_options(self, entry: RunEntry) -> dict[str, Any]:
+        """Return the arguments of `check_run` for a run."""
+        options: dict[str, Any] = {"limits": self.qc.limits, "skip": self.qc.skip}
+        known = self.contact
+        load, modulus = entry.normal_force, known.youngs_modulus
+        if None not in (known.radius, known.length, modulus, known.poisson_ratio, load):
+            from tribolab.contact.geometry import LineContact
+            from tribolab.contact.hertz import hertz_half_width
+
+            contact = LineContact(known.radius, known.length, modulus, known.poisson_ratio)
+            options["contact_width"] = 2 * float(hertz_half_width(load / known.length, contact))
+        return options
 
     @property
     def name(self) -> str:

@@ -38,6 +38,9 @@ class RunOutcome:
         Time [s] that the run took.
     segments
         Number of segments found.
+    quality
+        Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
+        a run that could not be checked.
     """
 
     name: str
@@ -52,6 +55,7 @@ class RunOutcome:
     reused: bool = False
     seconds: float = 0.0
     segments: int = 0
+    quality: str = ""
 
     @property
     def done(self) -> bool:

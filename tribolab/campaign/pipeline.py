@@ -15,6 +15,7 @@ from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
 from tribolab.campaign.work import (
+    QUALITY,
     UNFINISHED,
     CurveTask,
     RunRecord,
@@ -179,6 +180,7 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
         data_file=f"data/{path.name}",
         reused=True,
         segments=segments,
+        quality=str(attrs.get(QUALITY, "")),
     )
     return checksums(attrs), outcome
 
@@ -204,7 +206,7 @@ def _curves(
 ) -> tuple[CurveOutcome, ...]:
     groups: dict[tuple, list[RunOutcome]] = {}
     for run in runs:
-        if run.done and run.segments:
+        if run.done and run.segments and run.quality not in ("fail", "error"):
             # only what is stated to be the same is taken together
             alone = "" if run.surface or run.medium else run.name
             load = run.normal_force and float(f"{run.normal_force:.4g}")

@@ -41,6 +41,8 @@ class PlannedRun:
         Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
     segments, friction
         Arguments of `find_segments` and `friction_coefficient`.
+    quality
+        Arguments of `check_run`: limits, skip, contact_width.
     config_sha256
         Checksum of all of these, and of the dialect's content.
     """
@@ -54,6 +56,7 @@ class PlannedRun:
     instrument: str | None
     segments: dict[str, Any] = field(default_factory=dict)
     friction: dict[str, Any] = field(default_factory=dict)
+    quality: dict[str, Any] = field(default_factory=dict)
     config_sha256: str = ""
 
 
@@ -174,6 +177,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
         "normal_force": entry.normal_force,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction.model_dump(),
+        "quality": campaign.quality_options(entry),
     }
     shaping = settings | {
         "instrument": entry.instrument,

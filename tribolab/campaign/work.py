@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 Source = tuple[str, str, int]
 
+# Attributes of a data file's run: the gravest status of its checks, and what they said.
+QUALITY, FINDINGS = "quality", "findings"
+
 # The netCDF library is not safe under threads, which some executors use.
 _NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
@@ -77,7 +80,7 @@ def process_run(task: RunTask) -> RunRecord:
     began = time.monotonic()
     run = task.run
     try:
-        signals, segments, friction = _analyse(run)
+        signals, segments, friction, quality = _analyse(run)
         _write(
             {"run": signals, "segments": segments, "friction": friction},
             task.folder / task.data_file,
@@ -101,6 +104,7 @@ def process_run(task: RunTask) -> RunRecord:
         data_file=task.data_file,
         seconds=time.monotonic() - began,
         segments=segments.sizes["segment"],
+        quality=quality,
     )
     return RunRecord(outcome, sources_of(run, signals.attrs))
 
@@ -185,10 +189,11 @@ def _source(file: Path, label: str) -> Source:
         return label, "", 0
 
 
-def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, str]:
     from tribolab.friction.coefficient import friction_coefficient
     from tribolab.friction.segments import find_segments
     from tribolab.io.runs import read
+    from tribolab.qc.run_checks import check_run
 
     files = list(run.files)
     signals = read(files if len(files) > 1 else files[0], run.instrument)
@@ -196,9 +201,12 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
         signals.attrs["set_normal_force_N"] = run.normal_force
     segments = find_segments(signals, **run.segments)
     friction = friction_coefficient(signals, segments, **run.friction)
+    found = check_run(signals, segments, friction, **run.quality)
+    signals = found.flagged
+    signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
     for data in (signals, segments, friction):
         data.attrs.update(_labels(run), config_sha256=run.config_sha256)
-    return signals, segments, friction
+    return signals, segments, friction, found.status
 
 
 def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:

@@ -115,6 +115,8 @@ _EMPTY: dict[str, Any] = {
     "trim": None,
     "velocity_source": "",
     "instrument": "",
+    "quality": "",
+    "checks": [],
     "recorded_at": "",
     "duration_s": None,
     "samples": 0,

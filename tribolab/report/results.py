@@ -50,6 +50,7 @@ def write_report(
     tell = progress or (lambda stage, done, total: None)
 
     findings = [_failure(run) for run in outcome.runs if not run.done]
+    findings += [_left_out(run) for run in outcome.runs if run.quality in ("fail", "error")]
     summaries = _summaries(outcome, executor, tell, findings)
     for summary in summaries.values():
         findings += summary.findings
@@ -68,6 +69,11 @@ def write_report(
 def _failure(run: RunOutcome) -> dict[str, str]:
     reason = run.reason or run.error or "no reason was given"
     return {"severity": "fail", "run": run.name, "where": "run", "message": reason}
+
+
+def _left_out(run: RunOutcome) -> dict[str, str]:
+    text = "left out of the measured curves, because its checks failed; its own numbers are shown"
+    return {"severity": "note", "run": run.name, "where": "curves", "message": text}
 
 
 def _error(run: str, where: str, error: BaseException) -> dict[str, str]:

@@ -79,6 +79,11 @@ def _of_record(run: xr.Dataset) -> dict[str, Any]:
     shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
     return {
         "instrument": str(attrs.get("instrument", "")),
+        "quality": str(attrs.get("quality", "")),
+        "checks": [
+            {key: row[key] for key in ("check", "status", "variable", "message", "value", "unit")}
+            for row in attrs.get("findings", [])
+        ],
         "recorded_at": str(attrs.get("recorded_at", "")),
         "duration_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
@@ -169,7 +174,16 @@ def _omitted(segments: xr.Dataset) -> list[dict[str, Any]]:
 def _findings(
     name: str, run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset
 ) -> list[dict[str, str]]:
-    found: list[dict[str, str]] = []
+    found: list[dict[str, str]] = [
+        {
+            "severity": row["status"],
+            "run": name,
+            "where": f"{row['check']} {row['variable']}".strip(),
+            "message": f"{row['message']}. {row['cure']}".strip(". ") + ".",
+        }
+        for row in run.attrs.get("findings", [])
+        if row["status"] not in ("pass", "skipped")
+    ]
 
     def say(severity: str, where: str, message: str) -> None:
         found.append({"severity": severity, "run": name, "where": where, "message": message})

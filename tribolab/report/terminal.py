@@ -68,6 +68,11 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     if reused:
         line += f"; {reused} unchanged since the last time"
     lines = [line]
+    for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
+        names = [run.name for run in outcome.runs if run.quality == quality]
+        if names:
+            more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+            lines.append(f"checks {what}: {', '.join(names[:_SHOWN])}{more}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
 
