@@ -27,6 +27,7 @@ _PUBLIC = {
     "friction_coefficient": "tribolab.friction.coefficient",
     "half_loops": "tribolab.friction.coefficient",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
+    "check": "tribolab.qc.run_checks",
     "read_scans": "tribolab.io.scans",
     "read_results": "tribolab.io.scan_results",
     "remove_form": "tribolab.surface.form",
@@ -65,6 +66,7 @@ __all__ = [
     "friction_coefficient",
     "half_loops",
     "measured_stribeck_curve",
+    "check",
     "read_scans",
     "read_results",
     "remove_form",
@@ -113,6 +115,7 @@ if TYPE_CHECKING:
     from tribolab.io.runs import read
     from tribolab.io.scan_results import read_results
     from tribolab.io.scans import read_scans
+    from tribolab.qc.run_checks import check
     from tribolab.report.run import run_campaign
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
