@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.surface_plan import PlannedSurface
 
-_MOST_EXTRAPOLATED = 0.5  # share of the mean square slope that may come from extrapolation
+# shares of the mean square slope that come from extrapolation, from which on that is said
+_NOTED, _SUSPECT = 0.5, 0.8
 
 
 def usable_scans(surface: PlannedSurface) -> tuple[xr.Dataset, list[Finding]]:
@@ -117,7 +118,7 @@ def spectra(
     } | {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
     if psd.attrs["rolloff"].startswith("not reached"):
         findings.append(Finding("note", f"roll-off {psd.attrs['rolloff']}"))
-    if share < 1 - _MOST_EXTRAPOLATED:
+    if share < 1 - _NOTED:
         text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
-        findings.append(Finding("suspect", text))
+        findings.append(Finding("suspect" if share < 1 - _SUSPECT else "note", text))
     return groups, findings
