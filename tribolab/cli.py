@@ -78,9 +78,9 @@ def demo(
     """
     with _reported(debug):
         from tribolab.campaign.executor import default_jobs
+        from tribolab.report.demo import compare, write
         from tribolab.report.run import run_campaign
         from tribolab.report.terminal import truth_lines
-        from tribolab.report.truth import compare_with_truth, write_truth
         from tribolab.rig import simulate_campaign
 
         campaign = folder / "campaign.toml"
@@ -92,11 +92,10 @@ def demo(
                 campaign,
                 jobs=jobs,
                 progress=progress,
-                finish=lambda outcome: compared.append(write_truth(outcome, folder)),
+                finish=lambda outcome: compared.append(write(outcome, folder)),
             )
         code = _show(outcome)
-        comparison = compared[0] if compared else compare_with_truth(outcome, folder)
-        for line in truth_lines(comparison, folder, outcome):
+        for line in truth_lines(compared[0] if compared else compare(outcome, folder), outcome):
             typer.echo(line)
     raise typer.Exit(code)
 
@@ -285,7 +284,8 @@ def _show(outcome: Outcome) -> int:
         typer.echo(f"tribolab: {line}", err=True)
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
-    return UNREADABLE if outcome.failed or not outcome.segments else 0
+    spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
+    return UNREADABLE if spoilt or not outcome.segments else 0
 
 
 def main() -> None:
