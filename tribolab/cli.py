@@ -88,9 +88,9 @@ def demo(
     """
     with _reported(debug):
         from tribolab.campaign.executor import default_jobs
+        from tribolab.report.demo import compare, write
         from tribolab.report.run import run_campaign
         from tribolab.report.terminal import truth_lines
-        from tribolab.report.truth import compare_with_truth, write_truth
         from tribolab.rig import simulate_campaign
 
         campaign = folder / "campaign.toml"
@@ -102,11 +102,10 @@ def demo(
                 campaign,
                 jobs=jobs,
                 progress=progress,
-                finish=lambda outcome: compared.append(write_truth(outcome, folder)),
+                finish=lambda outcome: compared.append(write(outcome, folder)),
             )
         code = _show(outcome)
-        comparison = compared[0] if compared else compare_with_truth(outcome, folder)
-        for line in truth_lines(comparison, folder, outcome):
+        for line in truth_lines(compared[0] if compared else compare(outcome, folder), outcome):
             typer.echo(line)
     raise typer.Exit(code)
 
@@ -390,7 +389,8 @@ def _show(outcome: Outcome) -> int:
         typer.echo(f"tribolab: {line}", err=True)
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
-    if outcome.failed or not outcome.segments:
+    spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
+    if spoilt or not outcome.segments:
         return UNREADABLE
     return exit_code({run.quality for run in outcome.runs}, outcome.campaign.qc.fail_on)
 

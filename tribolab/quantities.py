@@ -129,6 +129,10 @@ _ROWS = [
     ("gap_scale", "", "1", "factor that makes the mean gap the mean separation"),
     ("max_pressure", "p_max", "Pa", "maximum contact pressure"),
     ("contact_width", "2a", "m", "width of the nominal contact"),
+    # surfaces of a campaign
+    ("angular_frequency", "\\omega", "rad/s", "angular frequency"),
+    ("storage_modulus", "E'", "Pa", "storage modulus"),
+    ("loss_modulus", "E''", "Pa", "loss modulus"),
     ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
 ]
 

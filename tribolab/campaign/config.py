@@ -93,6 +93,8 @@ class Contact(Table):
     """Young's modulus of the elastomer at low frequency."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
+    modulus_file: Text | None = None
+    """Storage and loss modulus over frequency (DMA), relative to the raw folder."""
 
 
 class Medium(Table):
@@ -102,6 +104,8 @@ class Medium(Table):
     """Dynamic viscosity."""
     work_of_adhesion: _si("J/m2", "51 mJ/m^2") | None = None
     """Work of adhesion of the surfaces in this medium."""
+    work_of_adhesion_range: tuple[_si("J/m2", "21 mJ/m^2"), _si("J/m2", "59 mJ/m^2")] | None = None
+    """Between which values it is uncertain; contact areas get bounds from it."""
     temperature: _positive_si("K", "20 °C") | None = None
     """Temperature at which it was measured."""
 
@@ -134,6 +138,21 @@ class Friction(Table):
     """Which offset of the friction force is removed."""
 
 
+class Roughness(Table):
+    """How the power spectrum is made from the scans."""
+
+    form: Literal["auto", "none", "mean", "tilt", "circle", "polynomial"] = "auto"
+    """What is taken away from the scans first; by default a circle from profiles."""
+    q_low: _positive_si("1/m", "423 1/m") | None = None
+    """Smallest wavenumber; by default pi over the Hertz width at the lowest load."""
+    q_high: _positive_si("1/m", "3.14e9 1/m") | None = None
+    """Largest wavenumber; by default pi / 1 nm."""
+    fit_decade: tuple[_positive_si("1/m", "1e5 1/m"), _positive_si("1/m", "1e6 1/m")] | None = None
+    """Wavenumbers between which the power law is fitted that goes on to the largest."""
+    tip_radius: _positive_si("m", "2 um") | None = None
+    """Radius of the stylus, if the files do not say it."""
+
+
 class Surface(Table):
     """One surface and its topography scans."""
 
@@ -141,6 +160,8 @@ class Surface(Table):
     """What it is called in the [[run]] tables and in the report."""
     scans: Patterns | None = None
     """Profilometer files, relative to the raw folder."""
+    instrument: Text | None = None
+    """Dialect of the scans; left out, the files tell by themselves."""
 
 
 class RunEntry(Table):
@@ -195,6 +216,7 @@ class Campaign(Table):
     medium: dict[Text, Medium] = {}
     segments: Segments = Segments()
     friction: Friction = Friction()
+    roughness: Roughness = Roughness()
     surface: tuple[Surface, ...] = ()
     run: Annotated[tuple[RunEntry, ...], Field(min_length=1)]
     qc: Qc = Qc()

@@ -1,10 +1,10 @@
-"""What a campaign came to: one small record per run and per curve."""
+"""What a campaign came to: one small record per run, curve and surface."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -85,6 +85,53 @@ class CurveOutcome:
         return self.status == "done"
 
 
+class Finding(NamedTuple):
+    """Something that a reader of the results should know: "fail", "error", "suspect", "note"."""
+
+    severity: str
+    message: str
+
+
+@dataclass(frozen=True)
+class SurfaceOutcome:
+    """One surface: its spectrum, contact and adhesion, as far as they could be computed.
+
+    Parameters
+    ----------
+    name
+        As the campaign file calls it.
+    files
+        Scans, relative to the campaign file; those that could not be used are in the findings.
+    parts
+        Names of the groups in the data file.
+    findings
+        What went wrong, what was left out, and why.
+    status, reason, error, data_file, reused, seconds
+        As for a run.
+    """
+
+    name: str
+    files: tuple[str, ...]
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    parts: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results of this surface."""
+        return self.status == "done"
+
+    @property
+    def unreadable(self) -> tuple[Finding, ...]:
+        """What could not be read or computed."""
+        return tuple(f for f in self.findings if f.severity in ("fail", "error"))
+
+
 @dataclass(frozen=True)
 class Outcome:
     """Everything that a campaign came to.
@@ -100,6 +147,8 @@ class Outcome:
     sources
         (path relative to the campaign file, sha256, bytes) of every file that was read; a file
         that could not be read has the sha256 "".
+    surfaces
+        One record for each surface of the campaign file.
     """
 
     campaign: Campaign
@@ -107,6 +156,7 @@ class Outcome:
     runs: tuple[RunOutcome, ...]
     curves: tuple[CurveOutcome, ...]
     sources: tuple[tuple[str, str, int], ...]
+    surfaces: tuple[SurfaceOutcome, ...] = ()
 
     @property
     def failed(self) -> tuple[RunOutcome, ...]:

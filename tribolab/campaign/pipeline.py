@@ -1,4 +1,4 @@
-"""A whole campaign: every run in a worker, then the repeats combined into measured curves."""
+"""A whole campaign: runs and surfaces in workers, repeats combined into measured curves."""
 
 from __future__ import annotations
 
@@ -14,6 +14,15 @@ from tribolab.campaign.executor import WorkerDied, completed
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
+from tribolab.campaign.surface_plan import plan_surfaces
+from tribolab.campaign.surface_work import (
+    SurfaceRecord,
+    SurfaceTask,
+    failed_surface,
+    known_surface,
+    process_surface,
+    sources_of,
+)
 from tribolab.campaign.work import (
     QUALITY,
     UNFINISHED,
@@ -44,10 +53,10 @@ def process(
     previous: Path | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Process every run of a campaign and combine the repeats.
+    """Process every run and surface of a campaign and combine the repeats.
 
-    A run that fails is recorded with the reason; the others are done. Data files of `previous`
-    are taken over where raw files (by sha256), settings and version are the same.
+    A run or a surface that fails is recorded with the reason; the others are done. Data files of
+    `previous` are taken over where raw files (by sha256), settings and version are the same.
 
     Parameters
     ----------
@@ -65,7 +74,7 @@ def process(
     Returns
     -------
     Outcome
-        With one record per run and per curve.
+        With one record per run, curve and surface.
 
     Raises
     ------
@@ -91,6 +100,7 @@ def process(
     _refuse_if_all_died(records[task.run.name].outcome for task in left)
     ordered = [records[run.name] for run in runs]
     outcomes = tuple(record.outcome for record in ordered)
+    surfaces = _surfaces(campaign, outcomes, staging, previous, executor, tell)
     curves = _curves(outcomes, staging, executor, tell)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
         part.unlink()
@@ -99,7 +109,8 @@ def process(
         folder=staging,
         runs=outcomes,
         curves=curves,
-        sources=_unique(source for record in ordered for source in record.sources),
+        sources=_unique(source for record in (*ordered, *surfaces) for source in record.sources),
+        surfaces=tuple(record.outcome for record in surfaces),
     )
 
 
@@ -238,6 +249,39 @@ def _curves(
         done[curve.name] = curve
         tell("curves", len(done), len(tasks))
     return tuple(done[task.curve.name] for task in tasks)
+
+
+def _surfaces(
+    campaign: Campaign,
+    runs: Iterable[RunOutcome],
+    staging: Path,
+    previous: Path | None,
+    executor: Executor | None,
+    tell: Progress,
+) -> tuple[SurfaceRecord, ...]:
+    """Process the surfaces, or take them over; the runs tell at which loads."""
+    planned = plan_surfaces(campaign, runs)
+    records: dict[str, SurfaceRecord] = {}
+    for surface in planned:
+        known = previous and known_surface(previous / surface.data_file, surface)
+        if known and known[0] == sources_of(surface):
+            try:
+                _link(previous / surface.data_file, staging / surface.data_file)
+            except FileNotFoundError:  # replaced by another process meanwhile: done anew
+                continue
+            records[surface.name] = SurfaceRecord(known[1], known[0])
+    left = [SurfaceTask(surface, staging) for surface in planned if surface.name not in records]
+    for task, future in completed(executor, process_surface, left):
+        error = future.exception()
+        if isinstance(error, OutputError):
+            raise error
+        if error is not None:  # the worker could not even say what went wrong
+            outcome = failed_surface(task.surface, *explain(error))
+            records[task.surface.name] = SurfaceRecord(outcome, ())
+        else:
+            records[task.surface.name] = future.result()
+        tell("surfaces", len(records), len(planned))
+    return tuple(records[surface.name] for surface in planned)
 
 
 def _curve_name(surface: str, medium: str, load: float | None, alone: str) -> str:

@@ -16,7 +16,7 @@ from tribolab.errors import nearest
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign, RunEntry
+    from tribolab.campaign.config import Campaign, RunEntry, Surface
 
 _LONGEST_NAME = 100
 
@@ -77,12 +77,15 @@ def plan(campaign: Campaign) -> Plan:
     owner: dict[Path, int] = {}
     for number, surface in enumerate(campaign.surface):
         _resolve(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
+    if (name := campaign.contact.modulus_file) and not (campaign.raw / name).is_file():
+        where = ("contact", "modulus_file")
+        problems.append(Problem(where, f"there is no file {campaign.raw / name}"))
     for number, entry in enumerate(campaign.run):
         where = ("run", number, "files")
         files = _resolve(campaign.raw, entry.files, where, problems)
         for file in files:
             if (other := owner.setdefault(file, number)) != number:
-                what = f"{_label(campaign, file)} belongs to run {other + 1} already"
+                what = f"{label_of(campaign, file)} belongs to run {other + 1} already"
                 problems.append(Problem(where, what))
                 break
         found += [(entry, group) for group in _groups(campaign, entry, files)]
@@ -98,12 +101,13 @@ def plan(campaign: Campaign) -> Plan:
 
 def scan_files(campaign: Campaign) -> list[Path]:
     """Return the topography scans of all surfaces."""
-    return [
-        path
-        for surface in campaign.surface
-        for pattern in surface.scans or ()
-        for path in _matching(campaign.raw, pattern)
-    ]
+    return [path for surface in campaign.surface for path in scans_of(campaign, surface)]
+
+
+def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
+    """Return the topography scans of one surface, each once."""
+    found = (path for pattern in surface.scans or () for path in _matching(campaign.raw, pattern))
+    return list(dict.fromkeys(found))
 
 
 def instrument_of(campaign: Campaign, name: str) -> str:
@@ -181,26 +185,28 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
     }
     shaping = settings | {
         "instrument": entry.instrument,
-        "dialect": instrument and _sha256_of_dialect(instrument),
+        "dialect": instrument and sha256_of_dialect(instrument),
         "cycles": entry.cycles,
     }
     return PlannedRun(
         name=name,
         files=tuple(files),
-        labels=tuple(_label(campaign, file) for file in files),
+        labels=tuple(label_of(campaign, file) for file in files),
         instrument=instrument,
         config_sha256=sha256_of(shaping),
         **settings,
     )
 
 
-def _sha256_of_dialect(instrument: str) -> str:
+def sha256_of_dialect(instrument: str) -> str:
+    """Return the checksum of what describes an instrument."""
     from tribolab.io.dialects import known_dialects
 
     return sha256_of_file(known_dialects().get(instrument, instrument))
 
 
-def _label(campaign: Campaign, file: Path) -> str:
+def label_of(campaign: Campaign, file: Path) -> str:
+    """Return a file relative to the campaign file, as reports show it."""
     return Path(os.path.relpath(file, campaign.file.parent)).as_posix()
 
 
@@ -262,6 +268,6 @@ def safe_name(name: str) -> str:
     plain = unicodedata.normalize("NFKD", name.replace("µ", "u").replace("μ", "u"))
     plain = plain.encode("ascii", "ignore").decode()
     plain = re.sub(r"[^A-Za-z0-9._-]+", "_", plain).strip("._")[:_LONGEST_NAME] or "run"
-    # "curve_" is what measured curves are called; the others are devices on Windows
-    clash = re.match(r"(?i)(curve_|(con|prn|aux|nul|com\d|lpt\d)(\.|$))", plain)
+    # "curve_" and "surface_" begin what other results are called; the rest are devices on Windows
+    clash = re.match(r"(?i)(curve_|surface_|(con|prn|aux|nul|com\d|lpt\d)(\.|$))", plain)
     return f"run_{plain}" if clash else plain

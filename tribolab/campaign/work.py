@@ -30,7 +30,7 @@ Source = tuple[str, str, int]
 QUALITY, FINDINGS = "quality", "findings"
 
 # The netCDF library is not safe under threads, which some executors use.
-_NETCDF = threading.Lock()
+NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
 _PACKAGE = Path(__file__).parents[1]
@@ -81,7 +81,7 @@ def process_run(task: RunTask) -> RunRecord:
     run = task.run
     try:
         signals, segments, friction, quality = _analyse(run)
-        _write(
+        write_data(
             {"run": signals, "segments": segments, "friction": friction},
             task.folder / task.data_file,
         )
@@ -90,7 +90,7 @@ def process_run(task: RunTask) -> RunRecord:
     except Exception as error:  # recorded: one bad file must not stop the others
         reason, name = explain(error)
         outcome = failed_run(run, reason, name, time.monotonic() - began)
-        return RunRecord(outcome, tuple(_source(*pair) for pair in _files(run)))
+        return RunRecord(outcome, tuple(source_of(*pair) for pair in _files(run)))
     load = run.normal_force
     if load is None:
         load = signals.attrs.get("set_normal_force_N")
@@ -120,11 +120,11 @@ def process_curve(task: CurveTask) -> None:
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf
 
-    with _NETCDF:
+    with NETCDF:
         frictions = [read_netcdf(task.folder / name, group="friction") for name in task.data_files]
     curve = measured_stribeck_curve(frictions)
     curve.attrs.update(_labels(task.curve), runs="; ".join(task.curve.run_names))
-    _write({None: curve}, task.folder / task.curve.data_file)
+    write_data({None: curve}, task.folder / task.curve.data_file)
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
@@ -167,7 +167,7 @@ def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
     return tuple(
         (label, known[file.name], file.stat().st_size)
         if file.name in known
-        else _source(file, label)
+        else source_of(file, label)
         for file, label in _files(run)
     )
 
@@ -182,7 +182,8 @@ def _files(run: PlannedRun) -> list[tuple[Path, str]]:
     return list(zip(run.files, run.labels, strict=True))
 
 
-def _source(file: Path, label: str) -> Source:
+def source_of(file: Path, label: str) -> Source:
+    """Return label, checksum and size of a file; no checksum if it cannot be read."""
     try:
         return label, sha256_of_file(file), file.stat().st_size
     except OSError:  # vanished or unreadable: the outcome of its run says so
@@ -215,7 +216,7 @@ def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:
     }
 
 
-def _write(groups: dict[str | None, xr.Dataset], path: Path) -> None:
+def write_data(groups: dict[str | None, xr.Dataset], path: Path) -> None:
     """Write a data file, whole or not at all.
 
     A scheduler may repeat work whose worker died after it was done: readers of the file then go
@@ -225,7 +226,7 @@ def _write(groups: dict[str | None, xr.Dataset], path: Path) -> None:
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
-        with _NETCDF:
+        with NETCDF:
             for group, data in groups.items():
                 write_netcdf(data, part, group=group)
         part.replace(path)

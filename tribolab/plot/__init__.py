@@ -2,20 +2,36 @@
 
 from __future__ import annotations
 
+from tribolab.plot.contact import (
+    adhesive_area,
+    contact_area,
+    effective_work,
+    gaps,
+    line_pressure,
+)
 from tribolab.plot.curves import half_loop, stribeck
 from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
 from tribolab.plot.style import figure_data, paper_style, save, svg
+from tribolab.plot.surfaces import modulus, spectra, viscoelastic
 
 __all__ = [
+    "adhesive_area",
+    "contact_area",
+    "effective_work",
     "envelope",
     "figure_data",
+    "gaps",
     "half_loop",
-    "save",
-    "stribeck",
-    "strokes",
+    "line_pressure",
+    "modulus",
     "paper_style",
+    "save",
+    "spectra",
+    "strokes",
+    "stribeck",
     "svg",
     "trace",
+    "viscoelastic",
 ]

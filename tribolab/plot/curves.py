@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from tribolab.errors import AnalysisError
+from tribolab.plot.frame import legend_above
 from tribolab.plot.labels import column, force_text, label, plain
 from tribolab.plot.style import (
     GREY,
@@ -87,7 +88,7 @@ def stribeck(
                 f"there is nothing to draw: no curve has a finite {name.replace('_', ' ')}"
             )
         _scales(axes, name, numbered)
-        _frame(figure, axes, title)
+        legend_above(figure, axes, title)
     return figure
 
 
@@ -222,24 +223,6 @@ def _scales(axes: Axes, name: str, numbered: bool) -> None:
     low, high = axes.dataLim.intervaly
     span = (high - low) or abs(high) or 1.0
     axes.set_ylim(0.0 if low >= 0 else low - 0.08 * span, high + 0.08 * span)
-
-
-def _frame(figure: PaperFigure, axes: Axes, title: str) -> None:
-    """Put the legend above the axes, where it hides no point, and make room for it."""
-    handles, texts = axes.get_legend_handles_labels()
-    across = 3 if max(map(len, texts), default=0) < 14 else 2
-    rows = -(-len(texts) // across)
-    top = 2.5 + 3.8 * rows + (4.5 if title else 0)
-    height = 50.0 + top
-    figure.set_size_inches(SINGLE_MM / 25.4, height / 25.4)
-    margins(figure, 14, 3, 10.5, top)
-    if texts:
-        axes.legend(
-            handles, texts, loc="lower left", ncols=across,
-            bbox_to_anchor=(0, 1 + 0.8 / (height - top - 10.5)),
-        )  # fmt: skip
-    if title:
-        figure.text(14 / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
 
 
 def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:

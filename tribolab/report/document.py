@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
     from tribolab.report.run_summary import RunSummary
 
-SCHEMA_VERSION = "1.0"
+SCHEMA_VERSION = "1.1"
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 

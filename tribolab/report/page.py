@@ -54,6 +54,9 @@ def render(document: dict[str, Any], folder: Path) -> str:
     environment.filters |= {
         "number": lambda value, digits=3: "–" if value is None else number(value, digits),
         "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
+        "scaled": lambda value, factor, digits=3: (
+            "–" if value is None else aligned(value * factor, digits)
+        ),
         "speed": lambda value: speed_text(float("nan") if value is None else value),
         "force": lambda value: "–" if value is None else force_text(value),
         "duration": wording.duration,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.campaign.executor import completed
-from tribolab.report import tables
+from tribolab.report import surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
 from tribolab.report.page import write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
+from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
+from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
@@ -55,12 +57,24 @@ def write_report(
     for summary in summaries.values():
         findings += summary.findings
     curves, points = _curves(outcome, summaries, findings)
-    figures = _figures(outcome, executor, tell, findings, {curve["name"] for curve in curves})
+    readable = {curve["name"] for curve in curves}
+    tasks = plan_figures([c for c in outcome.curves if c.name in readable], folder)
+    figures = _drawn(draw_curves, tasks, "curves' figures", executor, tell, findings)
+    rows = _surfaces(outcome, findings)
+    done = [surface for surface in outcome.surfaces if surface.name in rows]
+    tasks = plan_surface_figures(done, folder)
+    drawn = _drawn(draw_surfaces, tasks, "surfaces' figures", executor, tell, findings)
 
     ordered = tables.findings_table(findings)
     _write_tables(outcome, summaries, points, ordered)
+    for name in ("roughness", "contact", "adhesion"):
+        columns = getattr(surface_records, name.upper())
+        table = surface_records.table(list(rows.values()), name, columns)
+        tables.write(table, folder / "tables" / f"{name}.csv")
     records = ordered.to_dict("records")
     document = report_document(outcome, summaries, curves, figures, records)
+    document["surfaces"] = [surface_record(one, rows.get(one.name)) for one in outcome.surfaces]
+    document["surface_figures"] = drawn
     write_json(document, folder / "report.json")
     write_page(document, folder)
     tell("page", 1, 1)
@@ -127,23 +141,41 @@ def _curves(
     return records, points
 
 
-def _figures(
-    outcome: Outcome,
+def _surfaces(outcome: Outcome, findings: list[dict[str, str]]) -> dict[str, SurfaceRows]:
+    """Read the rows of the surfaces, and add what was found about them to the findings."""
+    rows: dict[str, SurfaceRows] = {}
+    for surface in outcome.surfaces:
+        where = f"surface {surface.name}"
+        findings += [
+            {"severity": severity, "run": "", "where": where, "message": message}
+            for severity, message in surface.findings
+        ]
+        if not surface.done:
+            continue
+        try:
+            rows[surface.name] = surface_rows(surface, Path(outcome.folder))
+        except Exception as error:  # recorded, as above
+            findings.append(_error("", where, error))
+    return rows
+
+
+def _drawn(
+    draw: Callable[[Any], dict[str, str]],
+    tasks: Sequence[Any],
+    stage: str,
     executor: Executor | None,
     tell: Progress,
     findings: list[dict[str, str]],
-    readable: set[str],
 ) -> list[dict[str, str]]:
-    curves = [curve for curve in outcome.curves if curve.name in readable]
-    tasks = plan_figures(curves, Path(outcome.folder))
+    """Draw figures and return their records, those that cannot be drawn as findings."""
     drawn: dict[str, dict[str, str]] = {}
-    for number, (task, future) in enumerate(completed(executor, draw_curves, tasks)):
+    for number, (task, future) in enumerate(completed(executor, draw, tasks)):
         error = future.exception()
         if error is None:
             drawn[task.file] = future.result()
         else:  # recorded, as above
             findings.append(_error("", f"figure {task.title}", error))
-        tell("curves' figures", number + 1, len(tasks))
+        tell(stage, number + 1, len(tasks))
     return [drawn[task.file] for task in tasks if task.file in drawn]
 
 

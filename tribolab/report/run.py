@@ -83,7 +83,7 @@ def run_campaign(
                     campaign, folder, executor=pool, previous=place, progress=progress
                 )
                 fingerprint = _fingerprint(outcome)
-                if _is_complete(place, fingerprint) and all(run.reused for run in outcome.runs):
+                if _is_complete(place, fingerprint) and _all_reused(outcome):
                     raise _Unchanged
                 write_report(outcome, executor=pool, progress=progress)
             if finish is not None:
@@ -109,6 +109,11 @@ def _fingerprint(outcome: Outcome) -> str:
             "scans": [sha256_of_file(path) for path in scan_files(campaign)],
         }
     )
+
+
+def _all_reused(outcome: Outcome) -> bool:
+    surfaces = [surface for surface in outcome.surfaces if surface.files]
+    return all(part.reused for part in (*outcome.runs, *surfaces))
 
 
 def _is_complete(place: Path, fingerprint: str) -> bool:

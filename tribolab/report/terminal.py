@@ -12,7 +12,7 @@ from rich.table import Table
 from tribolab.campaign.outcome import CurveOutcome, Outcome
 
 if TYPE_CHECKING:
-    from tribolab.report.truth import Comparison
+    from tribolab.report.demo import DemoComparison
 
 _PIPED_WIDTH = 120
 _SHOWN = 10
@@ -73,32 +73,62 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if names:
             more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
             lines.append(f"checks {what}: {', '.join(names[:_SHOWN])}{more}")
+    if known := [surface for surface in outcome.surfaces if surface.files]:
+        done = sum(surface.done for surface in known)
+        lines.append(f"{done} of {len(known)} surfaces: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
 
 
+def _computed(outcome: Outcome) -> str:
+    """Say what is known of the surfaces."""
+    words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
+    parts = {part for surface in outcome.surfaces for part in surface.parts}
+    return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
+
+
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Say which runs failed and why."""
-    failed = outcome.failed
-    lines = [f"{run.name} failed: {run.reason}" for run in failed[:_SHOWN]]
+    """Say which runs, surfaces and scans failed and why."""
+    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    for surface in outcome.surfaces:
+        failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+    lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
         lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")
     return lines
 
 
-def truth_lines(comparison: Comparison, folder: Path, outcome: Outcome) -> list[str]:
-    """Say how well the truth was found, where to look and what to do next."""
-    c = comparison
-    results = outcome.folder
-    return [
+def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
+    """Say how well truth and paper were found, where to look and what to do next."""
+    c, folder, results = compared.runs, compared.folder, outcome.folder
+    rows = compared.surfaces
+    lines = [
         "",
         f"against the truth: {c.found} of {c.true} segments found, {c.missed} missed, "
         f"{c.extra} extra; the true friction coefficient lies within 1 standard error in "
         f"{100 * c.within_1:.0f} %, within 3 in {100 * c.within_3:.1f} % of them",
+    ]
+    if len(rows):
+        off = rows.assign(off=100 * rows.relative_difference.abs()).groupby("quantity").off.max()
+        words = {"rms_roughness_m": "roughness", "rms_slope": "slope", "contact_area_ratio": "A/A0"}
+        text = ", ".join(f"{words[name]} {off[name]:.1f} %" for name in words if name in off)
+        lines.append(
+            f"surfaces, from their scans: at most {text} from the truth; "
+            f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
+        )
+    count = compared.paper.status.value_counts()
+    lines.append(
+        f"against the paper: {len(compared.paper)} numbers, "
+        + ", ".join(f"{number} {status}" for status, number in count.items())
+    )
+    tables = shown(results / "tables")
+    return [
+        *lines,
         "",
         f"look at   {shown(results / 'report.html')}        the page: open it in a browser",
-        f"          {shown(results / 'tables')}/friction.csv  every segment, a row each",
-        f"          {shown(results / 'tables')}/truth.csv     every segment beside its truth",
+        f"          {tables}/friction.csv  every segment, a row each",
+        f"          {tables}/truth.csv     every segment beside its truth",
+        f"          {tables}/paper.csv     the paper's numbers beside computed ones",
         f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
     ]

@@ -286,8 +286,9 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
         f'length = "{100 * s.length:g} cm"\n'
         f'youngs_modulus = "{s.youngs_modulus / 1e6:g} MPa"\n'
         f"poisson_ratio = {s.poisson_ratio:g}\n",
-        f'[medium.glycerol]\nviscosity = "{s.viscosity:g} Pa s"\nwork_of_adhesion = "51 mJ/m^2"\n',
-        '[medium.dry]\nwork_of_adhesion = "64 mJ/m^2"\n',
+        f'[medium.glycerol]\nviscosity = "{s.viscosity:g} Pa s"\nwork_of_adhesion = "51 mJ/m^2"\n'
+        f"{_range('wet')}",
+        f'[medium.dry]\nwork_of_adhesion = "64 mJ/m^2"\n{_range("dry")}',
         "[segments]\ntrim = 0.10\n",
     ]
     parts += [
@@ -301,3 +302,12 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
             'instrument = "linear_slider"\n'
         )
     return "\n".join(parts)
+
+
+def _range(medium: str) -> str:
+    """Write the bounds that the literature's surface energies set to the work of adhesion."""
+    from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
+
+    spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2).sel(medium=medium)
+    ends = (1e3 * float(spread[f"work_of_adhesion_{end}"]) for end in ("low", "high"))
+    return "work_of_adhesion_range = [{}]\n".format(", ".join(f'"{x:.1f} mJ/m^2"' for x in ends))

@@ -1,0 +1,302 @@
+"""Contact, adhesion and rubber friction of one surface, as far as the campaign file allows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from tribolab.campaign.outcome import Finding
+from tribolab.campaign.work import explain
+from tribolab.errors import TribolabError
+from tribolab.quantities import stamp
+
+if TYPE_CHECKING:
+    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.contact.geometry import LineContact
+
+Groups = dict[str, xr.Dataset]
+_STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
+_PER_DECADE = 10
+_ENDINGS = ("", "_low", "_high")
+
+
+def line_contact(surface: PlannedSurface) -> LineContact | None:
+    """Return the line contact, if the campaign file knows all of it."""
+    from tribolab.contact.geometry import LineContact
+
+    known = all(value is not None for value in surface.contact.values())
+    return LineContact(**surface.contact) if known else None
+
+
+def lowest_wavenumber(surface: PlannedSurface) -> float | None:
+    """Return q0 = pi / (width of the Hertz contact at the lowest load) [1/m], if it is known."""
+    from tribolab.contact.hertz import hertz_half_width
+
+    contact = line_contact(surface)
+    if contact is None or surface.lowest_force is None:
+        return None
+    return float(np.pi / (2 * hertz_half_width(contact.load(surface.lowest_force), contact)))
+
+
+def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, list[Finding]]:
+    """Compute what is known enough, and say what is not.
+
+    Parameters
+    ----------
+    surface
+        What the campaign file knows.
+    psd
+        Extrapolated spectrum with its band.
+
+    Returns
+    -------
+    tuple
+        ``contact`` over pressure; over the loads ``loads`` (Hertz), ``line`` (dry, rough), ``gap``;
+        ``adhesion`` over media and pressure, ``adhesion_loads``; ``rubber`` and ``modulus``; and
+        findings on what is missing or failed.
+    """
+    groups: Groups = {}
+    findings: list[Finding] = []
+    known = surface.contact
+    if known["youngs_modulus"] is None or known["poisson_ratio"] is None:
+        text = (
+            "contact, adhesion and rubber friction are not computed: [contact] wants "
+            "youngs_modulus and poisson_ratio"
+        )
+        return groups, [Finding("note", text)]
+    modulus = known["youngs_modulus"] / (1 - known["poisson_ratio"] ** 2)
+    grid = modulus * np.geomspace(5e-4, 0.5, 3 * _PER_DECADE + 1)
+    contact = line_contact(surface)
+    forces = np.array(surface.forces)
+
+    def attempt(what: str, names: tuple[str, ...], compute: Callable[[], tuple]) -> None:
+        try:
+            groups.update(zip(names, compute(), strict=True))
+        except Exception as error:  # recorded: the other parts have their place in the results
+            severity = "suspect" if isinstance(error, TribolabError) else "error"
+            findings.append(Finding(severity, f"{what}: {explain(error)[0]}"))
+
+    attempt("contact", ("contact",), lambda: (_contact(grid, psd, modulus),))
+    if contact is None or not forces.size:
+        missing = "radius and length in [contact]" if contact is None else "normal_force of a run"
+        text = f"line contact, gap and rubber friction at the loads are not computed: no {missing}"
+        findings.append(Finding("note", text))
+        loads = None
+    else:
+        loads = _loads(forces, contact, psd)
+        groups["loads"] = loads
+        attempt("dry line contact", ("line",), lambda: (_lines(forces, contact, psd),))
+        attempt("gap", ("gap",), lambda: (_gaps(loads, psd, modulus),))
+        _rubber(surface, loads, psd, groups, findings, attempt)
+    if not surface.media:
+        text = "adhesion is not computed: no [medium.*] has a positive work_of_adhesion"
+        findings.append(Finding("note", text))
+    else:
+        names = ("adhesion", "adhesion_loads")
+        attempt("adhesion", names, lambda: _adhesion(surface, grid, loads, contact, psd, modulus))
+        if "adhesion_loads" in groups:
+            findings += _undecided(groups["adhesion_loads"])
+    return groups, findings
+
+
+def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
+    """Return the spectrum, and the two that bound a contact area from below and above."""
+    ends = {"": "", "_low": "_high", "_high": "_low"}  # more roughness, less contact
+    return {
+        ending: psd[["psd_2d"]].assign(psd_2d=psd[f"psd_2d{other}"])
+        for ending, other in ends.items()
+    }
+
+
+def _areas(pressure: xr.DataArray, psd: xr.Dataset, modulus: float) -> dict[str, xr.DataArray]:
+    from tribolab.contact.persson import contact_area_ratio
+
+    return {
+        f"contact_area_ratio{ending}": contact_area_ratio(pressure, spectrum, modulus)
+        for ending, spectrum in _bounds(psd).items()
+    }
+
+
+def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
+    from tribolab.contact.persson import mean_separation
+    from tribolab.quantities import labelled
+
+    pressure = labelled(grid, "pressure")
+    data = _areas(pressure, psd, modulus)
+    data["separation"] = mean_separation(pressure, psd, modulus)
+    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus)
+
+
+def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
+    """Hertz contact at each load, and the rough contact at its mean pressure."""
+    from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure, hertz_mean_pressure
+    from tribolab.contact.persson import mean_separation
+
+    load = forces / contact.length
+    coords = {"load": load}
+
+    def over_load(values: np.ndarray) -> xr.DataArray:
+        return xr.DataArray(values, coords, ["load"])
+
+    pressure = over_load(hertz_mean_pressure(load, contact))
+    modulus = contact.effective_modulus
+    data = {
+        "normal_force": over_load(forces),
+        "pressure": pressure,
+        "max_pressure": over_load(hertz_max_pressure(load, contact)),
+        "contact_width": over_load(2 * hertz_half_width(load, contact)),
+        **_areas(pressure, psd, modulus),
+        "separation": mean_separation(pressure, psd, modulus),
+    }
+    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus)
+
+
+def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
+    """Dry rough line contact at each load; every load has its own x."""
+    from tribolab.contact.line import rough_line_contact
+
+    found = []
+    for force in forces:
+        line = rough_line_contact(contact.load(float(force)), contact, psd)
+        found.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
+    lines = xr.concat(found, "load", combine_attrs="drop_conflicts")
+    return stamp(lines.assign(normal_force=("load", forces)))
+
+
+def _gaps(loads: xr.Dataset, psd: xr.Dataset, modulus: float) -> xr.Dataset:
+    from tribolab.contact.gap import gap_distribution
+
+    gaps = gap_distribution(loads.pressure, psd, modulus)
+    return gaps.assign(normal_force=loads.normal_force)
+
+
+def _adhesion(
+    surface: PlannedSurface,
+    grid: np.ndarray,
+    loads: xr.Dataset | None,
+    contact: LineContact | None,
+    psd: xr.Dataset,
+    modulus: float,
+) -> tuple[xr.Dataset, xr.Dataset]:
+    """Solve for each medium the pressures of the grid, of the loads, and zero.
+
+    Zero pressure is the limit of vanishing load, in which gamma_eff(1) tells of a pull-off force.
+    """
+    from tribolab.contact.adhesion import adhesion
+    from tribolab.contact.hertz import jkr_half_width
+
+    at_loads = np.array([]) if loads is None else loads.pressure.values
+    pressures = np.concatenate([[0.0], at_loads, grid])
+    spectra = _bounds(psd)
+    curves, points = [], []
+    for medium in surface.media:
+        found = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
+        curve = found.isel(pressure=slice(1 + at_loads.size, None))
+        curves.append(curve[["contact_area_ratio", "area_enhancement"]])
+        rest, under_load = found.isel(pressure=0), found.isel(pressure=slice(1, 1 + at_loads.size))
+        point = under_load[
+            [
+                "contact_area_ratio",
+                "contact_area_ratio_no_adhesion",
+                "area_enhancement",
+                "effective_work_of_adhesion",
+                "apparent_contact_area_ratio",
+            ]
+        ].rename(pressure="load")
+        macroscopic = float(rest.effective_work_of_adhesion[0])
+        point["work_of_adhesion"] = medium.work_of_adhesion
+        point["macroscopic_work_of_adhesion"] = macroscopic
+        point["pull_off"] = np.int8(macroscopic > 0)
+        for ending, work in (("_low", medium.low), ("_high", medium.high)):
+            bound = adhesion(pressures[: 1 + at_loads.size], spectra[ending], modulus, max(work, 0))
+            point[f"work_of_adhesion{ending}"] = work
+            point[f"contact_area_ratio{ending}"] = (
+                "load",
+                bound.contact_area_ratio.values[1:],
+            )
+            at_rest = float(bound.effective_work_of_adhesion[0, 0])
+            point[f"macroscopic_work_of_adhesion{ending}"] = at_rest
+        if loads is not None and contact is not None:
+            point = point.assign_coords(load=loads["load"]).drop_vars("pressure", errors="ignore")
+            half = jkr_half_width(loads["load"].values, contact, macroscopic)
+            point["contact_width"] = ("load", 2 * half)
+            point["normal_force"] = loads.normal_force
+            point["pressure"] = loads.pressure
+        points.append(point)
+    names = xr.DataArray([medium.name for medium in surface.media], dims="medium", name="medium")
+    together = [
+        xr.concat(parts, names, combine_attrs="drop_conflicts") for parts in (curves, points)
+    ]
+    return stamp(together[0]), stamp(together[1])
+
+
+def _undecided(points: xr.Dataset) -> list[Finding]:
+    """Say where the bounds do not agree on whether there is a pull-off force."""
+    low, high = (
+        points[f"macroscopic_work_of_adhesion{ending}"].values > 0 for ending in _ENDINGS[1:]
+    )
+    return [
+        Finding(
+            "note",
+            f"{medium}: whether there is a pull-off force is not decided within the bounds of "
+            "spectrum and work of adhesion",
+        )
+        for medium, undecided in zip(points.medium.values, low != high, strict=True)
+        if undecided
+    ]
+
+
+def _rubber(
+    surface: PlannedSurface,
+    loads: xr.Dataset,
+    psd: xr.Dataset,
+    groups: Groups,
+    findings: list[Finding],
+    attempt: Callable,
+) -> None:
+    """Viscoelastic friction with the measured modulus, else with a stand-in for a rubber."""
+    from dataclasses import replace
+
+    from tribolab.rubber.friction import viscoelastic_friction
+    from tribolab.rubber.modulus import PDMS_STAND_IN, read_modulus
+
+    stiffness = surface.contact["youngs_modulus"]
+    if surface.modulus_file is None and stiffness > _STIFFEST_RUBBER:
+        text = (
+            f"rubber friction is not computed: {stiffness / 1e6:.3g} MPa is no rubber; name its "
+            "modulus_file in [contact] if it is viscoelastic"
+        )
+        findings.append(Finding("note", text))
+        return
+
+    def compute() -> tuple[xr.Dataset, xr.Dataset]:
+        if surface.modulus_file is None:
+            modulus = replace(PDMS_STAND_IN, relaxed=stiffness)
+            origin = f"stand-in for a PDMS network, good for orders of magnitude: {modulus!r}"
+        else:
+            path, label = surface.modulus_file
+            modulus, origin = read_modulus(path), label
+        speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
+        ratio = surface.contact["poisson_ratio"]
+        friction = viscoelastic_friction(speed, loads.pressure, psd, modulus, ratio)
+        omega = np.geomspace(1e-2, 1e13, 15 * _PER_DECADE + 1)
+        if surface.modulus_file is not None:
+            omega = modulus.angular_frequency
+        value = modulus(omega)
+        table = xr.Dataset(
+            {
+                "storage_modulus": ("angular_frequency", value.real),
+                "loss_modulus": ("angular_frequency", value.imag),
+            },
+            {"angular_frequency": omega},
+        )
+        friction = friction.assign(normal_force=loads.normal_force)
+        return friction.assign_attrs(modulus=origin), stamp(table, modulus=origin)
+
+    attempt("rubber friction", ("rubber", "modulus"), compute)
+    if surface.modulus_file is None:
+        text = "rubber friction is computed with a stand-in modulus: an order of magnitude only"
+        findings.append(Finding("note", text))

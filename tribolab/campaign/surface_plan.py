@@ -1,0 +1,132 @@
+"""What is to be computed of each surface: its scans, and what the campaign file knows beside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.plan import (
+    distinct,
+    instrument_of,
+    label_of,
+    safe_name,
+    scans_of,
+    sha256_of_dialect,
+)
+from tribolab.provenance import sha256_of, sha256_of_file
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.outcome import RunOutcome
+
+
+@dataclass(frozen=True)
+class PlannedMedium:
+    """A medium with its work of adhesion [J/m2]; bounds that are not given are equal to it."""
+
+    name: str
+    work_of_adhesion: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class PlannedSurface:
+    """One surface to be processed: all that a worker needs to know.
+
+    Parameters
+    ----------
+    name
+        As the campaign file calls it.
+    data_file
+        Path of its data file relative to the results folder.
+    files, labels
+        Scans, absolute, and relative to the campaign file.
+    instrument
+        Dialect of the scans, if the campaign file names one.
+    roughness
+        The table [roughness].
+    contact
+        The table [contact]; None where it says nothing.
+    forces
+        Normal forces of the runs on this surface [N], increasing.
+    lowest_force
+        Lowest normal force of the whole campaign [N], if any is known.
+    media
+        Media whose work of adhesion is known.
+    modulus_file
+        File of the viscoelastic modulus, and its label; None if there is none.
+    config_sha256
+        Checksum of all of these, but of the scans.
+    """
+
+    name: str
+    data_file: str
+    files: tuple[Path, ...]
+    labels: tuple[str, ...]
+    instrument: str | None
+    roughness: dict[str, Any]
+    contact: dict[str, Any]
+    forces: tuple[float, ...]
+    lowest_force: float | None
+    media: tuple[PlannedMedium, ...]
+    modulus_file: tuple[Path, str] | None = None
+    config_sha256: str = field(default="", compare=False)
+
+
+def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[PlannedSurface, ...]:
+    """Collect what is known of each surface, in the order of the campaign file.
+
+    Parameters
+    ----------
+    campaign
+        From `load_campaign`.
+    runs
+        What the runs came to: they tell the normal forces.
+    """
+    known = [
+        (run.surface, float(f"{run.normal_force:.4g}"))
+        for run in runs
+        if run.normal_force is not None and run.normal_force > 0
+    ]
+    media = tuple(
+        PlannedMedium(name, work, *(medium.work_of_adhesion_range or (work, work)))
+        for name, medium in campaign.medium.items()
+        # at or below zero the liquid keeps the surfaces apart: there is no adhesion to compute
+        if (work := medium.work_of_adhesion) is not None and work > 0
+    )
+    files = distinct(f"surface_{safe_name(surface.name)}" for surface in campaign.surface)
+    modulus = campaign.contact.modulus_file
+    path = None if modulus is None else campaign.raw / modulus
+    planned = []
+    for surface, file in zip(campaign.surface, files, strict=True):
+        scans = scans_of(campaign, surface)
+        instrument = surface.instrument and instrument_of(campaign, surface.instrument)
+        facts = {
+            "name": surface.name,
+            "data_file": f"data/{file}.nc",
+            "instrument": instrument,
+            "roughness": campaign.roughness.model_dump(exclude_none=True),
+            "contact": campaign.contact.model_dump(exclude={"modulus_file"}),
+            "forces": tuple(sorted({force for name, force in known if name == surface.name})),
+            "lowest_force": min((force for _, force in known), default=None),
+            "media": media,
+        }
+        shaping = facts | {
+            "media": [asdict(medium) for medium in media],
+            "instrument": surface.instrument,
+            "dialect": instrument and sha256_of_dialect(instrument),
+            "modulus": path and sha256_of_file(path),
+        }
+        planned.append(
+            PlannedSurface(
+                files=tuple(scans),
+                labels=tuple(label_of(campaign, scan) for scan in scans),
+                modulus_file=None if path is None else (path, label_of(campaign, path)),
+                config_sha256=sha256_of(shaping),
+                **facts,
+            )
+        )
+    return tuple(planned)

@@ -1,0 +1,183 @@
+"""The work on one surface, as a worker process does it."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.outcome import Finding, SurfaceOutcome
+from tribolab.campaign.surface_plan import PlannedSurface
+from tribolab.campaign.work import Source, explain, source_of, write_data
+from tribolab.errors import OutputError
+from tribolab.provenance import CONVENTIONS, history_line
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+RECORD = "surface_record"
+
+
+@dataclass(frozen=True)
+class SurfaceTask:
+    """A surface to process, and the folder of the results."""
+
+    surface: PlannedSurface
+    folder: Path
+
+
+@dataclass(frozen=True)
+class SurfaceRecord:
+    """What a worker hands back: the outcome and the files that were read."""
+
+    outcome: SurfaceOutcome
+    sources: tuple[Source, ...]
+
+
+def process_surface(task: SurfaceTask) -> SurfaceRecord:
+    """Compute spectrum, roughness, contact, adhesion and rubber friction; write the data file.
+
+    What goes wrong with the surface is in the record.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written: that is no fault of the surface.
+    """
+    began = time.monotonic()
+    surface = task.surface
+    if not surface.files:
+        text = "no scans are named, so its roughness and contact are not computed"
+        return SurfaceRecord(
+            SurfaceOutcome(surface.name, (), "skipped", findings=(Finding("note", text),)), ()
+        )
+    sources = sources_of(surface)
+    try:
+        groups, findings = analyse(surface)
+        write_data({None: _root(surface, sources, findings, groups)} | groups, _place(task))
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one bad surface must not stop the others
+        reason, name = explain(error)
+        outcome = failed_surface(surface, reason, name, time.monotonic() - began)
+        return SurfaceRecord(outcome, sources)
+    outcome = SurfaceOutcome(
+        name=surface.name,
+        files=surface.labels,
+        status="done",
+        data_file=surface.data_file,
+        seconds=time.monotonic() - began,
+        parts=tuple(groups),
+        findings=tuple(findings),
+    )
+    return SurfaceRecord(outcome, sources)
+
+
+def analyse(surface: PlannedSurface) -> tuple[dict[str, xr.Dataset], list[Finding]]:
+    """Return the groups of a surface's data file, and the findings.
+
+    Raises
+    ------
+    TribolabError
+        If no scan can be used, or they have no spectrum.
+    """
+    from tribolab.campaign.surface_contact import contact_groups, lowest_wavenumber
+    from tribolab.campaign.surface_scans import spectra, usable_scans
+
+    scans, findings = usable_scans(surface)
+    q_low = lowest_wavenumber(surface)
+    if q_low is None and "q_low" not in surface.roughness:
+        text = "the spectrum begins where the scans do: no load and contact tell the width of both"
+        findings.append(Finding("note", text))
+    groups, more = spectra(surface, scans, q_low)
+    findings += more
+    contact, more = contact_groups(surface, groups["psd"])
+    return groups | contact, findings + more
+
+
+def failed_surface(
+    surface: PlannedSurface, reason: str, error: str, seconds: float = 0.0
+) -> SurfaceOutcome:
+    """Return the outcome of a surface that has no results."""
+    return SurfaceOutcome(
+        name=surface.name,
+        files=surface.labels,
+        status="failed",
+        reason=reason,
+        error=error,
+        seconds=seconds,
+        findings=(Finding("fail", reason),),
+    )
+
+
+def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
+    """Return label, checksum and size of the scans and of the modulus file."""
+    files = list(zip(surface.files, surface.labels, strict=True))
+    if surface.modulus_file is not None:
+        files.append(surface.modulus_file)
+    return tuple(source_of(file, label) for file, label in files)
+
+
+def known_surface(
+    path: Path, surface: PlannedSurface
+) -> tuple[tuple[Source, ...], SurfaceOutcome] | None:
+    """Return sources and outcome of earlier results, if settings and version are the same."""
+    import netCDF4
+
+    from tribolab import __version__
+
+    if not path.is_file():
+        return None
+    try:
+        with netCDF4.Dataset(path) as file:
+            attrs, groups = file.__dict__, tuple(file.groups)
+        record: dict[str, Any] = json.loads(attrs[RECORD])
+        sources = tuple((str(n), str(c), int(b)) for n, c, b in record["sources"])
+        findings = tuple(Finding(*finding) for finding in record["findings"])
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
+        return None
+    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
+    if same != (surface.config_sha256, __version__) or groups != tuple(record["parts"]):
+        return None
+    outcome = SurfaceOutcome(
+        name=surface.name,
+        files=surface.labels,
+        status="done",
+        data_file=surface.data_file,
+        reused=True,
+        parts=groups,
+        findings=findings,
+    )
+    return sources, outcome
+
+
+def _place(task: SurfaceTask) -> Path:
+    return task.folder / task.surface.data_file
+
+
+def _root(
+    surface: PlannedSurface,
+    sources: tuple[Source, ...],
+    findings: list[Finding],
+    groups: dict[str, xr.Dataset],
+) -> xr.Dataset:
+    """Attributes of the whole file; checksums also of what could not be used."""
+    import xarray as xr
+
+    from tribolab import __version__
+
+    record = {"sources": sources, "findings": findings, "parts": list(groups)}
+    return xr.Dataset(
+        attrs={
+            "surface": surface.name,
+            "source": "; ".join(label for label, _, _ in sources),
+            "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
+            "tribolab_version": __version__,
+            "config_sha256": surface.config_sha256,
+            "history": history_line(f"spectrum and contact of {surface.name}"),
+            "Conventions": CONVENTIONS,
+            RECORD: json.dumps(record, ensure_ascii=False),
+        }
+    )

@@ -1,0 +1,258 @@
+"""Figures of rough contacts: contact area, adhesion, gaps, pressure across a line contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.plot.curves import is_dry
+from tribolab.plot.frame import (
+    band,
+    colours,
+    legend_above,
+    logarithmic,
+    name_style,
+    name_surfaces,
+    single_axes,
+)
+from tribolab.plot.labels import column, label, number
+from tribolab.plot.style import BLACK, GREY, PaperFigure, paper_style
+
+Surfaces = Mapping[str, xr.Dataset]
+_SMALLEST_AREA = 1e-4
+_WET_STYLES = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
+_DRY_STYLES = ("--", (0, (2, 1)))
+
+
+def contact_area(
+    contacts: Surfaces,
+    loads: xr.Dataset | None = None,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+) -> PaperFigure:
+    """Draw the relative contact area without adhesion over pressure, Hertz pressures marked.
+
+    Parameters
+    ----------
+    contacts
+        ``contact_area_ratio`` (pressure), with ``_low`` and ``_high`` where known, by the
+        surface's name.
+    loads
+        ``pressure`` and ``normal_force`` (load): the mean Hertz pressures to mark.
+    surfaces
+        All surfaces of the study in their order, so that each keeps its colour.
+    title
+        Text above the figure.
+    """
+    chosen = colours(list(contacts), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, contact in contacts.items():
+            p, area = contact.pressure.values, contact.contact_area_ratio.values
+            columns = {column("pressure"): p, "contact_area_ratio": area}
+            if "contact_area_ratio_low" in contact:
+                low, high = (contact[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
+                band(axes, p, low, high, chosen[name])
+                columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
+            axes.plot(p, area, color=chosen[name], linewidth=1.1)
+            figure.keep("contact area", name, **columns)
+        name_surfaces(axes, chosen)
+        _mark(figure, axes, loads)
+        _area_axes(axes)
+        legend_above(figure, axes, title)
+    return figure
+
+
+def adhesive_area(
+    contacts: Surfaces,
+    adhesions: Surfaces,
+    loads: xr.Dataset | None = None,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+) -> PaperFigure:
+    """Draw the relative contact area over pressure, without adhesion and with it in each medium.
+
+    Parameters
+    ----------
+    contacts
+        As for `contact_area`.
+    adhesions
+        ``contact_area_ratio`` (medium, pressure) by the surface's name.
+    loads, surfaces, title
+        As for `contact_area`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Dotted: without adhesion; dashed: dry; full and other lines: the other media.
+    """
+    chosen = colours(list(adhesions), surfaces)
+    media = _media(adhesions)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, found in adhesions.items():
+            if name in contacts:
+                p, area = (contacts[name][k].values for k in ("pressure", "contact_area_ratio"))
+                axes.plot(p, area, color=chosen[name], linestyle=":", linewidth=1.1)
+                columns = {column("pressure"): p, "contact_area_ratio": area}
+                figure.keep("contact area", f"{name}, no adhesion", **columns)
+            for medium in found.medium.values.tolist():
+                p, area = found.pressure.values, found.contact_area_ratio.sel(medium=medium).values
+                axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
+                columns = {column("pressure"): p, "contact_area_ratio": area}
+                figure.keep("contact area", f"{name}, {medium}", **columns)
+        name_surfaces(axes, chosen)
+        name_style(axes, "no adhesion", linestyle=":")
+        for medium, style in media.items():
+            name_style(axes, medium, linestyle=style)
+        _mark(figure, axes, loads)
+        _area_axes(axes)
+        legend_above(figure, axes, title)
+    return figure
+
+
+def effective_work(
+    adhesions: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw the effective work of adhesion over the magnification.
+
+    Parameters
+    ----------
+    adhesions
+        ``effective_work_of_adhesion`` [J/m2] (medium, wavenumber) with the coordinate
+        ``magnification``, by the surface's name, each at one pressure.
+    surfaces, title
+        As for `contact_area`.
+    """
+    chosen = colours(list(adhesions), surfaces)
+    media = _media(adhesions)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, found in adhesions.items():
+            for medium in found.medium.values.tolist():
+                zeta = found.magnification.values
+                work = found.effective_work_of_adhesion.sel(medium=medium).values
+                axes.plot(zeta, work, color=chosen[name], linestyle=media[medium], linewidth=1.1)
+                columns = {
+                    "magnification": zeta,
+                    column("effective_work_of_adhesion"): work,
+                }
+                figure.keep("effective work of adhesion", f"{name}, {medium}", **columns)
+        name_surfaces(axes, chosen)
+        for medium, style in media.items():
+            name_style(axes, medium, linestyle=style)
+        logarithmic(axes, "x")
+        axes.set_xlim(1, axes.dataLim.x1)
+        axes.set_ylim(-0.02 * axes.dataLim.y1, 1.06 * axes.dataLim.y1)
+        axes.set_xlabel(label("magnification"))
+        axes.set_ylabel("effective work of\n" + r"adhesion $\gamma_{\mathrm{eff}}$ (J/m$^2$)")
+        legend_above(figure, axes, title, left=16)
+    return figure
+
+
+def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") -> PaperFigure:
+    """Draw the distribution of the gap, u P(u) over ln u: equal areas are equal shares.
+
+    Parameters
+    ----------
+    distributions
+        ``gap_density`` [1/m] (gap) by the surface's name, each at one pressure.
+    surfaces, title
+        As for `contact_area`.
+    """
+    chosen = colours(list(distributions), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        ends = []
+        for name, found in distributions.items():
+            u, density = found.gap.values, found.gap_density.values
+            share = u * density
+            axes.plot(u, share, color=chosen[name], linewidth=1.1)
+            ends.append(u[share > 1e-3 * share.max()][[0, -1]])
+            columns = {column("gap"): u, "gap_density_1_m": density}
+            figure.keep("gap", name, **columns)
+        name_surfaces(axes, chosen)
+        logarithmic(axes, "x")
+        # below the cut-off a gap is smaller than an atom
+        smallest = min(found.attrs.get("cutoff_m", 0.0) for found in distributions.values())
+        axes.set_xlim(max(np.min(ends) / 1.5, smallest), 1.5 * np.max(ends))
+        axes.set_ylim(0, 1.08 * axes.dataLim.y1)
+        axes.set_xlabel(label("gap"))
+        axes.set_ylabel("share of the area per\nlogarithm of the gap $u\\,P(u)$")
+        legend_above(figure, axes, title, left=16)
+    return figure
+
+
+def line_pressure(
+    lines: Surfaces,
+    hertz: tuple[np.ndarray, np.ndarray] | None = None,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+) -> PaperFigure:
+    """Draw the pressure across dry rough line contacts, beside that of Hertz.
+
+    Parameters
+    ----------
+    lines
+        ``pressure`` [Pa] and ``x`` [m] (point or x) by the surface's name, each at one load.
+    hertz
+        x [m] and pressure [Pa] of the smooth contact.
+    surfaces, title
+        As for `contact_area`.
+    """
+    chosen = colours(list(lines), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        widest = 0.0
+        for name, line in lines.items():
+            x, p = line["x"].values, line["pressure"].values
+            axes.plot(1e3 * x, 1e-6 * p, color=chosen[name], linewidth=1.1)
+            figure.keep("pressure", name, x_m=x, pressure_Pa=p)
+            widest = max(widest, 1e3 * np.abs(x[p > 1e-3 * p.max()]).max())
+        name_surfaces(axes, chosen)
+        if hertz is not None:
+            x, p = hertz
+            axes.plot(1e3 * x, 1e-6 * p, color=BLACK, linestyle="--", linewidth=0.8, label="Hertz")
+            figure.keep("pressure", "Hertz", x_m=x, pressure_Pa=p)
+        axes.set_xlim(-1.15 * widest, 1.15 * widest)
+        axes.set_ylim(0, 1.08 * axes.dataLim.y1)
+        axes.set_xlabel("coordinate across the contact $x$ (mm)")
+        axes.set_ylabel("contact pressure $p$ (MPa)")
+        legend_above(figure, axes, title)
+    return figure
+
+
+def _media(adhesions: Surfaces) -> dict[str, object]:
+    """Give every medium a line style: dashed where it is dry."""
+    names = dict.fromkeys(m for found in adhesions.values() for m in found.medium.values.tolist())
+    dry = [name for name in names if is_dry(name)]
+    wet = [name for name in names if not is_dry(name)]
+    return {
+        name: styles[rank % len(styles)]
+        for group, styles in ((wet, _WET_STYLES), (dry, _DRY_STYLES))
+        for rank, name in enumerate(group)
+    }
+
+
+def _mark(figure: PaperFigure, axes, loads: xr.Dataset | None) -> None:
+    if loads is None:
+        return
+    pressure, force = loads.pressure.values, loads.normal_force.values
+    for p in pressure:
+        axes.axvline(p, color=GREY, linewidth=0.6, zorder=0)
+    text = ", ".join(number(f) for f in force) if force.size <= 5 else "the loads"
+    name_style(axes, f"Hertz at {text} N" if force.size <= 5 else "Hertz", linewidth=0.6)
+    figure.keep("Hertz pressure", "loads", normal_force_N=force, pressure_Pa=pressure)
+
+
+def _area_axes(axes) -> None:
+    logarithmic(axes, "x", "y")
+    axes.set_xlim(axes.dataLim.x0, axes.dataLim.x1)
+    axes.set_ylim(max(axes.dataLim.y0 / 1.3, _SMALLEST_AREA), 1.3)
+    axes.set_xlabel(label("pressure"))
+    axes.set_ylabel(label("contact_area_ratio"))

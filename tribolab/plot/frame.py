@@ -1,0 +1,78 @@
+"""Axes and legends that several figures have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from tribolab.plot.labels import plain
+from tribolab.plot.style import (
+    GREY,
+    SINGLE_MM,
+    PaperFigure,
+    margins,
+    new_figure,
+    surface_styles,
+)
+
+
+def single_axes() -> tuple[PaperFigure, Axes]:
+    """Return an empty one-column figure and its axes; call inside `paper_style()`."""
+    figure = new_figure(SINGLE_MM, 60.0)
+    return figure, figure.add_subplot()
+
+
+def logarithmic(axes: Axes, *names: str) -> None:
+    """Make axes (``"x"``, ``"y"``) logarithmic, with ticks that stay few over many decades."""
+    for name in names:
+        getattr(axes, f"set_{name}scale")("log")
+        axis = getattr(axes, f"{name}axis")
+        axis.set_major_locator(LogLocator(numticks=8))
+        axis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str]:
+    """Return the colour of each surface; `every` names all surfaces of the study in order."""
+    styles = surface_styles([*every, *surfaces])
+    return {name: styles[name].colour for name in surfaces}
+
+
+def name_surfaces(axes: Axes, chosen: dict[str, str]) -> None:
+    """Put each surface with its colour into the legend; a single unnamed one needs no word."""
+    for name, colour in chosen.items():
+        if name:
+            axes.plot([], [], color=colour, linewidth=1.4, label=plain(name))
+
+
+def name_style(axes: Axes, text: str, **look: object) -> None:
+    """Put a line style that holds for all surfaces into the legend, in grey."""
+    axes.plot([], [], **{"color": GREY, "linewidth": 1.1, **look}, label=plain(text))
+
+
+def legend_above(figure: PaperFigure, axes: Axes, title: str = "", left: float = 14) -> None:
+    """Put the legend above the axes, where it hides no point, and make room for it."""
+    handles, texts = axes.get_legend_handles_labels()
+    across = 3 if max(map(len, texts), default=0) < 14 else 2
+    across = 1 if max(map(len, texts), default=0) > 32 else across
+    rows = -(-len(texts) // across)
+    top = 2.5 + 3.8 * rows + (4.5 if title else 0)
+    height = 50.0 + top
+    figure.set_size_inches(SINGLE_MM / 25.4, height / 25.4)
+    margins(figure, left, 3, 10.5, top)
+    if texts:
+        axes.legend(
+            handles, texts, loc="lower left", ncols=across,
+            bbox_to_anchor=(0, 1 + 0.8 / (height - top - 10.5)),
+        )  # fmt: skip
+    if title:
+        figure.text(left / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
+
+
+def band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
+    """Shade between two bounds, where both are known."""
+    fine = np.isfinite(low) & np.isfinite(high)
+    axes.fill_between(x[fine], low[fine], high[fine], color=colour, alpha=0.2, linewidth=0)

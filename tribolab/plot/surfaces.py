@@ -1,0 +1,151 @@
+"""Figures of surfaces: their power spectra, and what roughness does to sliding rubber."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.plot.frame import (
+    band,
+    colours,
+    legend_above,
+    logarithmic,
+    name_style,
+    name_surfaces,
+    single_axes,
+)
+from tribolab.plot.labels import column, label
+from tribolab.plot.style import BLACK, VERMILLION, PaperFigure, paper_style
+
+Surfaces = Mapping[str, xr.Dataset]
+_MEASURED = 0
+
+
+def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") -> PaperFigure:
+    """Draw two-dimensional power spectra with their bands, measured and extrapolated parts apart.
+
+    Parameters
+    ----------
+    psds
+        Spectra with ``psd_2d`` (wavenumber) by the surface's name; ``psd_2d_low``,
+        ``psd_2d_high`` and ``origin`` where known.
+    surfaces
+        All surfaces of the study in their order, so that each keeps its colour.
+    title
+        Text above the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Full lines are measured, dashed ones extrapolated; shaded the 95 % band.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no spectrum to draw.
+    """
+    if not psds:
+        raise AnalysisError("there is nothing to draw: no spectrum was given")
+    chosen = colours(list(psds), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        dashed = False
+        for name, psd in psds.items():
+            q, value = psd.wavenumber.values, psd.psd_2d.values
+            low, high = (
+                psd[f"psd_2d{end}"].values if f"psd_2d{end}" in psd else value * np.nan
+                for end in ("_low", "_high")
+            )
+            band(axes, q, low, high, chosen[name])
+            origin = psd.origin.values if "origin" in psd else np.zeros(q.size, int)
+            dashed |= bool((origin != _MEASURED).any())
+            for part, style in ((origin == _MEASURED, "-"), (origin != _MEASURED, "--")):
+                # a stretch begins where the one before it ends, so that no gap is seen
+                shown = part | (np.roll(part, 1) & (np.arange(q.size) > 0) & (style == "--"))
+                shown |= np.roll(part, -1) & (np.arange(q.size) < q.size - 1) & (style == "--")
+                line = np.where(shown & (value > 0), value, np.nan)
+                axes.plot(q, line, color=chosen[name], linestyle=style, linewidth=1.0)
+            figure.keep(
+                "spectrum",
+                name,
+                **{
+                    column("wavenumber"): q,
+                    column("psd_2d"): value,
+                    column("psd_2d_low"): low,
+                    column("psd_2d_high"): high,
+                    "origin": origin,
+                },
+            )
+        name_surfaces(axes, chosen)
+        if dashed:
+            name_style(axes, "measured")
+            name_style(axes, "extrapolated", linestyle="--")
+        logarithmic(axes, "x", "y")
+        axes.set_xlabel(label("wavenumber"))
+        axes.set_ylabel(label("psd_2d", "power spectrum"))
+        legend_above(figure, axes, title, left=16)
+    return figure
+
+
+def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
+    """Draw storage and loss modulus over the angular frequency.
+
+    Parameters
+    ----------
+    table
+        ``storage_modulus``, ``loss_modulus`` [Pa] (angular_frequency).
+    title
+        Text above the figure.
+    """
+    omega = table.angular_frequency.values
+    with paper_style():
+        figure, axes = single_axes()
+        for name, colour, style in (
+            ("storage_modulus", BLACK, "-"),
+            ("loss_modulus", VERMILLION, "--"),
+        ):
+            value = table[name].values
+            text = label(name).removesuffix(" (Pa)")
+            positive = np.where(value > 0, value, np.nan)
+            axes.plot(omega, positive, color=colour, linestyle=style, linewidth=1.1, label=text)
+            figure.keep(
+                "modulus", name, **{column("angular_frequency"): omega, "modulus_Pa": value}
+            )
+        logarithmic(axes, "x", "y")
+        axes.set_xlabel(label("angular_frequency"))
+        axes.set_ylabel("modulus (Pa)")
+        legend_above(figure, axes, title)
+    return figure
+
+
+def viscoelastic(
+    frictions: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw the viscoelastic friction coefficient over the sliding speed.
+
+    Parameters
+    ----------
+    frictions
+        ``friction_coefficient`` (sliding_speed) by the surface's name, each at one pressure.
+    surfaces, title
+        As for `spectra`.
+    """
+    chosen = colours(list(frictions), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, friction in frictions.items():
+            v, mu = friction.sliding_speed.values, friction.friction_coefficient.values
+            axes.plot(v, mu, color=chosen[name], linewidth=1.1)
+            columns = {column("sliding_speed"): v, "friction_coefficient": mu}
+            figure.keep("viscoelastic friction", name, **columns)
+        name_surfaces(axes, chosen)
+        logarithmic(axes, "x")
+        axes.set_xlim(v.min(), v.max())
+        axes.set_ylim(0, 1.08 * axes.dataLim.y1)
+        axes.set_xlabel(label("sliding_speed"))
+        axes.set_ylabel(r"viscoelastic friction $\mu_{\mathrm{visc}}$")
+        legend_above(figure, axes, title)
+    return figure

@@ -1,0 +1,226 @@
+"""The figures of the section on surfaces and contact, each drawn by a worker."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.plot.labels import force_text
+from tribolab.report.wording import many
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from tribolab.campaign.outcome import SurfaceOutcome
+
+_ALONE = threading.Lock()
+_MOST_IN_ONE = 9  # surfaces that can be told apart in one figure
+
+
+@dataclass(frozen=True)
+class SurfaceFigure:
+    """A figure to draw: its kind, the data files of the surfaces, where it goes."""
+
+    kind: str
+    files: tuple[tuple[str, str], ...]  # name and data file of each surface that has the data
+    surfaces: tuple[str, ...]
+    folder: Path
+
+    @property
+    def file(self) -> str:
+        """Path of the figure relative to the results folder."""
+        return f"figures/{self.kind}.svg"
+
+    @property
+    def title(self) -> str:
+        """What the figure shows."""
+        return _KINDS[self.kind].title
+
+
+@dataclass(frozen=True)
+class _Kind:
+    group: str
+    title: str
+    caption: str
+    draw: Callable[[SurfaceFigure, dict[str, xr.Dataset]], Figure]
+
+
+def plan_surface_figures(surfaces: Sequence[SurfaceOutcome], folder: Path) -> list[SurfaceFigure]:
+    """Choose the figures for which at least one surface has data."""
+    done = [surface for surface in surfaces if surface.done]
+    names = tuple(surface.name for surface in surfaces)
+    planned = []
+    for kind, known in _KINDS.items():
+        mine = [(s.name, s.data_file) for s in done if known.group in s.parts][:_MOST_IN_ONE]
+        if kind == "modulus":
+            mine = mine[:1]  # one rubber
+        if mine:
+            planned.append(SurfaceFigure(kind, tuple(mine), names, folder))
+    return planned
+
+
+def draw_surfaces(task: SurfaceFigure) -> dict[str, str]:
+    """Draw one figure into the results and return its record."""
+    from tribolab import plot
+
+    kind = _KINDS[task.kind]
+    with _ALONE:
+        data = _read(task, kind.group)
+        plot.save(kind.draw(task, data), task.folder / task.file)
+    caption = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
+    shown = ", ".join(data)
+    alt = f"{kind.title} of {many(len(data), 'surface')} ({shown}). {caption}"
+    return {
+        "file": task.file,
+        "kind": task.kind,
+        "caption": f"{kind.title}. {caption}".strip(),
+        "alt": alt.strip(),
+    }
+
+
+def _read(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:
+    from tribolab.io.netcdf import read_netcdf
+
+    return {name: read_netcdf(task.folder / file, group=group) for name, file in task.files}
+
+
+def _optional(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:
+    from tribolab.errors import ReadError
+    from tribolab.io.netcdf import read_netcdf
+
+    found = {}
+    for name, file in task.files:
+        try:
+            found[name] = read_netcdf(task.folder / file, group=group)
+        except ReadError:  # the campaign knows too little for it; its findings say so
+            continue
+    return found
+
+
+def _loads(task: SurfaceFigure) -> xr.Dataset | None:
+    """Return the loads of the surface that has most of them: its Hertz pressures are marked."""
+    found = _optional(task, "loads").values()
+    return max(found, key=lambda loads: loads.sizes["load"], default=None)
+
+
+def _at_lowest(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    return {name: found.isel(load=0) for name, found in data.items()}
+
+
+def _with_loads(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    return {name: found for name, found in data.items() if found.sizes.get("load")}
+
+
+def _lowest(data: dict[str, xr.Dataset]) -> str:
+    """Say at which load each curve was computed."""
+    forces = {
+        float(found.normal_force.values.flat[0])
+        for found in data.values()
+        if "normal_force" in found and found.normal_force.size
+    }
+    return " or ".join(force_text(force) for force in sorted(forces)) or "its lowest load"
+
+
+def _modulus(data: dict[str, xr.Dataset]) -> str:
+    return next((str(d.attrs["modulus"]) for d in data.values() if "modulus" in d.attrs), "")
+
+
+def _plot() -> Any:
+    from tribolab import plot
+
+    return plot
+
+
+def _spectra(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().spectra(data, surfaces=task.surfaces)
+
+
+def _area(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().contact_area(data, _loads(task), surfaces=task.surfaces)
+
+
+def _adhesive_area(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    without = _optional(task, "contact")
+    return _plot().adhesive_area(without, data, _loads(task), surfaces=task.surfaces)
+
+
+def _effective_work(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().effective_work(_at_lowest(_with_loads(data)), surfaces=task.surfaces)
+
+
+def _gaps(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().gaps(_at_lowest(data), surfaces=task.surfaces)
+
+
+def _lines(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    """Rough profiles, and Hertz at the load of the first of them."""
+    loads = _optional(task, "loads")
+    hertz = None
+    if loads:
+        first = next(iter(loads.values())).isel(load=0)
+        half, top = float(first.contact_width) / 2, float(first.max_pressure)
+        x = half * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
+        hertz = x, top * np.sqrt(np.maximum(1 - (x / half) ** 2, 0))
+    return _plot().line_pressure(_at_lowest(data), hertz, surfaces=task.surfaces)
+
+
+def _modulus_figure(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().modulus(next(iter(data.values())))
+
+
+def _viscoelastic(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+    return _plot().viscoelastic(_at_lowest(data), surfaces=task.surfaces)
+
+
+_KINDS = {
+    "spectra": _Kind(
+        "psd",
+        "Power spectra",
+        "Full: measured; dashed: extrapolated; shaded: 95 % band.",
+        _spectra,
+    ),
+    "contact_area": _Kind(
+        "contact",
+        "Contact area without adhesion",
+        "Shaded: what the band of the spectrum allows. Grey: mean Hertz pressures of the loads.",
+        _area,
+    ),
+    "effective_work": _Kind(
+        "adhesion_loads",
+        "Effective work of adhesion",
+        "Over the magnification, under {load}. Zero at magnification 1 means that adhesion "
+        "cannot be felt from outside at that load.",
+        _effective_work,
+    ),
+    "adhesive_area": _Kind(
+        "adhesion",
+        "Contact area with adhesion",
+        "Dotted: without adhesion; dashed: dry. Grey: mean Hertz pressures of the loads.",
+        _adhesive_area,
+    ),
+    "gaps": _Kind(
+        "gap",
+        "Gap between the surfaces",
+        "Where they do not touch, at the mean Hertz pressure of {load}.",
+        _gaps,
+    ),
+    "line_pressure": _Kind(
+        "line",
+        "Pressure across the dry contact at rest",
+        "Without adhesion, at {load}. Dashed: smooth surfaces (Hertz).",
+        _lines,
+    ),
+    "modulus": _Kind("modulus", "Modulus of the rubber", "{modulus}.", _modulus_figure),
+    "viscoelastic": _Kind(
+        "rubber",
+        "Viscoelastic friction",
+        "What the losses in the rubber add to friction, at {load}; no flash heating, no adhesion.",
+        _viscoelastic,
+    ),
+}
