@@ -275,7 +275,11 @@ def _rubber(
     def compute() -> tuple[xr.Dataset, xr.Dataset]:
         if surface.modulus_file is None:
             modulus = replace(PDMS_STAND_IN, relaxed=stiffness)
-            origin = f"stand-in for a PDMS network, good for orders of magnitude: {modulus!r}"
+            origin = (
+                f"Stand-in of a PDMS network for orders of magnitude: {stiffness / 1e6:g} MPa at "
+                f"rest, {modulus.unrelaxed / 1e9:g} GPa as a glass, fractional Zener with tau = "
+                f"{modulus.relaxation_time:g} s and exponent {modulus.exponent:g}"
+            )
         else:
             path, label = surface.modulus_file
             modulus, origin = read_modulus(path), label

@@ -1,0 +1,351 @@
+"""Surfaces of a campaign: spectrum, contact and adhesion beside the runs, and what may be amiss."""
+
+import json
+import re
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+from campaigns import copied, simulated
+from typer.testing import CliRunner
+
+import tribolab
+from tribolab import rig
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.outcome import RunOutcome
+from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
+from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of
+from tribolab.cli import app
+from tribolab.contact.adhesion import macroscopic_work_of_adhesion
+from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width
+from tribolab.contact.persson import contact_area_ratio
+from tribolab.errors import ConfigError
+from tribolab.io.netcdf import read_netcdf
+from tribolab.report.page import render
+from tribolab.report.run import run_campaign
+from tribolab.report.surface_records import ADHESION, CONTACT, ROUGHNESS, surface_rows
+from tribolab.report.truth_surfaces import compare_surfaces
+from tribolab.rig.files import scan_file
+from tribolab.studies import xu2026
+
+SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
+CONTACT_TABLE = {
+    "radius": 0.07,
+    "length": 0.10,
+    "youngs_modulus": 1.5e6,
+    "poisson_ratio": 0.5,
+}
+NOTHING_KNOWN = dict.fromkeys(CONTACT_TABLE)
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    return simulated(tmp_path_factory.mktemp("surfaces"), repeats=1)
+
+
+@pytest.fixture(scope="module")
+def outcome(campaign):
+    return run_campaign(campaign, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def profiles(tmp_path_factory):
+    """Three short scans, one longer than the others."""
+    folder = tmp_path_factory.mktemp("profiles")
+    for number, length in enumerate((5e-3, 5e-3, 6e-3), start=1):
+        scan = rig.scans("Sb-R", 1, seed=number, length=length)
+        file = folder / f"sb-r_{number}.csv"
+        text = scan_file(scan.x.values, scan.height.values[0]).decode()
+        file.write_text(re.sub(r"# length:.*\n", "", text))
+    return sorted(folder.glob("*.csv"))
+
+
+def planned(files, **changes):
+    surface = PlannedSurface(
+        name="Sb-R",
+        data_file="data/surface_Sb-R.nc",
+        files=tuple(files),
+        labels=tuple(f"raw/{file.name}" for file in files),
+        instrument=None,
+        roughness={},
+        contact=dict(CONTACT_TABLE),
+        forces=(31.0, 91.0),
+        lowest_force=31.0,
+        media=(),
+        config_sha256="as it is",
+    )
+    return replace(surface, **changes)
+
+
+def processed(folder, files, **changes):
+    (folder / "data").mkdir(exist_ok=True)
+    record = process_surface(SurfaceTask(planned(files, **changes), folder))
+    return record.outcome
+
+
+def said(outcome, severity):
+    return [finding.message for finding in outcome.findings if finding.severity == severity]
+
+
+# what a campaign with scans gives
+
+
+def test_spectrum_contact_and_adhesion_stand_in_one_file(outcome):
+    [surface] = outcome.surfaces
+    assert surface.done and surface.data_file == "data/surface_Sb-R.nc"
+    assert {"psd_1d", "psd", "roughness", "contact", "loads", "line", "gap"} < set(surface.parts)
+    assert {"adhesion", "adhesion_loads", "rubber", "modulus"} < set(surface.parts)
+    [scan] = surface.files
+    assert scan in {name for name, _, _ in outcome.sources}
+
+
+def test_roughness_and_contact_area_hold_the_truth_between_their_bounds(outcome, campaign):
+    found = compare_surfaces(outcome, campaign.parent)
+    assert found.quantity.tolist() == ["rms_roughness_m", "rms_slope", "contact_area_ratio"]
+    assert (found.within_bounds == 1).all()
+    assert (found.relative_difference.abs() < 0.15).all()  # one scan only
+
+
+def test_spectrum_reaches_from_the_hertz_width_to_a_nanometre(outcome):
+    psd = read_netcdf(outcome.folder / "data/surface_Sb-R.nc", group="psd")
+    width = 2 * xu2026.system.half_width(31.0)
+    assert float(psd.wavenumber[0]) == pytest.approx(np.pi / width, rel=1e-12)
+    assert float(psd.wavenumber[-1]) == pytest.approx(np.pi / 1e-9, rel=1e-12)
+
+
+def test_tables_say_what_the_functions_give(outcome):
+    tables = {
+        name: pd.read_csv(outcome.folder / f"tables/{name}.csv")
+        for name in ("roughness", "contact", "adhesion")
+    }
+    psd = read_netcdf(outcome.folder / "data/surface_Sb-R.nc", group="psd")
+    [contact] = tables["contact"].to_dict("records")
+    pressure = float(hertz_mean_pressure(310.0, xu2026.contact))
+    assert contact["pressure_Pa"] == pressure
+    assert contact["contact_area_ratio"] == contact_area_ratio(pressure, psd, 2e6)
+    assert list(tables["roughness"].columns) == ["surface", *ROUGHNESS]
+    assert list(tables["contact"].columns) == ["surface", *CONTACT]
+    assert list(tables["adhesion"].columns) == ["surface", *ADHESION]
+    adhesion = tables["adhesion"].set_index("medium")
+    assert list(adhesion.index) == ["glycerol", "dry"]
+    assert adhesion.work_of_adhesion_J_m2.tolist() == [0.051, 0.064]
+    assert (adhesion.area_enhancement > 1.15).all()
+    assert adhesion.contact_area_ratio["dry"] > adhesion.contact_area_ratio["glycerol"]
+
+
+def test_every_value_lies_between_its_bounds(outcome):
+    for name in ("roughness", "contact", "adhesion"):
+        table = pd.read_csv(outcome.folder / f"tables/{name}.csv")
+        for column in table.columns[table.columns.str.contains("_low")]:
+            if column.startswith(("wavenumber", "measured")):
+                continue
+            value, high = column.replace("_low", ""), column.replace("_low", "_high")
+            assert (table[column] <= table[value]).all(), column
+            assert (table[value] <= table[high]).all(), column
+
+
+def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_path, profiles):
+    medium = PlannedMedium("dry", 0.3, 0.25, 0.35)  # strong enough for a pull-off force
+    surface = processed(tmp_path, profiles[:1], media=(medium,))
+    found = read_netcdf(tmp_path / surface.data_file, group="adhesion_loads")
+    psd = read_netcdf(tmp_path / surface.data_file, group="psd")
+    alone = macroscopic_work_of_adhesion(psd, 2e6, 0.3)
+    work = float(alone.macroscopic_work_of_adhesion)
+    assert float(found.macroscopic_work_of_adhesion[0]) == pytest.approx(work, rel=1e-9, abs=1e-12)
+    assert int(found.pull_off[0]) == int(alone.pull_off)
+    widths = 2 * jkr_half_width([310.0, 910.0], xu2026.contact, work)
+    np.testing.assert_allclose(found.contact_width[0], widths, rtol=1e-9)
+
+
+def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome):
+    report = json.loads((outcome.folder / "report.json").read_text())
+    jsonschema.validate(report, json.loads(SCHEMA.read_text()))
+    assert [surface["name"] for surface in report["surfaces"]] == ["Sb-R"]
+    kinds = [figure["kind"] for figure in report["surface_figures"]]
+    assert kinds == [
+        "spectra",
+        "contact_area",
+        "effective_work",
+        "adhesive_area",
+        "gaps",
+        "line_pressure",
+        "modulus",
+        "viscoelastic",
+    ]
+    assert all((outcome.folder / f["file"]).is_file() for f in report["surface_figures"])
+    page = (outcome.folder / "report.html").read_text()
+    assert 'id="surfaces"' in page and "Contact with adhesion" in page
+    bare = report | {"surfaces": [], "surface_figures": []}
+    assert "names no <code>[[surface]]</code>" in render(bare, outcome.folder)
+
+
+def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_path):
+    mine = copied(campaign, tmp_path)
+    again = run_campaign(mine, jobs=1)
+    assert again.surfaces[0].reused and again.surfaces[0].parts == outcome.surfaces[0].parts
+    assert again.sources == outcome.sources
+
+    loaded = load_campaign(mine)
+    data = outcome.folder / "data/surface_Sb-R.nc"
+
+    def known():
+        [surface] = plan_surfaces(load_campaign(mine), outcome.runs)
+        found = known_surface(data, surface)
+        return found is not None and found[0] == sources_of(surface)
+
+    assert known()
+    text = mine.read_text()
+    mine.write_text(text.replace('"64 mJ/m^2"', '"65 mJ/m^2"'))
+    assert not known()
+    mine.write_text(text)
+    assert known()
+    [scan] = loaded.raw.glob("profiles/*.csv")
+    scan.write_text(scan.read_text().replace(",0.", ",0.1", 1))
+    assert not known()
+
+
+# what is not known, or cannot be used
+
+
+def test_one_bad_scan_is_left_out_and_named(tmp_path, profiles):
+    bad = tmp_path / "sb-r_0.csv"
+    bad.write_text("# Surftest profile\nx [mm],z [um]\n0,1\n0.1,what\n")
+    surface = processed(tmp_path, [bad, *profiles[:2]])
+    assert surface.done
+    [message] = said(surface, "fail")
+    assert message.startswith("scan raw/sb-r_0.csv is left out: ")
+    assert "what" in message and str(tmp_path) not in message
+    found = read_netcdf(tmp_path / surface.data_file, group="roughness")
+    assert found.sizes["scan"] == 2
+
+
+def test_a_bad_scan_stands_in_the_findings_and_fails_the_command(campaign, outcome, tmp_path):
+    mine = copied(campaign, tmp_path)
+    (mine.parent / "raw/profiles/sb-r_2.csv").write_text("x [mm],z [um]\n1,2\n")
+    done = CliRunner().invoke(app, ["run", str(mine), "--quiet", "--jobs", "1"])
+    assert done.exit_code == 3
+    assert "surface Sb-R: scan raw/profiles/sb-r_2.csv is left out" in done.stderr
+    assert "1 of 1 surfaces: spectrum, contact, adhesion" in done.stdout
+    findings = pd.read_csv(mine.parent / "results/tables/findings.csv")
+    first = findings.iloc[0]
+    assert (first.severity, first["where"]) == ("fail", "surface Sb-R")
+    assert "sb-r_2.csv" in first.message
+
+
+def test_a_surface_without_a_usable_scan_fails_alone(tmp_path):
+    bad = tmp_path / "empty.csv"
+    bad.write_text("")
+    surface = processed(tmp_path, [bad])
+    assert (surface.status, surface.error) == ("failed", "AnalysisError")
+    assert "empty.csv" in surface.reason and surface.findings[0].severity == "fail"
+
+
+def test_a_scan_of_another_length_is_left_out(tmp_path, profiles):
+    surface = processed(tmp_path, profiles, contact=NOTHING_KNOWN)
+    assert said(surface, "suspect") == [
+        "scan raw/sb-r_3.csv is left out: it differs in pitch or length"
+    ]
+
+
+def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):
+    surface = processed(tmp_path, [])
+    assert surface.status == "skipped" and not surface.done
+    assert "no scans are named" in surface.findings[0].message
+
+
+def test_without_contact_there_is_a_spectrum_only(tmp_path, profiles):
+    surface = processed(tmp_path, profiles[:1], contact=NOTHING_KNOWN, lowest_force=None)
+    assert surface.parts == ("psd_1d", "psd", "roughness")
+    assert any("youngs_modulus" in message for message in said(surface, "note"))
+    assert any("begins where the scans do" in message for message in said(surface, "note"))
+    rows = surface_rows(surface, tmp_path)
+    assert rows.contact == rows.adhesion == [] and rows.roughness["rms_slope"] > 0.5
+
+
+def test_without_loads_contact_is_known_over_pressure_only(tmp_path, profiles):
+    medium = PlannedMedium("dry", 0.064, 0.064, 0.064)
+    surface = processed(tmp_path, profiles[:1], forces=(), lowest_force=None, media=(medium,))
+    assert set(surface.parts) == {
+        *("psd_1d", "psd", "roughness", "contact", "adhesion", "adhesion_loads")
+    }
+    rows = surface_rows(surface, tmp_path)
+    assert len(rows.contact) == 31 and rows.contact[0]["normal_force_N"] is None
+    [row] = rows.adhesion
+    assert row["pull_off"] == 0 and row["contact_area_ratio"] is None
+
+
+def test_a_stiff_body_is_no_rubber_unless_its_modulus_is_given(tmp_path, profiles):
+    steel = CONTACT_TABLE | {"youngs_modulus": 2e9}
+    surface = processed(tmp_path, profiles[:1], contact=steel)
+    assert "rubber" not in surface.parts
+    assert any("2e+03 MPa is no rubber" in message for message in said(surface, "note"))
+    file = tmp_path / "dma.csv"
+    file.write_text("f,E',E''\nHz,MPa,MPa\n1,2000,20\n100,2100,30\n10000,2300,50\n")
+    measured = processed(tmp_path, profiles[:1], contact=steel, modulus_file=(file, "raw/dma.csv"))
+    rubber = read_netcdf(tmp_path / measured.data_file, group="rubber")
+    assert rubber.attrs["modulus"] == "raw/dma.csv"
+    assert (rubber.friction_coefficient > 0).all()
+    assert not any("stand-in" in message for message in said(measured, "note"))
+
+
+def test_a_part_that_crashes_costs_only_itself(tmp_path, profiles, monkeypatch):
+    def crash(*args, **kwargs):
+        raise ZeroDivisionError("no gap")
+
+    monkeypatch.setattr("tribolab.contact.gap.gap_distribution", crash)
+    surface = processed(tmp_path, profiles[:1])
+    assert surface.done and "gap" not in surface.parts and "line" in surface.parts
+    [message] = said(surface, "error")
+    assert message.startswith("gap: crashed with ZeroDivisionError") and "no gap" in message
+
+
+def test_bounds_that_do_not_decide_the_pull_off_are_told(tmp_path, profiles):
+    medium = PlannedMedium("dry", 0.064, 0.01, 2.0)
+    surface = processed(tmp_path, profiles[:1], media=(medium,))
+    assert any("is not decided" in message for message in said(surface, "note"))
+
+
+def test_damaged_results_are_not_taken_over(tmp_path, profiles):
+    surface = processed(tmp_path, profiles[:1], contact=NOTHING_KNOWN)
+    plan = planned(profiles[:1], contact=NOTHING_KNOWN)
+    file = tmp_path / surface.data_file
+    assert known_surface(file, plan)[1] == replace(surface, reused=True, seconds=0.0)
+    assert known_surface(file, replace(plan, config_sha256="another")) is None
+    file.write_bytes(file.read_bytes()[:500])
+    assert known_surface(file, plan) is None
+    assert known_surface(tmp_path / "nowhere.nc", plan) is None
+
+
+# the campaign file
+
+
+def test_loads_come_from_the_runs_and_media_from_their_tables(campaign):
+    runs = [
+        RunOutcome(f"run{number}", (), surface, "dry", force, "done")
+        for number, (surface, force) in enumerate(
+            [("Sb-R", 91.0), ("Sb-R", 31.00001), ("Sb-R", 31.0), ("", 5.0), ("Sb-R", None)]
+        )
+    ]
+    [surface] = plan_surfaces(load_campaign(campaign), runs)
+    assert surface.forces == (31.0, 91.0) and surface.lowest_force == 5.0
+    assert [medium.name for medium in surface.media] == ["glycerol", "dry"]
+    assert surface.media[1].low < surface.media[1].work_of_adhesion < surface.media[1].high
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("poisson_ratio = 0.5", 'modulus_file = "dma.csv"', "there is no file"),
+        ('work_of_adhesion = "64 mJ/m^2"', "", "from below to above work_of_adhesion"),
+        ('name = "Sb-R"', 'name = "Sb-R"\ninstrument = "surftest"', "surftest_csv"),
+    ],
+)
+def test_mistakes_in_the_campaign_file_are_told(campaign, tmp_path, old, new, said):
+    mine = shutil.copytree(campaign.parent, tmp_path / "campaign") / campaign.name
+    mine.write_text(mine.read_text().replace(old, new, 1))
+    with pytest.raises(ConfigError, match=said):
+        load_campaign(mine)
