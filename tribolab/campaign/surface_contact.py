@@ -202,10 +202,13 @@ def _adhesion(
                 "contact_area_ratio",
                 "contact_area_ratio_no_adhesion",
                 "area_enhancement",
-                "effective_work_of_adhesion",
                 "apparent_contact_area_ratio",
             ]
         ].rename(pressure="load")
+        point["effective_work_of_adhesion"] = (
+            "wavenumber",
+            rest.effective_work_of_adhesion.values,
+        )
         macroscopic = float(rest.effective_work_of_adhesion[0])
         point["work_of_adhesion"] = medium.work_of_adhesion
         point["macroscopic_work_of_adhesion"] = macroscopic

@@ -194,8 +194,8 @@ _KINDS = {
     "effective_work": _Kind(
         "adhesion_loads",
         "Effective work of adhesion",
-        "Over the magnification, under {load}. Zero at magnification 1 means that adhesion "
-        "cannot be felt from outside at that load.",
+        "Over the magnification, at vanishing load. Zero at magnification 1 means that no force "
+        "is needed to pull the bodies apart.",
         _effective_work,
     ),
     "adhesive_area": _Kind(
