@@ -98,6 +98,12 @@ _ROWS = [
     ("max_pressure", "p_max", "Pa", "maximum contact pressure"),
     ("contact_width", "2a", "m", "width of the nominal contact"),
     ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
+    # lubrication: factors, profiles, curves
+    ("pressure_flow_factor", "\\phi_p", "1", "pressure flow factor"),
+    ("shear_flow_factor", "\\phi_s", "1", "shear flow factor"),
+    ("shear_stress_factor", "\\phi_f", "1", "friction factor of the mean shear"),
+    ("shear_stress_correction", "\\phi_fs", "1", "friction factor of roughness-born pressure"),
+    ("pressure_stress_factor", "\\phi_fp", "1", "friction factor of the pressure gradient"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
