@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import functools
+from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from scipy.special import erfinv
 
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import slope_quadrature
-from tribolab.contact.separation import separation_table
+from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
 from tribolab.surface.moments import rms_roughness, spectrum_arrays
@@ -184,25 +185,41 @@ def flow_factors(
     '0.99978 1.00010'
     """
     _check(rough_body, percolation)
-    height = rms_roughness(psd)
-    if height == 0:
+    if rms_roughness(psd) == 0:
         raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
+    q, spectrum = spectrum_arrays(psd)
+    smallest = positive(cutoff, "m", "cutoff")
+    return replace(
+        _tabulated(q.tobytes(), spectrum.tobytes(), percolation, smallest, gamma),
+        rough_body=rough_body,
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _tabulated(
+    q: bytes, spectrum: bytes, percolation: float, cutoff: float, gamma: float
+) -> FlowFactors:
+    """Tabulate a spectrum's factors; they hang on nothing else, so the last few are kept."""
+    psd = xr.Dataset(
+        {"psd_2d": ("wavenumber", np.frombuffer(spectrum))},
+        coords={"wavenumber": np.frombuffer(q)},
+    )
+    height = rms_roughness(psd)
     pressure_of = separation_table(psd, 1.0, gamma)
     slope = slope_quadrature(*spectrum_arrays(psd))[0].max()
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
     below = np.geomspace(min(_LOW * height, closing / 3), closing, _POINTS // 3)
-    smallest = positive(cutoff, "m", "cutoff")
     conductance, entrained, correction, inverse = _averages(
-        np.concatenate([below, above]), pressure_of, psd, percolation, smallest, gamma
+        np.concatenate([below, above]), pressure_of, psd, percolation, cutoff, gamma
     )
     first = below.size
     ends = 1 - percolation  # 1/d
     return FlowFactors(
         rms_roughness=height,
         percolation_separation=closing,
-        rough_body=rough_body,
-        model=f"effective medium, percolation at A/A0 = {percolation:g}, cut-off {smallest:g} m",
+        rough_body="stationary",
+        model=f"effective medium, percolation at A/A0 = {percolation:g}, cut-off {cutoff:g} m",
         _flow=_Table(
             above,
             np.stack([conductance[first:], entrained[first:]]),
@@ -271,7 +288,7 @@ class _Table:
 
 def _averages(
     u: np.ndarray,
-    pressure_of: object,
+    pressure_of: Separation,
     psd: xr.Dataset,
     percolation: float,
     cutoff: float,
@@ -280,7 +297,8 @@ def _averages(
     """phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
     pressure = pressure_of.pressure(u)
     flow, plain = (
-        gap_distribution(pressure, psd, 1.0, variant, gamma, cutoff) for variant in ("flow", "plain")
+        gap_distribution(pressure, psd, 1.0, variant, gamma, cutoff)
+        for variant in ("flow", "plain")
     )
     gap, weight = flow["gap"].values, flow["gap_weight"].values
     touching = flow["contact_area_ratio"].values

@@ -16,8 +16,8 @@ from tribolab.lubrication.mesh import Mesh
 LEAK = 1e-10
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
-_CONVERGED = 1e-11  # of the maximum pressure, and of the load
-_ROUNDING = 1e-9  # the same, where a further step no longer gains
+_CONVERGED = 1e-10  # of the maximum pressure, and of the load
+_ROUNDING = 1e-8  # the same, where a further step no longer gains
 
 
 class Problem(NamedTuple):
@@ -119,8 +119,10 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
             break
         before = error
         matrix, right = _linearised(problem, film)
-        _, _, change, info = lapack.dgesv(matrix, right, overwrite_a=True, overwrite_b=True)
-        if info != 0 or not np.all(np.isfinite(change)):
+        # the transpose is what LAPACK reads without a copy
+        factor, pivots, singular = lapack.dgetrf(matrix.T, overwrite_a=True)
+        change, _ = lapack.dgetrs(factor, pivots, right, trans=1, overwrite_b=True)
+        if singular or not np.all(np.isfinite(change)):
             raise NotConvergedError("the linearised equations are singular")
         largest = np.max(np.abs(change[:-1]) / state.film)
         part = min(1.0, _CAP / largest)
@@ -146,8 +148,6 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     front, through = _rupture(entrained, conductance) if couette > 0 else (0, 0.0)
     balance = scale * np.diff(flux)
     residual = np.append(balance[:front], fluid[front:])
-    highest = total.max()
-    size = highest + np.append((scale * entrained[1:])[:front], np.zeros(u.size - front))
     # the fluid's pressure once more, by the flux alone: exact to rounding also where it is small
     exact = np.zeros_like(u)
     exact[:front] = np.cumsum((entrained[:front] - through) / conductance[:front])
@@ -160,7 +160,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
         flux_slope=flux_slope,
         scale=scale,
         residual=residual,
-        error=float(np.max(np.abs(residual) / size)),
+        error=float(np.max(np.abs(fluid - exact)) / total.max()),
         lacking=abs(float(mesh.width @ total / problem.load - 1)),
     )
 
@@ -172,11 +172,12 @@ def _linearised(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
     before, after = -full * film.conductance[:-1], -full * film.conductance[1:]
     # a face's film is the mean of its two cells'; at the ends it is the cell's own
     left, right = full * film.flux_slope[:-1] / 2, full * film.flux_slope[1:] / 2
-    matrix = np.empty((n + 1, n + 1), order="F")
-    for part, elastic in ((matrix[:n, :n], mesh.stiffness), (matrix[:n, n], -mesh.lift)):
-        part[:] = elastic
-        part[1:] += (before[1:] * elastic[:-1].T).T
-        part[:-1] += (after[:-1] * elastic[1:].T).T
+    elastic = np.column_stack([mesh.stiffness, -mesh.lift])
+    matrix = np.empty((n + 1, n + 1))
+    matrix[:n] = elastic
+    wet = slice(1, front), slice(0, min(front, n - 1))  # cells of the full film but for the ends
+    matrix[wet[0]] += before[wet[0], None] * elastic[: max(front - 1, 0)]
+    matrix[wet[1]] += after[wet[1], None] * elastic[1 : wet[1].stop + 1]
     i = np.arange(n)
     matrix[i, i] += right - left - film.yielding
     matrix[0, 0] -= left[0]

@@ -1,0 +1,222 @@
+"""From the dry contact up in speed: scales, a state to start from, and a step that never jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.line import line_kernel, rough_line_contact
+from tribolab.contact.separation import Separation
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mesh import graded_mesh
+from tribolab.lubrication.mixed import (
+    NotConvergedError,
+    Problem,
+    Solution,
+    State,
+    couette_number,
+    solve_speed,
+)
+
+_INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
+_SUBSTEPS = 400  # speeds on the way that the caller did not ask for
+_DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
+
+
+def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
+    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
+
+    Notes
+    -----
+    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
+    """
+    radius, stiff = contact.radius, 2 * contact.effective_modulus
+    entrained = viscosity * speed / 2
+    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
+    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
+
+
+def lubrication_problem(
+    contact: LineContact,
+    separation: Separation | None,
+    factors: FlowFactors,
+    load: float,
+    films: tuple[float, float],
+    cells: int,
+    domain: float,
+) -> Problem:
+    """Choose scales and mesh.
+
+    Parameters
+    ----------
+    contact, separation, factors
+        Geometry, contact law (none if smooth) and flow.
+    load
+        F_N/L [N/m].
+    films
+        `film_estimate` [m] at the lowest and the highest speed.
+    cells
+        Cells of the mesh.
+    domain
+        Length of the domain over the default, which is 6 half-widths before the middle and 5
+        behind it; roughness and thick films count as half-width as far as they widen the contact.
+    """
+    a, radius = float(hertz_half_width(load, contact)), contact.radius
+    decay = separation.decay_length if separation else 0.0
+    half_width = np.sqrt(a**2 + 4 * radius * decay)
+    gap = half_width**2 / (2 * radius)
+    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
+    edge = (max(decay, films[0]) / gap / 1.9) ** (2 / 3)
+    reach = np.sqrt(1 + 2 * radius * films[1] / half_width**2) * domain
+    mesh = graded_mesh(
+        cells,
+        _rounded(np.clip(edge, 2e-3, 0.5)),
+        _rounded(_INLET * reach),
+        _rounded(_OUTLET * reach),
+    )
+    pressure = contact.effective_modulus * gap / half_width
+    return Problem(
+        mesh, factors, separation, load / (pressure * half_width), half_width, gap, pressure
+    )
+
+
+def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: float) -> State:
+    """Solve the contact at rest on the problem's own mesh.
+
+    Raises
+    ------
+    AnalysisError
+        If the roughness is pressed flat.
+    NotConvergedError
+        If Newton's method fails.
+    """
+    gamma = problem.separation.gamma if problem.separation else 0.45
+    dry = rough_line_contact(load, contact, psd, gamma)
+    x = problem.mesh.x * problem.half_width
+    pressure = np.interp(x, dry.x.values, dry.pressure.values, left=0.0, right=0.0)
+    shape = _gap_under(problem, pressure / problem.pressure)
+    known = np.interp(x, dry.x.values, dry.separation.values) / problem.gap
+    middle = int(np.argmax(pressure))
+    constant = float(known[middle] - shape[middle])
+    inside = np.abs(x) <= dry.x.values[-1]
+    film = np.where(inside, known, np.maximum(shape + constant, known))
+    return solve_speed(problem, 0.0, State(film, constant)).state
+
+
+def wet_state(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, film: float, speed: float
+) -> State:
+    """Find a state between smooth surfaces at one speed, from the Hertz contact on a cushion.
+
+    A repulsion that ends at a third of the film [m] expected there stands in for the contact until
+    the fluid carries the load: as with roughness, rising speed lifts the bodies off it.
+    """
+    x = problem.mesh.x * problem.half_width
+    pressure = hertz_pressure(x, load, contact) / problem.pressure
+    shape = _gap_under(problem, pressure * problem.load / (problem.mesh.width @ pressure))
+    constant = film / 3 / problem.gap - float(shape.min())
+    cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
+    rest = solve_speed(cushion, 0.0, State(shape + constant, constant)).state
+    return sweep(cushion, viscosity, [speed], rest)[-1].state
+
+
+class _Cushion(NamedTuple):
+    """p = p_max exp(10 - 30 u/film): p_max at a third of the film, nothing at the whole."""
+
+    highest: float  # p_max [Pa]
+    film: float  # [m]
+
+    def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        pressure = self.highest * np.exp(10 - 30 * separation / self.film)
+        return pressure, -30 / self.film * pressure
+
+
+def sweep(
+    problem: Problem, viscosity: float, speeds: Sequence[float], start: State
+) -> list[Solution]:
+    """Solve at rising speeds, each from the ones before it.
+
+    Parameters
+    ----------
+    problem
+        What is to be solved.
+    viscosity
+        [Pa s].
+    speeds
+        [m/s], rising, above zero.
+    start
+        Where to start: the dry contact, or the state at the first speed.
+
+    Raises
+    ------
+    AnalysisError
+        If a speed cannot be reached; the message says what to change.
+
+    Notes
+    -----
+    ln u goes on in ln v by the secant through the last two speeds. Where Newton's method fails,
+    the step in ln v is halved.
+    """
+    solved: list[Solution] = []
+    known: list[tuple[float, State]] = []  # ln v and state of the last two, the newest last
+    budget = _SUBSTEPS
+    for speed in speeds:
+        target = np.log(speed)
+        aims = [target]
+        while aims:
+            aim = aims[-1]
+            try:
+                found = solve_speed(
+                    problem,
+                    couette_number(problem, viscosity, float(np.exp(aim))),
+                    _predicted(known, start, aim),
+                )
+            except NotConvergedError as error:
+                budget -= 1
+                closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
+                stuck = budget < 0 or (known and aim - known[-1][0] < 1e-3)
+                if stuck or (not known and closer < target - _DECADES * np.log(10)):
+                    raise _lost(problem, float(np.exp(aim)), error) from error
+                aims.append(closer)
+                continue
+            known = [*known[-1:], (aim, found.state)]
+            aims.pop()
+        solved.append(found)
+    return solved
+
+
+def _predicted(known: list[tuple[float, State]], start: State, aim: float) -> State:
+    if not known:
+        return start
+    (at, last) = known[-1]
+    if len(known) == 1:
+        return last
+    before, first = known[0]
+    part = min((aim - at) / (at - before), 3.0)
+    growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
+    return State(last.film * growth, last.constant + part * (last.constant - first.constant))
+
+
+def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
+    mesh = problem.mesh
+    return mesh.x**2 + line_kernel(mesh.x, mesh.width, 1.0) @ pressure
+
+
+def _rounded(value: float) -> float:
+    """Two digits, so that neighbouring loads and speeds share a mesh."""
+    return float(f"{value:.2g}")
+
+
+def _lost(problem: Problem, speed: float, error: Exception) -> AnalysisError:
+    cells = problem.mesh.x.size
+    return AnalysisError(
+        f"stribeck_curve: no solution at {speed:.4g} m/s on {cells} cells ({error}); take more "
+        "cells, add speeds below it, or leave this speed out"
+    )
