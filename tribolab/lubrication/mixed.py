@@ -17,7 +17,7 @@ LEAK = 1e-10
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-10  # of the maximum pressure, and of the load
-_ROUNDING = 1e-8  # the same, where a further step no longer gains
+_ROUNDING = 1e-6  # the same, where a further step no longer gains
 
 
 class Problem(NamedTuple):

@@ -295,21 +295,26 @@ def _solve(system: _System, force: float, speeds: np.ndarray) -> tuple[Problem, 
         system.cells,
         system.domain,
     )
-    rest = []
+    at_ends = [(film, float(v)) for film, v in zip(films, ends, strict=True)]
+
+    def lifted(end: int) -> State:
+        film, v = at_ends[end]
+        return wet_state(problem, system.contact, system.viscosity, force, film, v)
+
+    rest, start = [], None
     try:
         if system.psd is None:
-            start = wet_state(
-                problem, system.contact, system.viscosity, force, films[0], float(ends[0])
-            )
+            start = lifted(0)
         else:
             start = dry_state(problem, system.contact, system.psd, force)
-            rest = [solve_speed(problem, 0.0, start)] if moving.size < speeds.size else []
+        if moving.size < speeds.size:
+            rest = [solve_speed(problem, 0.0, start)]
     except NotConvergedError as error:
         raise AnalysisError(
             f"stribeck_curve: the contact at rest at {force:g} N/m has no solution on "
             f"{system.cells} cells ({error}); take more cells"
         ) from error
-    return problem, rest + sweep(problem, system.viscosity, moving, start)
+    return problem, rest + sweep(problem, system.viscosity, moving, start, lambda: lifted(1))
 
 
 def _curve(

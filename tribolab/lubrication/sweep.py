@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +25,8 @@ from tribolab.lubrication.mixed import (
 )
 
 _INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
-_SUBSTEPS = 400  # speeds on the way that the caller did not ask for
+_SUBSTEPS = 100  # failures on the way that are forgiven
+_FINEST = 1e-2  # smallest step in ln v
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
 
 
@@ -139,7 +140,11 @@ class _Cushion(NamedTuple):
 
 
 def sweep(
-    problem: Problem, viscosity: float, speeds: Sequence[float], start: State
+    problem: Problem,
+    viscosity: float,
+    speeds: Sequence[float],
+    start: State | None,
+    lifted: Callable[[], State] | None = None,
 ) -> list[Solution]:
     """Solve at rising speeds, each from the ones before it.
 
@@ -152,7 +157,10 @@ def sweep(
     speeds
         [m/s], rising, above zero.
     start
-        Where to start: the dry contact, or the state at the first speed.
+        Where to start: the dry contact, or the state at the first speed; None for nowhere.
+    lifted
+        Gives a guess at the last speed. Where the contact percolates, rising speed lifts it at
+        once and not by and by: the speeds beyond are then solved from the last one downwards.
 
     Raises
     ------
@@ -164,32 +172,46 @@ def sweep(
     ln u goes on in ln v by the secant through the last two speeds. Where Newton's method fails,
     the step in ln v is halved.
     """
+    speeds = list(speeds)
+    solved, lost = _march(problem, viscosity, speeds, start) if start else ([], None)
+    if len(solved) < len(speeds) and lifted is not None:
+        rest = speeds[len(solved) :][::-1]
+        try:
+            above, lost = _march(problem, viscosity, rest, lifted())
+        except NotConvergedError as error:
+            raise _lost(problem, rest[0], lost or error) from error
+        solved = solved + above[::-1] if lost is None else solved
+    if lost is not None:
+        raise _lost(problem, speeds[len(solved)], lost) from lost
+    return solved
+
+
+def _march(
+    problem: Problem, viscosity: float, speeds: list[float], start: State
+) -> tuple[list[Solution], NotConvergedError | None]:
+    """Go through the speeds in their order; what was solved, and why it ended early if it did."""
     solved: list[Solution] = []
     known: list[tuple[float, State]] = []  # ln v and state of the last two, the newest last
     budget = _SUBSTEPS
     for speed in speeds:
-        target = np.log(speed)
-        aims = [target]
+        aims = [np.log(speed)]
         while aims:
             aim = aims[-1]
+            number = couette_number(problem, viscosity, float(np.exp(aim)))
             try:
-                found = solve_speed(
-                    problem,
-                    couette_number(problem, viscosity, float(np.exp(aim))),
-                    _predicted(known, start, aim),
-                )
+                found = solve_speed(problem, number, _predicted(known, start, aim))
             except NotConvergedError as error:
                 budget -= 1
                 closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
-                stuck = budget < 0 or (known and aim - known[-1][0] < 1e-3)
-                if stuck or (not known and closer < target - _DECADES * np.log(10)):
-                    raise _lost(problem, float(np.exp(aim)), error) from error
+                gain = abs(aim - known[-1][0]) > _FINEST if known else len(aims) < _DECADES
+                if budget < 0 or not gain:
+                    return solved, error
                 aims.append(closer)
                 continue
             known = [*known[-1:], (aim, found.state)]
             aims.pop()
         solved.append(found)
-    return solved
+    return solved, None
 
 
 def _predicted(known: list[tuple[float, State]], start: State, aim: float) -> State:
