@@ -30,6 +30,7 @@ from tribolab.lubrication.mixed import (
 from tribolab.lubrication.sweep import (
     dry_state,
     film_estimate,
+    lifted_state,
     lubrication_problem,
     sweep,
     wet_state,
@@ -295,26 +296,32 @@ def _solve(system: _System, force: float, speeds: np.ndarray) -> tuple[Problem, 
         system.cells,
         system.domain,
     )
-    at_ends = [(film, float(v)) for film, v in zip(films, ends, strict=True)]
-
-    def lifted(end: int) -> State:
-        film, v = at_ends[end]
-        return wet_state(problem, system.contact, system.viscosity, force, film, v)
-
-    rest, start = [], None
+    around = problem, system.contact, system.viscosity, force
+    rest, start, no_start = [], None, None
     try:
         if system.psd is None:
-            start = lifted(0)
+            start = wet_state(*around, float(ends[0]))
         else:
             start = dry_state(problem, system.contact, system.psd, force)
         if moving.size < speeds.size:
             rest = [solve_speed(problem, 0.0, start)]
-    except NotConvergedError as error:
-        raise AnalysisError(
-            f"stribeck_curve: the contact at rest at {force:g} N/m has no solution on "
-            f"{system.cells} cells ({error}); take more cells"
-        ) from error
-    return problem, rest + sweep(problem, system.viscosity, moving, start, lambda: lifted(1))
+    except (AnalysisError, NotConvergedError) as error:
+        no_start = error
+    if no_start and (system.psd is None or moving.size < speeds.size):
+        raise AnalysisError(f"the contact at {speeds[0]:g} m/s: {no_start}") from no_start
+    try:
+        solutions = sweep(
+            problem,
+            system.viscosity,
+            moving,
+            start,
+            lambda: lifted_state(*around, float(ends[1])),
+        )
+    except AnalysisError as error:
+        if no_start:
+            raise AnalysisError(f"{error}; at rest: {no_start}") from error
+        raise
+    return problem, rest + solutions
 
 
 def _curve(

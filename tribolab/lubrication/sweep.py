@@ -14,7 +14,7 @@ from tribolab.contact.line import line_kernel, rough_line_contact
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import FlowFactors
-from tribolab.lubrication.mesh import graded_mesh
+from tribolab.lubrication.mesh import Mesh, graded_mesh
 from tribolab.lubrication.mixed import (
     NotConvergedError,
     Problem,
@@ -27,6 +27,7 @@ from tribolab.lubrication.mixed import (
 _INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
 _SUBSTEPS = 100  # failures on the way that are forgiven
 _FINEST = 1e-2  # smallest step in ln v
+_THICK = 5.0  # roughnesses
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
 
 
@@ -107,24 +108,49 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
     constant = float(known[middle] - shape[middle])
     inside = np.abs(x) <= dry.x.values[-1]
     film = np.where(inside, known, np.maximum(shape + constant, known))
-    return solve_speed(problem, 0.0, State(film, constant)).state
+    return solve_speed(problem, 0.0, _bent(problem, film, constant)).state
+
+
+def lifted_state(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+) -> State:
+    """Find a state at one speed from above, where the film is thick beside the roughness.
+
+    Raises
+    ------
+    NotConvergedError
+        If there is none.
+    """
+    above, roughness = speed, problem.factors.rms_roughness
+    while film_estimate(contact, viscosity, load, above) < _THICK * roughness:
+        above *= 2
+    start = wet_state(problem, contact, viscosity, load, above)
+    down = np.geomspace(above, speed, 1 + int(np.ceil(4 * np.log10(above / speed))))
+    solved, lost = _march(problem, viscosity, list(down), start)
+    if lost is not None:
+        raise lost
+    return solved[-1].state
 
 
 def wet_state(
-    problem: Problem, contact: LineContact, viscosity: float, load: float, film: float, speed: float
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
 ) -> State:
     """Find a state between smooth surfaces at one speed, from the Hertz contact on a cushion.
 
-    A repulsion that ends at a third of the film [m] expected there stands in for the contact until
+    A repulsion that ends at a third of the film expected there stands in for the contact until
     the fluid carries the load: as with roughness, rising speed lifts the bodies off it.
     """
+    film = film_estimate(contact, viscosity, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
     shape = _gap_under(problem, pressure * problem.load / (problem.mesh.width @ pressure))
     constant = film / 3 / problem.gap - float(shape.min())
     cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
-    rest = solve_speed(cushion, 0.0, State(shape + constant, constant)).state
-    return sweep(cushion, viscosity, [speed], rest)[-1].state
+    rest = solve_speed(cushion, 0.0, _bent(problem, shape + constant, constant)).state
+    solved, lost = _march(cushion, viscosity, [speed], rest)
+    if lost is not None:
+        raise lost
+    return solved[-1].state
 
 
 class _Cushion(NamedTuple):
@@ -199,7 +225,7 @@ def _march(
             aim = aims[-1]
             number = couette_number(problem, viscosity, float(np.exp(aim)))
             try:
-                found = solve_speed(problem, number, _predicted(known, start, aim))
+                found = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
             except NotConvergedError as error:
                 budget -= 1
                 closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
@@ -214,7 +240,12 @@ def _march(
     return solved, None
 
 
-def _predicted(known: list[tuple[float, State]], start: State, aim: float) -> State:
+def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
+    mesh = problem.mesh
+    return State(film, constant, mesh.stiffness @ (film - constant - mesh.x**2))
+
+
+def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: float) -> State:
     if not known:
         return start
     (at, last) = known[-1]
@@ -223,7 +254,7 @@ def _predicted(known: list[tuple[float, State]], start: State, aim: float) -> St
     before, first = known[0]
     part = min((aim - at) / (at - before), 3.0)
     growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
-    return State(last.film * growth, last.constant + part * (last.constant - first.constant))
+    return last.moved(mesh, last.film * (growth - 1), part * (last.constant - first.constant))
 
 
 def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
