@@ -62,31 +62,34 @@ class FlowFactors:
         Which of the two bodies is rough; sets the sign of phi_s.
     model
         What the factors come from, for the attributes of results.
+    flow, friction
+        Tables of phi_p and (u + h_rms phi_s)/u for a rough body at rest; and of phi_f, phi_fs and,
+        where reciprocity does not give it, phi_fp. None if smooth.
     """
 
     rms_roughness: float
     percolation_separation: float
     rough_body: RoughBody
     model: str
-    _flow: _Table | None = field(default=None, repr=False)
-    _friction: _Table | None = field(default=None, repr=False)
+    flow: FactorTable | None = field(default=None, repr=False)
+    friction: FactorTable | None = field(default=None, repr=False)
 
     def at(self, separation: np.ndarray) -> Factors:
         """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
         u = np.asarray(separation, dtype=float)
-        if self._flow is None or self._friction is None:
+        if self.flow is None or self.friction is None:
             one, zero = np.ones_like(u), np.zeros_like(u)
             return Factors(one, zero, one, zero, one)
-        phi_p, open_flow = self._flow(u)[0]
-        phi_f, phi_fs = self._friction(u)[0]
+        phi_p, open_flow = self.flow(u)[0]
+        phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)
-        return Factors(phi_p, phi_s, phi_f, phi_fs, open_flow)
+        return Factors(phi_p, phi_s, phi_f, phi_fs, *(phi_fp or [open_flow]))
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
         """phi_p and the entrained separation u + h_rms phi_s [m], each with its slope over u."""
-        if self._flow is None:
+        if self.flow is None:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
-        (phi_p, part), (phi_p_slope, part_slope) = self._flow(u)
+        (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
         # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body carries its valleys along
         share, rate = (part, part_slope) if self._sign < 0 else (2 - part, -part_slope)
         return phi_p, phi_p_slope, u * share, share + u * rate
@@ -142,7 +145,7 @@ def flow_factors(
     Returns
     -------
     FlowFactors
-        Frozen table; it depends on the surface only, not on modulus or load.
+        Frozen table of the surface; modulus and load do not enter.
 
     Raises
     ------
@@ -169,8 +172,8 @@ def flow_factors(
     References
     ----------
     .. [1] D. A. G. Bruggeman, Ann. Phys. 416, 636 (1935). doi:10.1002/andp.19354160705
-    .. [2] M. Scaraggi, B. N. J. Persson, R. Xu et al., Eqs. (1)-(4) of "Adhesion-controlled
-       sliding and the Stribeck curve in hydrophobic soft contacts" (2026).
+    .. [2] B. N. J. Persson, M. Scaraggi, Eur. Phys. J. E 34, 113 (2011).
+       doi:10.1140/epje/i2011-11113-9
     .. [3] J. H. Tripp, J. Lubr. Technol. 105, 458 (1983). doi:10.1115/1.3254641
 
     Examples
@@ -184,7 +187,11 @@ def flow_factors(
     >>> f"{float(far.phi_p):.5f} {float(far.phi_f):.5f}"
     '0.99978 1.00010'
     """
-    _check(rough_body, percolation)
+    check_rough_body(rough_body)
+    if not 0 < percolation < 1:
+        raise AnalysisError(
+            f"percolation: a relative contact area between 0 and 1 is wanted; got {percolation:g}"
+        )
     if rms_roughness(psd) == 0:
         raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
     q, spectrum = spectrum_arrays(psd)
@@ -220,14 +227,14 @@ def _tabulated(
         percolation_separation=closing,
         rough_body="stationary",
         model=f"effective medium, percolation at A/A0 = {percolation:g}, cut-off {cutoff:g} m",
-        _flow=_Table(
+        flow=FactorTable(
             above,
             np.stack([conductance[first:], entrained[first:]]),
             closing,
             -np.array([9 * ends - 3, 3 * ends]) * height**2,
             np.ones(2),
         ),
-        _friction=_Table(
+        friction=FactorTable(
             np.concatenate([below, above]),
             np.stack([inverse, correction]),
             0.0,
@@ -239,45 +246,48 @@ def _tabulated(
 
 def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
     """Factors between smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
+    check_rough_body(rough_body)
     return FlowFactors(0.0, 0.0, rough_body, "smooth")
 
 
 @dataclass(frozen=True, eq=False)
-class _Table:
-    """Two factors, each a monotone cubic in ln phi over ln(u - origin), with their far ends.
+class FactorTable:
+    """Some factors, each a monotone cubic in ln phi over ln(u - origin), with their far ends.
 
     Beyond the last node phi = limit + A(u)/u^2, A going to its known value as 1/u^2 does; below
     the first the power law of the first cell goes on.
     """
 
     u: np.ndarray
-    values: np.ndarray  # (2, u)
+    values: np.ndarray  # (factor, u)
     origin: float
-    coefficient: np.ndarray  # of 1/u^2 at infinity (2)
-    limit: np.ndarray  # at infinity (2)
+    coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
+    limit: np.ndarray  # at infinity (factor)
 
     def __post_init__(self) -> None:
+        """Fit the curve once."""
         log_u = np.log(self.u - self.origin)
         curve = PchipInterpolator(log_u, np.log(self.values), axis=1)
         object.__setattr__(self, "_curve", curve)
         object.__setattr__(self, "_slope", curve.derivative())
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values and slopes over u, each (2, shape of u)."""
+        """Values and slopes over u, each (factor, shape of u)."""
         distance = np.maximum(u - self.origin, 0)
         first, last = self._curve.x[[0, -1]]
         with np.errstate(divide="ignore"):
             log_u = np.log(distance)
         inside = np.clip(log_u, first, last)
         rate = self._slope(inside)
-        below = np.minimum(log_u - first, 0)
-        with np.errstate(invalid="ignore", over="ignore"):
-            value = np.exp(self._curve(inside) + np.where(below < 0, rate * below, 0))
+        below = np.clip(log_u - first, -1e3, 0)
+        value = np.exp(self._curve(inside) + rate * below)
+        value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # a power's end, or a level
+        with np.errstate(invalid="ignore", divide="ignore"):
             slope = np.where(distance > 0, value * rate / distance, 0)
         end = self.u[-1]
         if not np.any(u > end):
             return value, slope
-        shape = (2,) + (1,) * np.ndim(u)
+        shape = (-1,) + (1,) * np.ndim(u)
         c, limit = self.coefficient.reshape(shape), self.limit.reshape(shape)
         excess = (self.values[:, -1].reshape(shape) - limit) * end**2 - c
         with np.errstate(divide="ignore"):
@@ -340,11 +350,8 @@ def _effective(
     return np.where(opens, np.exp((low + high) / 2), 0.0)
 
 
-def _check(rough_body: str, percolation: float) -> None:
-    if rough_body not in ("stationary", "moving"):
-        known = ["stationary", "moving"]
+def check_rough_body(rough_body: str) -> None:
+    """Raise an AnalysisError unless it is a `RoughBody`."""
+    known = ["stationary", "moving"]
+    if rough_body not in known:
         raise AnalysisError(f"rough_body: '{rough_body}' is none{nearest(rough_body, known)}")
-    if not 0 < percolation < 1:
-        raise AnalysisError(
-            f"percolation: a relative contact area between 0 and 1 is wanted; got {percolation:g}"
-        )

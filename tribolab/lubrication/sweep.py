@@ -205,10 +205,10 @@ def sweep(
         try:
             above, lost = _march(problem, viscosity, rest, lifted())
         except NotConvergedError as error:
-            raise _lost(problem, rest[0], lost or error) from error
+            raise _lost(problem, viscosity, rest[0], lost or error) from error
         solved = solved + above[::-1] if lost is None else solved
     if lost is not None:
-        raise _lost(problem, speeds[len(solved)], lost) from lost
+        raise _lost(problem, viscosity, speeds[len(solved)], lost) from lost
     return solved
 
 
@@ -267,9 +267,13 @@ def _rounded(value: float) -> float:
     return float(f"{value:.2g}")
 
 
-def _lost(problem: Problem, speed: float, error: Exception) -> AnalysisError:
+def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) -> AnalysisError:
+    radius = problem.half_width**2 / (2 * problem.gap)
+    load = problem.load * problem.pressure * problem.half_width
+    rigid = 2.45 * viscosity * speed * radius / load
+    if rigid > radius / 10:
+        cure = f"its film of about {rigid:.2g} m is not thin beside the radius: leave it out"
+    else:
+        cure = "take more cells, add speeds beside it, or leave it out"
     cells = problem.mesh.x.size
-    return AnalysisError(
-        f"stribeck_curve: no solution at {speed:.4g} m/s on {cells} cells ({error}); take more "
-        "cells, add speeds below it, or leave this speed out"
-    )
+    return AnalysisError(f"no solution at {speed:.4g} m/s on {cells} cells ({error}); {cure}")
