@@ -13,11 +13,10 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import erfinv
 
 from tribolab.contact.gap import gap_distribution
-from tribolab.contact.persson import slope_quadrature
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
-from tribolab.surface.moments import rms_roughness, spectrum_arrays
+from tribolab.surface.moments import cumulative, rms_roughness, spectrum_arrays
 from tribolab.units import positive
 
 PERCOLATION = 0.42  # relative contact area at which the last open channel closes
@@ -213,7 +212,7 @@ def _tabulated(
     )
     height = rms_roughness(psd)
     pressure_of = separation_table(psd, 1.0, gamma)
-    slope = slope_quadrature(*spectrum_arrays(psd))[0].max()
+    slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
     below = np.geomspace(min(_LOW * height, closing / 3), closing, _POINTS // 3)

@@ -75,7 +75,7 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
             height * mean,
             np.stack([mean * _mean_inverse(above), correction, drag]),
             0.0,
-            np.zeros(3),
+            np.array([height**2, 0.0, 0.0]),
             np.array([1.0, 0.0, 1.0]),
         ),
     )

@@ -78,7 +78,7 @@ def lubrication_problem(
     reach = np.sqrt(1 + 2 * radius * films[1] / half_width**2) * domain
     mesh = graded_mesh(
         cells,
-        _rounded(np.clip(edge, 2e-3, 0.5)),
+        _rounded(np.clip(edge, 3e-4, 0.5)),
         _rounded(_INLET * reach),
         _rounded(_OUTLET * reach),
     )
