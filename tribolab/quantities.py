@@ -134,6 +134,27 @@ _ROWS = [
     ("storage_modulus", "E'", "Pa", "storage modulus"),
     ("loss_modulus", "E''", "Pa", "loss modulus"),
     ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
+    # lubrication: factors, profiles, curves
+    ("pressure_flow_factor", "\\phi_p", "1", "pressure flow factor"),
+    ("shear_flow_factor", "\\phi_s", "1", "shear flow factor"),
+    ("shear_stress_factor", "\\phi_f", "1", "friction factor of the mean shear"),
+    ("shear_stress_correction", "\\phi_fs", "1", "friction factor of roughness-born pressure"),
+    ("pressure_stress_factor", "\\phi_fp", "1", "friction factor of the pressure gradient"),
+    ("contact_pressure", "p_cont", "Pa", "pressure carried by the solid contact"),
+    ("fluid_pressure", "p_fluid", "Pa", "pressure carried by the fluid"),
+    ("friction_coefficient_couette", "\\mu_C", "1", "friction by shear of the fluid"),
+    ("friction_coefficient_pressure", "\\mu_p", "1", "friction by the fluid's pressure gradient"),
+    ("friction_coefficient_solid", "\\mu_s", "1", "friction by shear in the solid contact"),
+    ("friction_per_shear_stress", "a", "1/Pa", "real contact area per normal force"),
+    ("minimum_separation", "u_min", "m", "smallest mean separation"),
+    ("solid_load_share", "", "1", "share of the load carried by the solid contact"),
+    ("residual", "", "1", "largest error of pressure over the largest pressure"),
+    ("load_balance", "", "1", "relative error of the load"),
+    ("flux_variation", "", "1", "relative spread of the flux over the full film"),
+    ("iterations", "", "1", "steps of Newton's method"),
+    # comparison
+    ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
+    ("used", "", "1", "1 where the point was fitted, else 0"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}

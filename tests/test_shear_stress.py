@@ -1,0 +1,205 @@
+"""The shear-stress fit: known truth back, error bars that cover it, misfits that are seen."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from contact_cases import CONTACT, reference_psd, target
+from scipy import stats
+
+from tribolab.compare.shear_stress import fit_shear_stress, runs_p_value, shear_stress_ratio
+from tribolab.errors import AnalysisError, UnitError
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.studies import xu2026
+
+SPEEDS = np.array(xu2026.SPEEDS)
+PSD = reference_psd("Sb-S")
+TRUE = 0.84e6
+EXACT = stribeck_curve(CONTACT, PSD, 1.4, 310.0, TRUE, SPEEDS)
+
+
+def measured(noise: float, seed: int = 0, bias: np.ndarray | float = 0.0) -> xr.Dataset:
+    mu = EXACT.friction_coefficient.values
+    rng = np.random.default_rng(seed)
+    return xr.Dataset(
+        {
+            "friction_coefficient": ("sliding_speed", mu + bias + noise * rng.normal(size=mu.size)),
+            "friction_coefficient_sem": ("sliding_speed", np.full(mu.size, noise)),
+        },
+        coords={"sliding_speed": SPEEDS},
+    )
+
+
+def fit(data: xr.Dataset, **options):
+    return fit_shear_stress(data, CONTACT, PSD, "1.4 Pa s", "310 N/m", **options)
+
+
+def test_the_truth_comes_back_from_exact_data():
+    found = fit(measured(1e-9))
+    assert found.shear_stress == pytest.approx(TRUE, rel=1e-7)
+    np.testing.assert_allclose(
+        found.curve.friction_coefficient, EXACT.friction_coefficient, rtol=1e-6
+    )
+
+
+def test_the_error_bar_is_that_of_the_scatter_it_predicts():
+    """Three hundred noisy copies: spread, coverage and chi-square are what theory says."""
+    area = EXACT.friction_per_shear_stress.values
+    pulls, squares = [], []
+    first = fit(measured(0.02))
+    for seed in range(300):
+        mu = measured(0.02, seed).friction_coefficient.values
+        fluid = EXACT.friction_coefficient.values - TRUE * area
+        stress = area @ (mu - fluid) / (area @ area)
+        pulls.append((stress - TRUE) / first.shear_stress_error)
+        squares.append(np.sum((mu - fluid - stress * area) ** 2) / 0.02**2)
+    assert first.shear_stress_error == pytest.approx(0.02 / np.sqrt(area @ area), rel=1e-9)
+    assert np.std(pulls) == pytest.approx(1, abs=0.12)
+    assert stats.kstest(squares, stats.chi2(first.degrees_of_freedom).cdf).pvalue > 0.01
+    mine = [fit(measured(0.02, seed)) for seed in range(3)]
+    assert [f.shear_stress for f in mine] == pytest.approx(
+        [TRUE + pull * first.shear_stress_error for pull in pulls[:3]]
+    )
+    assert [f.chi_square for f in mine] == pytest.approx(squares[:3])
+
+
+def test_a_good_fit_is_valid_everywhere_and_not_inflated():
+    found = fit(measured(0.02, seed=1))
+    assert found.chi_square_p_value > 0.01
+    assert found.runs_p_value > 0.01
+    assert found.valid_speed_range == (SPEEDS[0], SPEEDS[-1])
+    assert found.shear_stress_error_inflated == pytest.approx(
+        found.shear_stress_error * max(1, found.birge_ratio)
+    )
+    assert found.error_from == "sem"
+
+
+def test_a_wrong_shape_is_seen_by_chi_square_and_runs_and_bounds_the_range():
+    wrong = 0.3 * (SPEEDS < 5e-6)  # another sliding mode at low speed
+    found = fit(measured(0.01, bias=wrong))
+    assert found.chi_square_p_value < 1e-6
+    assert found.birge_ratio > 3
+    assert found.shear_stress_error_inflated > 3 * found.shear_stress_error
+    assert found.valid_speed_range[0] > 4e-6
+    again = fit(measured(0.01, bias=wrong), speed_range=("5 um/s", "1 cm/s"))
+    assert abs(again.shear_stress - TRUE) < 4 * again.shear_stress_error
+    assert again.curve.used.values.sum() == np.sum(SPEEDS > 5e-6)
+
+
+def test_a_tilt_within_the_error_bars_is_seen_by_the_order_of_signs():
+    noiseless = measured(1e-9, bias=0.15 * np.log10(SPEEDS / 1e-4))
+    noiseless["friction_coefficient_sem"] = 0.2 + 0 * noiseless.friction_coefficient_sem
+    assert fit(noiseless).chi_square_p_value > 0.5
+    assert fit(noiseless).runs_p_value < 0.01
+
+
+def test_points_that_are_not_there_or_have_no_error_are_dealt_with():
+    holes = measured(0.02)
+    holes.friction_coefficient[2] = np.nan
+    holes.friction_coefficient_sem[5] = 0.0
+    holes.friction_coefficient_sem[6] = np.nan
+    found = fit(holes)
+    assert int(found.curve.used.sum()) == SPEEDS.size - 1
+    assert abs(found.shear_stress - TRUE) < 4 * found.shear_stress_error
+    bare = fit(measured(0.02)[["friction_coefficient"]])
+    assert bare.error_from == "scatter"
+    assert bare.birge_ratio == pytest.approx(1)
+    renamed = measured(0.02).rename(friction_coefficient_sem="friction_coefficient_std")
+    assert fit(renamed).error_from == "std"
+    assert fit(renamed).shear_stress == fit(measured(0.02)).shear_stress
+
+
+def test_corrected_stresses_and_their_ratio_are_the_papers(shared):
+    enhancement = {
+        name: target(shared, "area_enhancement", name, "loads of the curves")
+        for name in ("Sb-S", "Sb-R")
+    }
+    ratios = []
+    for load in xu2026.system.loads[:3]:  # the fourth is the paper's own inconsistency
+        fits = {}
+        for name in ("Sb-S", "Sb-R"):
+            stress = dict(xu2026.surface(name).shear_stress)[load]
+            exact = stribeck_curve(
+                CONTACT, reference_psd(name), 1.4, 10 * load, stress, SPEEDS[::3]
+            )
+            data = exact[["friction_coefficient"]]
+            data["friction_coefficient_sem"] = 0.02 + 0 * data.friction_coefficient
+            fits[name] = fit_shear_stress(
+                data,
+                CONTACT,
+                reference_psd(name),
+                1.4,
+                10 * load,
+                area_enhancement=enhancement[name],
+                area_enhancement_error=0.05,
+            )
+            assert fits[name].corrected_shear_stress == pytest.approx(stress / enhancement[name])
+        ratio, error = shear_stress_ratio(fits["Sb-R"], fits["Sb-S"])
+        parts = [f.corrected_shear_stress_error / f.corrected_shear_stress for f in fits.values()]
+        assert error / ratio == pytest.approx(np.hypot(*parts))
+        ratios.append(ratio)
+    rows = pd.read_csv(shared / "targets.csv", index_col="quantity")
+    low, high = map(float, rows.loc["corrected_shear_stress_ratio", "published"].split(" to "))
+    assert all(low - 0.005 < ratio < high + 0.005 for ratio in ratios)
+
+
+@pytest.mark.slow
+def test_viscosity_and_modulus_can_be_fitted_beside():
+    found = fit_shear_stress(
+        measured(1e-3, seed=5),
+        CONTACT,
+        PSD,
+        1.8,
+        310.0,
+        free=("viscosity",),
+        cells=200,
+    )
+    assert list(found.parameters) == ["shear_stress", "viscosity"]
+    errors = np.sqrt(np.diag(found.covariance))
+    assert abs(found.parameters["viscosity"] - 1.4) < 4 * errors[1] + 0.01
+    assert found.degrees_of_freedom == SPEEDS.size - 2
+    assert errors[1] < 0.05
+    both = fit_shear_stress(
+        measured(1e-3, seed=5),
+        CONTACT,
+        PSD,
+        1.4,
+        310.0,
+        free=("viscosity", "youngs_modulus"),
+        cells=200,
+    )
+    assert both.parameters["youngs_modulus"] == pytest.approx(1.5e6, rel=0.05)
+    assert both.covariance.shape == (3, 3)
+    np.testing.assert_allclose(both.covariance, both.covariance.T, rtol=1e-9)
+
+
+def test_the_runs_test_counts_all_orders():
+    rng = np.random.default_rng(2)
+    signs = np.array([1, 1, 1, 1, -1, -1, -1])
+    orders = [rng.permutation(signs) for _ in range(20000)]
+    counts = np.array([1 + np.count_nonzero(np.diff(order)) for order in orders])
+    for runs, order in ((2, signs), (3, np.array([1, 1, -1, -1, -1, 1, 1]))):
+        assert runs_p_value(order) == pytest.approx(np.mean(counts <= runs), abs=0.01)
+    assert runs_p_value(np.array([1.0, -1] * 4)) == 1.0
+    assert runs_p_value(np.array([0.3, 2.0])) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: fit(measured(0.02)[["friction_coefficient_sem"]]), AnalysisError, "over 'sliding"),
+        (lambda: fit(measured(0.02), speed_range=(1.0, 2.0)), AnalysisError, "0 points from 1"),
+        (lambda: fit(measured(0.02), speed_range=("1 N", "2 N")), UnitError, "speed_range"),
+        (lambda: fit(measured(0.02), free=("viscsity",)), AnalysisError, "mean 'viscosity'"),
+        (lambda: fit(measured(0.02), area_enhancement=0.0), AnalysisError, "area_enhancement"),
+        (lambda: fit(-1 * measured(0.02)), AnalysisError, "negative at"),
+        (
+            lambda: fit_shear_stress(measured(0.02), CONTACT, None, 1.4, 310.0),
+            AnalysisError,
+            "do the bodies touch",
+        ),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused(call, error, words):
+    with pytest.raises(error, match=words):
+        call()

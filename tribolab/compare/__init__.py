@@ -1,0 +1,1 @@
+"""Measured curves held against computed ones."""

@@ -1,0 +1,356 @@
+"""Flow and friction factors of a rough surface, tabulated over the mean separation."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+from scipy.special import erfinv
+
+from tribolab.contact.gap import gap_distribution
+from tribolab.contact.separation import Separation, separation_table
+from tribolab.errors import AnalysisError, nearest
+from tribolab.quantities import labelled, stamp
+from tribolab.surface.moments import cumulative, rms_roughness, spectrum_arrays
+from tribolab.units import positive
+
+PERCOLATION = 0.42  # relative contact area at which the last open channel closes
+CUTOFF = 1e-9  # m, gap under which <1/u> leaves out
+RoughBody = Literal["stationary", "moving"]
+FACTORS = (
+    "pressure_flow_factor",
+    "shear_flow_factor",
+    "shear_stress_factor",
+    "shear_stress_correction",
+    "pressure_stress_factor",
+)
+
+# Table: u - u_c from _NEAR to _FAR roughnesses above percolation (a distribution of gaps cannot be
+# summed on its grid much beyond), and down to _LOW roughnesses below it.
+_NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 90
+
+
+class Factors(NamedTuple):
+    """The five factors [1] at the separations asked for."""
+
+    phi_p: np.ndarray
+    phi_s: np.ndarray
+    phi_f: np.ndarray
+    phi_fs: np.ndarray
+    phi_fp: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class FlowFactors:
+    """Flow and friction factors of one surface over the mean separation; smooth ones are trivial.
+
+    Made by `flow_factors`, `smooth_factors` or `tribolab.lubrication.patir_cheng.patir_cheng`.
+
+    Parameters
+    ----------
+    rms_roughness
+        h_rms [m]; 0 for a smooth surface.
+    percolation_separation
+        Mean separation u_c [m] under which nothing flows; 0 if it always does.
+    rough_body
+        Which of the two bodies is rough; sets the sign of phi_s.
+    model
+        What the factors come from, for the attributes of results.
+    flow, friction
+        Tables of phi_p and (u + h_rms phi_s)/u for a rough body at rest; and of phi_f, phi_fs and,
+        where reciprocity does not give it, phi_fp. None if smooth.
+    """
+
+    rms_roughness: float
+    percolation_separation: float
+    rough_body: RoughBody
+    model: str
+    flow: FactorTable | None = field(default=None, repr=False)
+    friction: FactorTable | None = field(default=None, repr=False)
+
+    def at(self, separation: np.ndarray) -> Factors:
+        """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
+        u = np.asarray(separation, dtype=float)
+        if self.flow is None or self.friction is None:
+            one, zero = np.ones_like(u), np.zeros_like(u)
+            return Factors(one, zero, one, zero, one)
+        phi_p, open_flow = self.flow(u)[0]
+        phi_f, phi_fs, *phi_fp = self.friction(u)[0]
+        phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)
+        return Factors(phi_p, phi_s, phi_f, phi_fs, *(phi_fp or [open_flow]))
+
+    def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
+        """phi_p and the entrained separation u + h_rms phi_s [m], each with its slope over u."""
+        if self.flow is None:
+            return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
+        (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
+        # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body carries its valleys along
+        share, rate = (part, part_slope) if self._sign < 0 else (2 - part, -part_slope)
+        return phi_p, phi_p_slope, u * share, share + u * rate
+
+    def dataset(self, separation: str | ArrayLike | xr.DataArray) -> xr.Dataset:
+        """Return the five factors [1] by name over the dims of a separation [m]."""
+        over = labelled(separation, "separation")
+        if not np.all(over.values > 0):
+            raise AnalysisError(
+                "separation: factors exist at separations above zero; the lowest is "
+                f"{np.min(over.values):g} m"
+            )
+        parts = {
+            name: (over.dims, part)
+            for name, part in zip(FACTORS, self.at(over.values), strict=True)
+        }
+        return stamp(
+            xr.Dataset(parts, coords={**over.coords, "separation": over}),
+            model=self.model,
+            rough_body=self.rough_body,
+            rms_roughness_m=self.rms_roughness,
+            percolation_separation_m=self.percolation_separation,
+        )
+
+    @property
+    def _sign(self) -> int:
+        return -1 if self.rough_body == "stationary" else 1
+
+
+def flow_factors(
+    psd: xr.Dataset,
+    rough_body: RoughBody = "stationary",
+    percolation: float = PERCOLATION,
+    cutoff: str | float = CUTOFF,
+    gamma: float = 0.45,
+) -> FlowFactors:
+    """Flow and friction factors of a rough surface by effective-medium theory.
+
+    Parameters
+    ----------
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+    rough_body
+        ``"stationary"`` if the rough body stands still and the smooth one moves (fluid in the
+        valleys stays behind: phi_s < 0), ``"moving"`` if it is the other way round (phi_s > 0).
+    percolation
+        Relative contact area at which flow stops, in (0, 1).
+    cutoff
+        Gap [m] under which <1/u> leaves out.
+    gamma
+        Elastic-energy reduction factor [1] of the mean separation.
+
+    Returns
+    -------
+    FlowFactors
+        Frozen table of the surface; modulus and load do not enter.
+
+    Raises
+    ------
+    AnalysisError
+        If the surface has no roughness (use `smooth_factors`), or a parameter is out of range.
+
+    Notes
+    -----
+    With the local conductance s = u^3, averages over the gap distribution P(u) with the contact
+    counted at u = 0, d = 1/(1 - percolation) and D = s + (d - 1) s_e, the effective conductance
+    solves ``1 = <d s_e/D>`` [1]_ [2]_ and
+
+    - phi_p = s_e/u^3 (pressure flow),
+    - phi_fp = u_e/u, u_e = d s_e <u/D> (drag by the pressure gradient),
+    - phi_s = -(u/h_rms) (1 - phi_fp) (shear flow; the sign is that of `rough_body`),
+    - phi_fs = 3 u <u (u - u_e)/D> (drag by roughness-born pressure),
+    - phi_f = u <1/u>,
+
+    u being the mean. So the reciprocity of Onsager, (u + h_rms phi_s)/u = phi_fp for a rough body
+    at rest, holds by construction. For u -> infinity, phi_p = 1 - (9/d - 3)(h/u)^2,
+    phi_fp = 1 - (3/d)(h/u)^2, phi_fs = (3/d)(h/u)^2 and phi_f = 1 + (h/u)^2; d = 2 gives the
+    results of Tripp [3]_. Below percolation phi_p = phi_fp = 0.
+
+    References
+    ----------
+    .. [1] D. A. G. Bruggeman, Ann. Phys. 416, 636 (1935). doi:10.1002/andp.19354160705
+    .. [2] B. N. J. Persson, M. Scaraggi, Eur. Phys. J. E 34, 113 (2011).
+       doi:10.1140/epje/i2011-11113-9
+    .. [3] J. H. Tripp, J. Lubr. Technol. 105, 458 (1983). doi:10.1115/1.3254641
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> q = np.array([1e3, 1e5, 1e9])
+    >>> c = np.array([1e-20, 1e-20, 1e-36])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> factors = flow_factors(psd)
+    >>> far = factors.at(100 * factors.rms_roughness)
+    >>> f"{float(far.phi_p):.5f} {float(far.phi_f):.5f}"
+    '0.99978 1.00010'
+    """
+    check_rough_body(rough_body)
+    if not 0 < percolation < 1:
+        raise AnalysisError(
+            f"percolation: a relative contact area between 0 and 1 is wanted; got {percolation:g}"
+        )
+    if rms_roughness(psd) == 0:
+        raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
+    q, spectrum = spectrum_arrays(psd)
+    smallest = positive(cutoff, "m", "cutoff")
+    return replace(
+        _tabulated(q.tobytes(), spectrum.tobytes(), percolation, smallest, gamma),
+        rough_body=rough_body,
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _tabulated(
+    q: bytes, spectrum: bytes, percolation: float, cutoff: float, gamma: float
+) -> FlowFactors:
+    """Tabulate a spectrum's factors; they hang on nothing else, so the last few are kept."""
+    psd = xr.Dataset(
+        {"psd_2d": ("wavenumber", np.frombuffer(spectrum))},
+        coords={"wavenumber": np.frombuffer(q)},
+    )
+    height = rms_roughness(psd)
+    pressure_of = separation_table(psd, 1.0, gamma)
+    slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
+    closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
+    above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
+    below = np.geomspace(min(_LOW * height, closing / 3), closing, _POINTS // 3)
+    conductance, entrained, correction, inverse = _averages(
+        np.concatenate([below, above]), pressure_of, psd, percolation, cutoff, gamma
+    )
+    first = below.size
+    ends = 1 - percolation  # 1/d
+    return FlowFactors(
+        rms_roughness=height,
+        percolation_separation=closing,
+        rough_body="stationary",
+        model=f"effective medium, percolation at A/A0 = {percolation:g}, cut-off {cutoff:g} m",
+        flow=FactorTable(
+            above,
+            np.stack([conductance[first:], entrained[first:]]),
+            closing,
+            -np.array([9 * ends - 3, 3 * ends]) * height**2,
+            np.ones(2),
+        ),
+        friction=FactorTable(
+            np.concatenate([below, above]),
+            np.stack([inverse, correction]),
+            0.0,
+            np.array([1.0, 3 * ends]) * height**2,
+            np.array([1.0, 0.0]),
+        ),
+    )
+
+
+def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
+    """Factors between smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
+    check_rough_body(rough_body)
+    return FlowFactors(0.0, 0.0, rough_body, "smooth")
+
+
+@dataclass(frozen=True, eq=False)
+class FactorTable:
+    """Some factors, each a monotone cubic in ln phi over ln(u - origin), with their far ends.
+
+    Beyond the last node phi = limit + A(u)/u^2, A going to its known value as 1/u^2 does; below
+    the first the power law of the first cell goes on.
+    """
+
+    u: np.ndarray
+    values: np.ndarray  # (factor, u)
+    origin: float
+    coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
+    limit: np.ndarray  # at infinity (factor)
+
+    def __post_init__(self) -> None:
+        """Fit the curve once."""
+        log_u = np.log(self.u - self.origin)
+        curve = PchipInterpolator(log_u, np.log(self.values), axis=1)
+        object.__setattr__(self, "_curve", curve)
+        object.__setattr__(self, "_slope", curve.derivative())
+
+    def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values and slopes over u, each (factor, shape of u)."""
+        distance = np.maximum(u - self.origin, 0)
+        first, last = self._curve.x[[0, -1]]
+        with np.errstate(divide="ignore"):
+            log_u = np.log(distance)
+        inside = np.clip(log_u, first, last)
+        rate = self._slope(inside)
+        below = np.clip(log_u - first, -1e3, 0)
+        value = np.exp(self._curve(inside) + rate * below)
+        value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # a power's end, or a level
+        with np.errstate(invalid="ignore", divide="ignore"):
+            slope = np.where(distance > 0, value * rate / distance, 0)
+        end = self.u[-1]
+        if not np.any(u > end):
+            return value, slope
+        shape = (-1,) + (1,) * np.ndim(u)
+        c, limit = self.coefficient.reshape(shape), self.limit.reshape(shape)
+        excess = (self.values[:, -1].reshape(shape) - limit) * end**2 - c
+        with np.errstate(divide="ignore"):
+            far = limit + c / u**2 + excess * end**2 / u**4
+            far_slope = -2 * c / u**3 - 4 * excess * end**2 / u**5
+        return np.where(u > end, far, value), np.where(u > end, far_slope, slope)
+
+
+def _averages(
+    u: np.ndarray,
+    pressure_of: Separation,
+    psd: xr.Dataset,
+    percolation: float,
+    cutoff: float,
+    gamma: float,
+) -> tuple[np.ndarray, ...]:
+    """phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
+    pressure = pressure_of.pressure(u)
+    flow, plain = (
+        gap_distribution(pressure, psd, 1.0, variant, gamma, cutoff)
+        for variant in ("flow", "plain")
+    )
+    gap, weight = flow["gap"].values, flow["gap_weight"].values
+    touching = flow["contact_area_ratio"].values
+    # the sums' own mean, so that their error of quadrature cancels in phi - 1
+    total = weight.sum(axis=1) + touching
+    weight, touching = weight / total[:, None], touching / total
+    mean = weight @ gap
+    dimension = 1 / (1 - percolation)
+    conductance = _effective(gap**3, weight, touching, dimension)
+    denominator = gap**3 + (dimension - 1) * conductance[:, None]
+    entrained = dimension * conductance * (weight * gap / denominator).sum(axis=1)
+    # below percolation D -> u^3, and gaps under the cut-off are no fluid
+    fluid = np.where(gap >= cutoff, weight, 0.0)
+    moved = gap * (gap - entrained[:, None]) / denominator
+    correction = 3 * mean * (fluid * moved).sum(axis=1)
+    wide, share = plain["gap"].values, plain["gap_weight"].values
+    share = share / (share.sum(axis=1) + plain["contact_area_ratio"].values)[:, None]
+    inverse = (share @ wide) * np.where(wide >= cutoff, share / wide, 0.0).sum(axis=1)
+    return conductance / mean**3, entrained / mean, correction, inverse
+
+
+def _effective(
+    local: np.ndarray, weight: np.ndarray, touching: np.ndarray, dimension: float
+) -> np.ndarray:
+    """Solve 1 = <d s_e/D> for s_e by bisection in ln s_e; 0 where the contact percolates."""
+
+    def excess(log_s: np.ndarray) -> np.ndarray:
+        s = np.exp(log_s)[:, None]
+        part = (weight * dimension * s / (local + (dimension - 1) * s)).sum(axis=1)
+        return part + touching * dimension / (dimension - 1) - 1
+
+    low = np.full(touching.shape, np.log(local[0]) - 60.0)
+    high = np.full(touching.shape, np.log(local[-1]))
+    opens = touching < (dimension - 1) / dimension
+    for _ in range(70):
+        middle = (low + high) / 2
+        above = excess(middle) > 0
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return np.where(opens, np.exp((low + high) / 2), 0.0)
+
+
+def check_rough_body(rough_body: str) -> None:
+    """Raise an AnalysisError unless it is a `RoughBody`."""
+    known = ["stationary", "moving"]
+    if rough_body not in known:
+        raise AnalysisError(f"rough_body: '{rough_body}' is none{nearest(rough_body, known)}")

@@ -1,0 +1,42 @@
+"""Friction of the fluid in a solved film."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.lubrication.factors import Factors
+from tribolab.lubrication.mixed import Problem, Solution
+
+
+def fluid_friction(
+    problem: Problem, solution: Solution, friction_factors: bool
+) -> tuple[float, float]:
+    """Couette and pressure part of the friction coefficient, Eq. (4) without the solid's.
+
+    Notes
+    -----
+    The gradient is the fluid's, and counts with the sign that it has in the drag on the flat that
+    slides to +x. In the cavity the fluid covers the part u*/u of the flat, u* = 2 J/v being the
+    film that the flux would fill, and has no pressure gradient.
+    """
+    u, fields, mesh = solution.state.film, solution.fields, problem.mesh
+    if solution.couette == 0:
+        return 0.0, 0.0
+    factors = problem.factors.at(u * problem.gap) if friction_factors else _plain(u)
+    covered = np.ones_like(u)
+    # a cavity holds no more than what flows out of the full film, u* = 2 J/v
+    covered[fields.front :] = np.minimum(
+        1, fields.flux[fields.front] / solution.couette / u[fields.front :]
+    )
+    shear = (factors.phi_f + factors.phi_fs) / u * covered
+    between = (u[1:] + u[:-1]) / 2
+    across = problem.factors.at(between * problem.gap) if friction_factors else _plain(between)
+    drag = across.phi_fp * between / 2 @ np.diff(fields.fluid)
+    # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
+    unit = problem.gap / (problem.half_width * problem.load)
+    return float(solution.couette / 6 * (mesh.width @ shear) * unit), float(drag * unit)
+
+
+def _plain(u: np.ndarray) -> Factors:
+    one, zero = np.ones_like(u), np.zeros_like(u)
+    return Factors(one, zero, one, zero, one)

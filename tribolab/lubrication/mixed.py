@@ -1,0 +1,257 @@
+"""Mixed lubrication of a line contact at one speed: film, contact and fluid pressure."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import lapack
+
+from tribolab.contact.separation import Separation
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mesh import Mesh
+
+# Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
+# closed channels has a pressure; the flow it lets through is nothing beside any other.
+LEAK = 1e-10
+_STEPS = 30
+_CAP = 0.6  # largest relative change of the film in one step
+_CONVERGED = 1e-10  # of the maximum pressure, and of the load
+_ROUNDING = 1e-8  # the same, where a further step no longer gains
+
+
+class Problem(NamedTuple):
+    """All that does not change with speed; lengths along x in b, gaps in g, pressures in p."""
+
+    mesh: Mesh
+    factors: FlowFactors
+    separation: Separation | None  # none between smooth surfaces: they never touch
+    load: float  # F_N/L in units of p b
+    half_width: float  # b [m]
+    gap: float  # g = b^2/(2R) [m]
+    pressure: float  # p = E* g/b [Pa]
+
+
+class State(NamedTuple):
+    """Film, constant of Eq. (9) and pressure p = K^-1 (u - c - x^2), in the problem's units.
+
+    The pressure is carried along with the changes of the film: computed anew from a film much
+    thicker than what pressure bends, it would be the difference of large numbers.
+    """
+
+    film: np.ndarray
+    constant: float
+    pressure: np.ndarray
+
+    def moved(self, mesh: Mesh, film: np.ndarray, constant: float) -> State:
+        """Return the state changed by these amounts of film and constant."""
+        bent = mesh.stiffness @ film - constant * mesh.lift
+        return State(self.film + film, self.constant + constant, self.pressure + bent)
+
+
+class Fields(NamedTuple):
+    """What follows from a state, in the problem's units."""
+
+    contact: np.ndarray  # pressure carried by the solid (n)
+    fluid: np.ndarray  # (n)
+    flux: np.ndarray  # through the faces (n + 1)
+    front: int  # first cell of the cavity
+
+
+class Solution(NamedTuple):
+    """A converged state with its proof."""
+
+    couette: float
+    state: State
+    fields: Fields
+    residual: float  # of p = p_contact + p_fluid, in units of the maximum pressure
+    load_balance: float
+    flux_variation: float  # in the full film, over the larger of flux and entrained flux
+    iterations: int
+
+
+class NotConvergedError(Exception):
+    """Newton's method did not get there; the sweep over the speed then takes a smaller step."""
+
+
+class _Film(NamedTuple):
+    """The equations at one state."""
+
+    fields: Fields
+    total: np.ndarray  # pressure by elasticity (n)
+    yielding: np.ndarray  # slope of the contact pressure over the film (n)
+    conductance: np.ndarray  # of the faces (n + 1)
+    flux_slope: np.ndarray  # over the film at the faces (n + 1)
+    scale: np.ndarray  # turns a cell's balance into pressure (n)
+    residual: np.ndarray  # (n)
+    error: float
+    lacking: float  # relative error of the load
+
+
+def couette_number(problem: Problem, viscosity: float, speed: float) -> float:
+    """Couette flux over Poiseuille flux, 6 eta v b/(g^2 p): all that the speed enters by."""
+    return 6 * viscosity * speed * problem.half_width / (problem.gap**2 * problem.pressure)
+
+
+def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
+    """Solve Eqs. (3), (5), (9), (10) with cavitation at one speed by Newton's method.
+
+    Parameters
+    ----------
+    problem
+        Mesh, factors, contact law and load.
+    couette
+        `couette_number` of the speed; 0 is the dry contact.
+    start
+        State to start from.
+
+    Raises
+    ------
+    NotConvergedError
+        If `_STEPS` steps are not enough, or the matrix is singular.
+
+    Notes
+    -----
+    Unknowns are the film u in the cells and the constant of Eq. (9); the pressure is
+    ``p = K^-1 (u - c - x^2)``, the fluid's part p - p_cont(u). A cell's equation is div J = 0 up
+    to where the film ruptures and p_fluid = 0 behind, which is the solution of ``p_fluid >= 0``,
+    ``div J >= 0``, ``p_fluid div J = 0`` where the film grows towards the outlet. Where it
+    ruptures follows exactly from each film (`_rupture`), so that the front moves as far as it
+    must in one step; letting each cell change sides by itself takes a step per cell.
+    """
+    state, before = start, np.inf
+    for step in range(_STEPS + 1):
+        film = _film(problem, couette, state)
+        error = max(film.error, film.lacking)
+        if error < _CONVERGED or (error < _ROUNDING and error > before / 2):
+            return _proof(problem, couette, state, film, step)
+        if step == _STEPS or not np.isfinite(error):
+            break
+        before = error
+        matrix, right = _linearised(problem, film)
+        # the transpose is what LAPACK reads without a copy
+        factor, pivots, singular = lapack.dgetrf(matrix.T, overwrite_a=True)
+        change, _ = lapack.dgetrs(factor, pivots, right, trans=1, overwrite_b=True)
+        if singular or not np.all(np.isfinite(change)):
+            raise NotConvergedError("the linearised equations are singular")
+        largest = np.max(np.abs(change[:-1]) / state.film)
+        part = min(1.0, _CAP / largest)
+        state = state.moved(problem.mesh, part * change[:-1], part * change[-1])
+    raise NotConvergedError(f"the residual is {error:.1e} after {step} steps")
+
+
+def _film(problem: Problem, couette: float, state: State) -> _Film:
+    mesh, u = problem.mesh, state.film
+    contact, yielding = _contact(problem, u)
+    total = state.pressure
+    fluid = total - contact
+    # flux J = -T dp/dx + couette Q through the faces; outside the domain p = 0
+    between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2, u[-1:]])
+    phi, phi_slope, entrained, entrained_slope = problem.factors.transport(between * problem.gap)
+    entrained = couette * entrained / problem.gap
+    conductance = between**3 * (phi + LEAK) / mesh.distance
+    steep = 3 * between**2 * (phi + LEAK) + between**3 * phi_slope * problem.gap
+    rise = np.diff(fluid, prepend=0.0, append=0.0)
+    flux = entrained - conductance * rise
+    flux_slope = couette * entrained_slope - steep * rise / mesh.distance
+    scale = 1 / (conductance[1:] + conductance[:-1])
+    front, through = _rupture(entrained, conductance) if couette > 0 else (0, 0.0)
+    balance = scale * np.diff(flux)
+    residual = np.append(balance[:front], fluid[front:])
+    # the fluid's pressure once more, by the flux alone: exact to rounding also where it is small
+    exact = np.zeros_like(u)
+    exact[:front] = np.cumsum((entrained[:front] - through) / conductance[:front])
+    passing = np.append(np.full(front + 1, through), entrained[front + 1 :])
+    return _Film(
+        fields=Fields(contact, exact, passing, front),
+        total=total,
+        yielding=yielding,
+        conductance=conductance,
+        flux_slope=flux_slope,
+        scale=scale,
+        residual=residual,
+        error=float(np.max(np.abs(fluid - exact)) / total.max()),
+        lacking=abs(float(mesh.width @ total / problem.load - 1)),
+    )
+
+
+def _linearised(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
+    """Jacobian of the residual and of the load, and minus their values."""
+    mesh, n, front = problem.mesh, film.residual.size, film.fields.front
+    full = np.where(np.arange(n) < front, film.scale, 0.0)
+    before, after = -full * film.conductance[:-1], -full * film.conductance[1:]
+    # a face's film is the mean of its two cells'; at the ends it is the cell's own
+    left, right = full * film.flux_slope[:-1] / 2, full * film.flux_slope[1:] / 2
+    elastic = np.column_stack([mesh.stiffness, -mesh.lift])
+    matrix = np.empty((n + 1, n + 1))
+    matrix[:n] = elastic
+    wet = slice(1, front), slice(0, min(front, n - 1))  # cells of the full film but for the ends
+    matrix[wet[0]] += before[wet[0], None] * elastic[: max(front - 1, 0)]
+    matrix[wet[1]] += after[wet[1], None] * elastic[1 : wet[1].stop + 1]
+    i = np.arange(n)
+    matrix[i, i] += right - left - film.yielding
+    matrix[0, 0] -= left[0]
+    matrix[n - 1, n - 1] += right[-1]
+    matrix[i[1:], i[:-1]] -= before[1:] * film.yielding[:-1] + left[1:]
+    matrix[i[:-1], i[1:]] += right[:-1] - after[:-1] * film.yielding[1:]
+    weight = film.total.max() / problem.load
+    matrix[n, :n] = weight * (mesh.width @ mesh.stiffness)
+    matrix[n, n] = -weight * (mesh.width @ mesh.lift)
+    lack = mesh.width @ film.total - problem.load
+    return matrix, -np.append(film.residual, weight * lack)
+
+
+def _rupture(entrained: np.ndarray, conductance: np.ndarray) -> tuple[int, float]:
+    """First cell of the cavity and the flux up to it, in a given film.
+
+    Full cells 0 ... k - 1 and p = 0 at both ends make the flux J_k the mean of what is entrained,
+    weighted with the resistance of the faces 0 ... k. The film ruptures at the first k from which
+    on what is entrained is more than that: there div J >= 0, and p >= 0 before it.
+    """
+    resistance = 1 / conductance
+    flux = np.cumsum(entrained * resistance) / np.cumsum(resistance)
+    behind = np.flatnonzero(flux[:-1] > entrained[1:])
+    front = int(behind[-1]) + 1 if behind.size else 0
+    return front, float(flux[front])
+
+
+def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Contact pressure and its slope over the film."""
+    if problem.separation is None:
+        return np.zeros_like(film), np.zeros_like(film)
+    pressure, slope = problem.separation.pressure_and_slope(film * problem.gap)
+    return pressure / problem.pressure, slope * problem.gap / problem.pressure
+
+
+def _proof(problem: Problem, couette: float, state: State, film: _Film, step: int) -> Solution:
+    """Collect the evidence; a fluid that pulls, or a cavity that closes again, is no solution."""
+    fields = film.fields
+    carried = fields.contact + fields.fluid
+    highest = carried.max()
+    if np.any(fields.fluid < -_ROUNDING * highest):
+        raise NotConvergedError("the film ruptures in more than one place")
+    drive = fields.flux[1:] - fields.flux[:-1]
+    if couette > 0 and np.any(drive[fields.front :] < -_ROUNDING * fields.flux.max()):
+        raise NotConvergedError("the film forms again behind the cavity")
+    return Solution(
+        couette=couette,
+        state=state,
+        fields=fields,
+        residual=float(np.max(np.abs(film.total - carried)) / highest),
+        load_balance=float(problem.mesh.width @ carried / problem.load - 1),
+        flux_variation=_flux_variation(problem, couette, state, fields),
+        iterations=step,
+    )
+
+
+def _flux_variation(problem: Problem, couette: float, state: State, fields: Fields) -> float:
+    """Spread of the flux over the full film, taken anew from film and fluid pressure."""
+    if fields.front < 2:
+        return 0.0
+    u = (state.film[1:] + state.film[:-1]) / 2
+    phi, _, entrained, _ = problem.factors.transport(u * problem.gap)
+    slope = np.diff(fields.fluid) / np.diff(problem.mesh.x)
+    entrained = couette * entrained / problem.gap
+    flux = (entrained - u**3 * (phi + LEAK) * slope)[: fields.front]
+    size = np.maximum(np.abs(fields.flux[0]), entrained[: fields.front])
+    return float(np.max(np.abs(flux - fields.flux[0]) / size))

@@ -1,0 +1,357 @@
+"""Computed Stribeck curves: friction over speed and load, and profiles across the contact."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from threadpoolctl import threadpool_limits
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width
+from tribolab.contact.persson import contact_area_ratio
+from tribolab.contact.separation import Separation, separation_table
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import (
+    FlowFactors,
+    RoughBody,
+    flow_factors,
+    smooth_factors,
+)
+from tribolab.lubrication.friction import fluid_friction
+from tribolab.lubrication.mixed import (
+    NotConvergedError,
+    Problem,
+    Solution,
+    solve_speed,
+)
+from tribolab.lubrication.sweep import (
+    dry_state,
+    film_estimate,
+    lifted_state,
+    lubrication_problem,
+    sweep,
+    wet_state,
+)
+from tribolab.quantities import labelled, stamp
+from tribolab.units import positive, to_si
+
+CELLS = 400
+REFERENCE = (
+    "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
+    "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
+)
+
+
+class _System(NamedTuple):
+    """Everything but load and speed, in SI."""
+
+    contact: LineContact
+    psd: xr.Dataset | None
+    separation: Separation | None
+    factors: FlowFactors
+    viscosity: float
+    cells: int
+    domain: float
+
+
+def stribeck_curve(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    viscosity: str | float,
+    load: str | ArrayLike,
+    shear_stress: str | float,
+    speed: str | ArrayLike,
+    friction_factors: bool = True,
+    rough_body: RoughBody = "stationary",
+    factors: FlowFactors | None = None,
+    gamma: float = 0.45,
+    cells: int = CELLS,
+    domain: float = 1.0,
+) -> xr.Dataset:
+    """Friction coefficient of a lubricated rough line contact over sliding speed (and load).
+
+    Parameters
+    ----------
+    contact
+        Geometry and elasticity.
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber); None for smooth surfaces.
+    viscosity
+        eta [Pa s], above zero.
+    load
+        F_N/L [N/m], above zero; several make a dim.
+    shear_stress
+        sigma_f [Pa] in the real contact area, not negative.
+    speed
+        Sliding speeds v [m/s] (sliding_speed). 0 is the dry contact; a negative speed is the
+        mirror image of the positive one.
+    friction_factors
+        False takes phi_f = phi_fp = 1 and phi_fs = 0 in Eq. (4); flow keeps its factors.
+    rough_body
+        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`.
+    factors
+        Factors to use instead of the effective-medium ones.
+    gamma
+        Elastic-energy reduction factor [1] of the mean separation.
+    cells
+        Cells across the contact.
+    domain
+        Length of the domain over the default.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``sliding_speed`` (and ``load``): ``friction_coefficient`` and its parts
+        ``_couette``, ``_pressure`` and ``_solid``; ``friction_per_shear_stress`` [1/Pa], which
+        times sigma_f is the solid part; ``minimum_separation``, ``central_separation`` [m];
+        ``contact_area_ratio`` [1], real area over that of the Hertz contact, 2 a L;
+        ``solid_load_share`` [1]; and the proof of every point: ``residual``, ``load_balance``,
+        ``flux_variation``, ``iterations``.
+
+    Raises
+    ------
+    UnitError, AnalysisError
+        If an argument has a wrong unit or value, or a point cannot be solved. No point is ever
+        returned unsolved.
+
+    Notes
+    -----
+    Eqs. (3)-(5), (9), (10) of [1]_ with cavitation (p_fluid >= 0); friction by Eq. (4), whose
+    pressure gradient is the fluid's. In the cavity the fluid covers the part u*/u of the flat.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+    .. [2] B. N. J. Persson, M. Scaraggi, Eur. Phys. J. E 34, 113 (2011).
+       doi:10.1140/epje/i2011-11113-9
+
+    Examples
+    --------
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> curve = stribeck_curve(contact, None, "1.4 Pa s", "310 N/m", 0.0, speed=[1e-4, 1e-3])
+    >>> curve.minimum_separation.values.round(8)
+    array([1.44e-06, 5.89e-06])
+    """
+    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
+    stress = to_si(shear_stress, "Pa", name="shear_stress")
+    if not 0 <= stress < np.inf:
+        raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
+    loads, speeds = _loads(load), _speeds(speed, psd)
+    curves = []
+    with threadpool_limits(1, user_api="blas"):  # two threads are slower on matrices this small
+        for force in np.atleast_1d(loads.values):
+            curves.append(_curve(system, float(force), speeds.values, friction_factors))
+    parts = {
+        name: (("sliding_speed", "load"), np.stack([curve[name] for curve in curves], axis=1))
+        for name in curves[0]
+    }
+    data = xr.Dataset(parts, {"sliding_speed": speeds.values, "load": np.atleast_1d(loads.values)})
+    if loads.ndim == 0:
+        data = data.isel(load=0)
+    solid = stress * data["friction_per_shear_stress"]
+    data = data.assign(
+        friction_coefficient_solid=solid,
+        friction_coefficient=solid
+        + data["friction_coefficient_couette"]
+        + data["friction_coefficient_pressure"],
+    )
+    return stamp(
+        data,
+        viscosity_Pa_s=system.viscosity,
+        shear_stress_Pa=stress,
+        youngs_modulus_Pa=contact.youngs_modulus,
+        poisson_ratio=contact.poisson_ratio,
+        radius_m=contact.radius,
+        friction_factors="yes" if friction_factors else "no",
+        rough_body=system.factors.rough_body,
+        factors=system.factors.model,
+        cells=cells,
+        domain=float(domain),
+        references=REFERENCE,
+    )
+
+
+def film_profile(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    viscosity: str | float,
+    load: str | float,
+    speed: str | float,
+    rough_body: RoughBody = "stationary",
+    factors: FlowFactors | None = None,
+    gamma: float = 0.45,
+    cells: int = CELLS,
+    domain: float = 1.0,
+) -> xr.Dataset:
+    """Separation and pressures across the contact at one speed.
+
+    Parameters
+    ----------
+    contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain
+        As for `stribeck_curve`, with one load and one speed.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``x`` [m], the flat sliding to +x (at a negative speed to -x): ``separation`` [m],
+        ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
+        ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``. The
+        attributes hold the proof of the point and the ``flux`` [m2/s].
+    """
+    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
+    force = positive(load, "N/m", "load")
+    v = float(_speeds(speed, psd).values[0])
+    with threadpool_limits(1, user_api="blas"):
+        problem, (solution,) = _solve(system, force, np.array([abs(v)]))
+    fields = solution.fields
+    side = -1 if v < 0 else 1
+    solid = fields.contact * problem.pressure
+    values = {
+        "separation": solution.state.film * problem.gap,
+        "contact_pressure": solid,
+        "fluid_pressure": fields.fluid * problem.pressure,
+        "pressure": solid + fields.fluid * problem.pressure,
+        "contact_area_ratio": _area(system, solid),
+    }
+    x = side * problem.mesh.x * problem.half_width
+    data = xr.Dataset(
+        {name: ("x", value[::side]) for name, value in values.items()},
+        coords={"x": x[::side], "sliding_speed": v, "load": force},
+    )
+    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
+    return stamp(
+        data,
+        flux=float(side * fields.flux[0] * unit),
+        cavity_start_m=float(x[min(fields.front, x.size - 1)]),
+        residual=solution.residual,
+        load_balance=solution.load_balance,
+        flux_variation=solution.flux_variation,
+        iterations=solution.iterations,
+        rough_body=system.factors.rough_body,
+        factors=system.factors.model,
+        references=REFERENCE,
+    )
+
+
+def _system(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    viscosity: str | float,
+    rough_body: RoughBody,
+    factors: FlowFactors | None,
+    gamma: float,
+    cells: int,
+    domain: float,
+) -> _System:
+    eta = positive(viscosity, "Pa s", "viscosity")
+    if cells < 50:
+        raise AnalysisError(f"cells: at least 50 are wanted; got {cells}")
+    if not 0.2 <= domain <= 5:
+        raise AnalysisError(f"domain: a length between 0.2 and 5 is wanted; got {domain:g}")
+    if factors is None:
+        factors = (
+            smooth_factors(rough_body)
+            if psd is None
+            else flow_factors(psd, rough_body, gamma=gamma)
+        )
+    separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
+    return _System(contact, psd, separation, factors, eta, cells, domain)
+
+
+def _loads(load: str | ArrayLike) -> xr.DataArray:
+    loads = labelled(load, "load")
+    if loads.ndim > 1 or not np.all((loads.values > 0) & np.isfinite(loads.values)):
+        raise AnalysisError(f"load: positive, finite values in N/m are wanted; got {loads.values}")
+    return loads
+
+
+def _speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArray:
+    speeds = labelled(speed, "sliding_speed")
+    if speeds.ndim == 0:
+        speeds = speeds.expand_dims("sliding_speed")
+    if speeds.ndim > 1 or speeds.size == 0 or not np.all(np.isfinite(speeds.values)):
+        raise AnalysisError("speed: a list of finite sliding speeds in m/s is wanted")
+    if psd is None and np.any(speeds.values == 0):
+        raise AnalysisError("speed: at 0 no film is left between smooth surfaces; leave it out")
+    return speeds
+
+
+def _solve(system: _System, force: float, speeds: np.ndarray) -> tuple[Problem, list[Solution]]:
+    """Solve at each speed, not negative, in rising order and with none twice."""
+    moving = speeds[speeds > 0]
+    ends = (moving.min(), moving.max()) if moving.size else (0.0, 0.0)
+    films = tuple(
+        film_estimate(system.contact, system.viscosity, force, v) if v else 0.0 for v in ends
+    )
+    problem = lubrication_problem(
+        system.contact,
+        system.separation,
+        system.factors,
+        force,
+        films,
+        system.cells,
+        system.domain,
+    )
+    around = problem, system.contact, system.viscosity, force
+    rest, start, no_start = [], None, None
+    try:
+        if system.psd is None:
+            start = wet_state(*around, float(ends[0]))
+        else:
+            start = dry_state(problem, system.contact, system.psd, force)
+        if moving.size < speeds.size:
+            rest = [solve_speed(problem, 0.0, start)]
+    except (AnalysisError, NotConvergedError) as error:
+        no_start = error
+    if no_start and (system.psd is None or moving.size < speeds.size):
+        raise AnalysisError(f"the contact at {speeds[0]:g} m/s: {no_start}") from no_start
+    try:
+        solutions = sweep(
+            problem,
+            system.viscosity,
+            moving,
+            start,
+            lambda: lifted_state(*around, float(ends[1])),
+        )
+    except AnalysisError as error:
+        if no_start:
+            raise AnalysisError(f"{error}; at rest: {no_start}") from error
+        raise
+    return problem, rest + solutions
+
+
+def _curve(
+    system: _System, force: float, speeds: np.ndarray, friction_factors: bool
+) -> dict[str, np.ndarray]:
+    magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
+    problem, solutions = _solve(system, force, magnitudes)
+    film = np.stack([solution.state.film for solution in solutions])
+    solid = np.stack([solution.fields.contact for solution in solutions])
+    contact_length = _area(system, solid * problem.pressure) @ problem.mesh.width
+    parts = [fluid_friction(problem, solution, friction_factors) for solution in solutions]
+    middle = int(np.argmin(np.abs(problem.mesh.x)))
+    real_length = contact_length * problem.half_width
+    table = {
+        "friction_coefficient_couette": np.array([part[0] for part in parts]),
+        "friction_coefficient_pressure": np.array([part[1] for part in parts]),
+        "friction_per_shear_stress": real_length / force,
+        "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
+        "minimum_separation": film.min(axis=1) * problem.gap,
+        "central_separation": film[:, middle] * problem.gap,
+        "solid_load_share": solid @ problem.mesh.width / problem.load,
+        "residual": np.array([solution.residual for solution in solutions]),
+        "load_balance": np.array([solution.load_balance for solution in solutions]),
+        "flux_variation": np.array([solution.flux_variation for solution in solutions]),
+        "iterations": np.array([solution.iterations for solution in solutions]),
+    }
+    return {name: values[back] for name, values in table.items()}
+
+
+def _area(system: _System, pressure: np.ndarray) -> np.ndarray:
+    if system.psd is None:
+        return np.zeros_like(pressure)
+    return contact_area_ratio(pressure, system.psd, system.contact.effective_modulus)

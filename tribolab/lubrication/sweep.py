@@ -1,0 +1,279 @@
+"""From the dry contact up in speed: scales, a state to start from, and a step that never jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.line import line_kernel, rough_line_contact
+from tribolab.contact.separation import Separation
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mesh import Mesh, graded_mesh
+from tribolab.lubrication.mixed import (
+    NotConvergedError,
+    Problem,
+    Solution,
+    State,
+    couette_number,
+    solve_speed,
+)
+
+_INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
+_SUBSTEPS = 100  # failures on the way that are forgiven
+_FINEST = 1e-2  # smallest step in ln v
+_THICK = 5.0  # roughnesses
+_DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
+
+
+def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
+    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
+
+    Notes
+    -----
+    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
+    """
+    radius, stiff = contact.radius, 2 * contact.effective_modulus
+    entrained = viscosity * speed / 2
+    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
+    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
+
+
+def lubrication_problem(
+    contact: LineContact,
+    separation: Separation | None,
+    factors: FlowFactors,
+    load: float,
+    films: tuple[float, float],
+    cells: int,
+    domain: float,
+) -> Problem:
+    """Choose scales and mesh.
+
+    Parameters
+    ----------
+    contact, separation, factors
+        Geometry, contact law (none if smooth) and flow.
+    load
+        F_N/L [N/m].
+    films
+        `film_estimate` [m] at the lowest and the highest speed.
+    cells
+        Cells of the mesh.
+    domain
+        Length of the domain over the default, which is 6 half-widths before the middle and 5
+        behind it; roughness and thick films count as half-width as far as they widen the contact.
+    """
+    a, radius = float(hertz_half_width(load, contact)), contact.radius
+    decay = separation.decay_length if separation else 0.0
+    half_width = np.sqrt(a**2 + 4 * radius * decay)
+    gap = half_width**2 / (2 * radius)
+    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
+    edge = (max(decay, films[0]) / gap / 1.9) ** (2 / 3)
+    reach = np.sqrt(1 + 2 * radius * films[1] / half_width**2) * domain
+    mesh = graded_mesh(
+        cells,
+        _rounded(np.clip(edge, 3e-4, 0.5)),
+        _rounded(_INLET * reach),
+        _rounded(_OUTLET * reach),
+    )
+    pressure = contact.effective_modulus * gap / half_width
+    return Problem(
+        mesh, factors, separation, load / (pressure * half_width), half_width, gap, pressure
+    )
+
+
+def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: float) -> State:
+    """Solve the contact at rest on the problem's own mesh.
+
+    Raises
+    ------
+    AnalysisError
+        If the roughness is pressed flat.
+    NotConvergedError
+        If Newton's method fails.
+    """
+    gamma = problem.separation.gamma if problem.separation else 0.45
+    dry = rough_line_contact(load, contact, psd, gamma)
+    x = problem.mesh.x * problem.half_width
+    pressure = np.interp(x, dry.x.values, dry.pressure.values, left=0.0, right=0.0)
+    shape = _gap_under(problem, pressure / problem.pressure)
+    known = np.interp(x, dry.x.values, dry.separation.values) / problem.gap
+    middle = int(np.argmax(pressure))
+    constant = float(known[middle] - shape[middle])
+    inside = np.abs(x) <= dry.x.values[-1]
+    film = np.where(inside, known, np.maximum(shape + constant, known))
+    return solve_speed(problem, 0.0, _bent(problem, film, constant)).state
+
+
+def lifted_state(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+) -> State:
+    """Find a state at one speed from above, where the film is thick beside the roughness.
+
+    Raises
+    ------
+    NotConvergedError
+        If there is none.
+    """
+    above, roughness = speed, problem.factors.rms_roughness
+    while film_estimate(contact, viscosity, load, above) < _THICK * roughness:
+        above *= 2
+    start = wet_state(problem, contact, viscosity, load, above)
+    down = np.geomspace(above, speed, 1 + int(np.ceil(4 * np.log10(above / speed))))
+    solved, lost = _march(problem, viscosity, list(down), start)
+    if lost is not None:
+        raise lost
+    return solved[-1].state
+
+
+def wet_state(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+) -> State:
+    """Find a state between smooth surfaces at one speed, from the Hertz contact on a cushion.
+
+    A repulsion that ends at a third of the film expected there stands in for the contact until
+    the fluid carries the load: as with roughness, rising speed lifts the bodies off it.
+    """
+    film = film_estimate(contact, viscosity, load, speed)
+    x = problem.mesh.x * problem.half_width
+    pressure = hertz_pressure(x, load, contact) / problem.pressure
+    shape = _gap_under(problem, pressure * problem.load / (problem.mesh.width @ pressure))
+    constant = film / 3 / problem.gap - float(shape.min())
+    cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
+    rest = solve_speed(cushion, 0.0, _bent(problem, shape + constant, constant)).state
+    solved, lost = _march(cushion, viscosity, [speed], rest)
+    if lost is not None:
+        raise lost
+    return solved[-1].state
+
+
+class _Cushion(NamedTuple):
+    """p = p_max exp(10 - 30 u/film): p_max at a third of the film, nothing at the whole."""
+
+    highest: float  # p_max [Pa]
+    film: float  # [m]
+
+    def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
+        pressure = self.highest * np.exp(10 - 30 * separation / self.film)
+        return pressure, -30 / self.film * pressure
+
+
+def sweep(
+    problem: Problem,
+    viscosity: float,
+    speeds: Sequence[float],
+    start: State | None,
+    lifted: Callable[[], State] | None = None,
+) -> list[Solution]:
+    """Solve at rising speeds, each from the ones before it.
+
+    Parameters
+    ----------
+    problem
+        What is to be solved.
+    viscosity
+        [Pa s].
+    speeds
+        [m/s], rising, above zero.
+    start
+        Where to start: the dry contact, or the state at the first speed; None for nowhere.
+    lifted
+        Gives a guess at the last speed. Where the contact percolates, rising speed lifts it at
+        once and not by and by: the speeds beyond are then solved from the last one downwards.
+
+    Raises
+    ------
+    AnalysisError
+        If a speed cannot be reached; the message says what to change.
+
+    Notes
+    -----
+    ln u goes on in ln v by the secant through the last two speeds. Where Newton's method fails,
+    the step in ln v is halved.
+    """
+    speeds = list(speeds)
+    solved, lost = _march(problem, viscosity, speeds, start) if start else ([], None)
+    if len(solved) < len(speeds) and lifted is not None:
+        rest = speeds[len(solved) :][::-1]
+        try:
+            above, lost = _march(problem, viscosity, rest, lifted())
+        except NotConvergedError as error:
+            raise _lost(problem, viscosity, rest[0], lost or error) from error
+        solved = solved + above[::-1] if lost is None else solved
+    if lost is not None:
+        raise _lost(problem, viscosity, speeds[len(solved)], lost) from lost
+    return solved
+
+
+def _march(
+    problem: Problem, viscosity: float, speeds: list[float], start: State
+) -> tuple[list[Solution], NotConvergedError | None]:
+    """Go through the speeds in their order; what was solved, and why it ended early if it did."""
+    solved: list[Solution] = []
+    known: list[tuple[float, State]] = []  # ln v and state of the last two, the newest last
+    budget = _SUBSTEPS
+    for speed in speeds:
+        aims = [np.log(speed)]
+        while aims:
+            aim = aims[-1]
+            number = couette_number(problem, viscosity, float(np.exp(aim)))
+            try:
+                found = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
+            except NotConvergedError as error:
+                budget -= 1
+                closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
+                gain = abs(aim - known[-1][0]) > _FINEST if known else len(aims) < _DECADES
+                if budget < 0 or not gain:
+                    return solved, error
+                aims.append(closer)
+                continue
+            known = [*known[-1:], (aim, found.state)]
+            aims.pop()
+        solved.append(found)
+    return solved, None
+
+
+def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
+    mesh = problem.mesh
+    return State(film, constant, mesh.stiffness @ (film - constant - mesh.x**2))
+
+
+def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: float) -> State:
+    if not known:
+        return start
+    (at, last) = known[-1]
+    if len(known) == 1:
+        return last
+    before, first = known[0]
+    part = min((aim - at) / (at - before), 3.0)
+    growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
+    return last.moved(mesh, last.film * (growth - 1), part * (last.constant - first.constant))
+
+
+def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
+    mesh = problem.mesh
+    return mesh.x**2 + line_kernel(mesh.x, mesh.width, 1.0) @ pressure
+
+
+def _rounded(value: float) -> float:
+    """Two digits, so that neighbouring loads and speeds share a mesh."""
+    return float(f"{value:.2g}")
+
+
+def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) -> AnalysisError:
+    radius = problem.half_width**2 / (2 * problem.gap)
+    load = problem.load * problem.pressure * problem.half_width
+    rigid = 2.45 * viscosity * speed * radius / load
+    if rigid > radius / 10:
+        cure = f"its film of about {rigid:.2g} m is not thin beside the radius: leave it out"
+    else:
+        cure = "take more cells, add speeds beside it, or leave it out"
+    cells = problem.mesh.x.size
+    return AnalysisError(f"no solution at {speed:.4g} m/s on {cells} cells ({error}); {cure}")
