@@ -26,8 +26,8 @@ LAYERS = [
     {"cli"},
 ]
 LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}
-# The foundation and the quality checks are shared; these neighbours may look at each other.
-NEIGHBOURS_ALLOWED = {("rig", "studies"), ("friction", "qc")}
+# The rig is built on a study; the quality checks look at what friction and surface found.
+NEIGHBOURS_ALLOWED = {("rig", "studies"), ("qc", "friction"), ("qc", "surface")}
 
 
 def room_of(path: Path) -> str:

@@ -1,0 +1,1 @@
+"""Quality of instrument data: flags, checks on runs and scans, findings."""

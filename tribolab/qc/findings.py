@@ -1,0 +1,118 @@
+"""Findings: what the checks said, as rows for a table, a terminal, a report or a program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.errors import ConfigError, nearest
+from tribolab.qc.register import STATUSES, Check, Result
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+FAIL_ON = ("suspect", "fail", "never")
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What every check said about one run or one set of scans.
+
+    Attributes
+    ----------
+    name
+        What was checked, usually the file's name.
+    results
+        ``(check, result)`` pairs, at least one for every known check.
+    flagged
+        The data with their quality flags, where the checks set any.
+    """
+
+    name: str
+    results: tuple[tuple[Check, Result], ...]
+    flagged: xr.Dataset | None = field(default=None, repr=False)
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """One dict for each result, graver ones first; numbers that are unknown are None."""
+        rows = [
+            {
+                "name": self.name,
+                "check": check.name,
+                "status": result.status,
+                "variable": result.variable,
+                "message": result.message,
+                "where": result.where,
+                "count": result.count,
+                "value": None if np.isnan(result.value) else result.value,
+                "unit": result.unit,
+                "limits": {key: limit.unit for key, limit in check.limits.items()},
+                "question": check.question,
+                "cure": check.cure if result.status in ("suspect", "fail") else "",
+            }
+            for check, result in self.results
+        ]
+        return sorted(rows, key=lambda row: -STATUSES.index(row["status"]))
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The rows as a table: one line per check and variable."""
+        import pandas as pd
+
+        columns = ["check", "status", "variable", "message", "value", "unit", "where", "cure"]
+        return pd.DataFrame(self.rows, columns=["name", *columns])
+
+    @property
+    def status(self) -> str:
+        """The gravest status; "pass" if at least one check passed and none objected."""
+        found = {result.status for _, result in self.results}
+        for status in reversed(STATUSES):
+            if status in found and status != "skipped":
+                return status
+        return "skipped"
+
+    def count(self) -> Mapping[str, int]:
+        """Return how many results there are of each status."""
+        found = [result.status for _, result in self.results]
+        return {status: found.count(status) for status in STATUSES}
+
+    def _repr_html_(self) -> str:
+        return self.table.to_html(index=False)
+
+
+def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
+    """Exit code of a program that saw these statuses.
+
+    Parameters
+    ----------
+    statuses
+        Every status seen.
+    fail_on
+        "suspect", "fail" or "never": from which status on the program reports failure.
+
+    Returns
+    -------
+    int
+        3 if a check crashed, 1 if a status at or above `fail_on` was seen, else 0.
+
+    Raises
+    ------
+    ConfigError
+        If `fail_on` is none of the three.
+
+    Examples
+    --------
+    >>> exit_code({"pass", "suspect"}), exit_code({"suspect"}, "suspect"), exit_code({"error"})
+    (0, 1, 3)
+    """
+    if fail_on not in FAIL_ON:
+        raise ConfigError(f"fail_on: '{fail_on}' is not a level{nearest(fail_on, FAIL_ON)}")
+    if "error" in statuses:
+        return 3
+    if fail_on == "never":
+        return 0
+    return int(bool(statuses & set(STATUSES[STATUSES.index(fail_on) :])))

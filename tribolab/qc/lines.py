@@ -1,0 +1,113 @@
+"""Narrow lines in the spectrum of a signal: mains hum and resonances."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import fft, ndimage
+
+_NEIGHBOURS = 61  # bins around a line that give its background
+_LONGEST = 1 << 18  # samples of one transform; more do not make a line clearer than it must be
+
+
+class Line(NamedTuple):
+    """A line: frequency [Hz], amplitude in the signal's unit, power over the background."""
+
+    frequency: float
+    amplitude: float
+    prominence: float
+
+
+def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies [Hz] and amplitudes of the sines in an evenly sampled stretch (Hann window).
+
+    Parameters
+    ----------
+    time
+        [s] (time), even to within its jitter.
+    values
+        (time), without missing values.
+    """
+    n = min(values.size, _LONGEST)
+    n = fft.next_fast_len(n, real=True) if n == values.size else n
+    n = n if n <= values.size else values.size
+    interval = (time[n - 1] - time[0]) / (n - 1)
+    place = np.arange(n) / (n - 1) - 0.5
+    part = values[:n] - values[:n].mean()
+    part = part - 12 * place * (place @ part) / n  # a drift is no line
+    window = np.hanning(n)
+    amplitude = 2 * np.abs(fft.rfft(part * window)) / window.sum()
+    return fft.rfftfreq(n, interval), amplitude
+
+
+def find_lines(
+    time: np.ndarray, values: np.ndarray, significance: float = 1e-6, lowest: float = 0.0
+) -> list[Line]:
+    """Find the lines of a stretch that noise does not explain.
+
+    Parameters
+    ----------
+    time, values
+        An evenly sampled stretch: [s] and any unit (time).
+    significance
+        Largest probability with which noise alone shows such a line anywhere in the spectrum.
+    lowest
+        Only lines above this frequency [Hz].
+
+    Returns
+    -------
+    list of Line
+        The strongest first.
+
+    Notes
+    -----
+    The background is a running median of the power over some 60 bins. In noise the power in a bin,
+    over its mean, is exponential, so that a peak above -ln(significance / bins) is no chance.
+    """
+    if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
+        return []
+    frequency, amplitude = amplitude_spectrum(time, values)
+    power = amplitude**2
+    background = ndimage.median_filter(power, size=_NEIGHBOURS, mode="reflect") / np.log(2)
+    background = np.maximum(background, 1e-30 * power.max() + np.finfo(float).tiny)
+    prominence = power / background
+    peak = np.flatnonzero(
+        (prominence[1:-1] > -np.log(significance / power.size))
+        & (power[1:-1] >= power[:-2])
+        & (power[1:-1] > power[2:])
+    )
+    peak += 1
+    peak = peak[frequency[peak] > max(lowest, 3 * frequency[1])]
+    peak = peak[np.argsort(-amplitude[peak])]
+    return [Line(float(frequency[i]), float(amplitude[i]), float(prominence[i])) for i in peak]
+
+
+def mains_harmonic(frequency: float, resolution: float, sampling_rate: float) -> str:
+    """Name the mains line that a frequency is, folded ones included; empty if it is none.
+
+    Parameters
+    ----------
+    frequency
+        [Hz]
+    resolution
+        Width of a line in the spectrum [Hz].
+    sampling_rate
+        [Hz]; harmonics above half of it fold back.
+
+    Examples
+    --------
+    >>> mains_harmonic(50.02, 0.1, 2000.0), mains_harmonic(47.0, 0.1, 2000.0)
+    ('50 Hz', '')
+    """
+    tolerance = 0.15 + resolution  # Hz; grids stay within 0.15 Hz of their frequency
+    for base in (50.0, 60.0):
+        for harmonic in (1, 2, 3):
+            true = base * harmonic
+            folded = abs(true - sampling_rate * round(true / sampling_rate))
+            if true < sampling_rate / 2 and abs(frequency - true) < tolerance * harmonic:
+                return f"{true:g} Hz"
+            near = abs(frequency - folded) < tolerance * harmonic
+            if true >= sampling_rate / 2 and near and harmonic == 1:
+                return f"{true:g} Hz, folded"
+    return ""

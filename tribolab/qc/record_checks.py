@@ -1,0 +1,241 @@
+"""Checks on the record itself: the time axis and each signal, sample by sample."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.qc import signals, timing
+from tribolab.qc.flags import FAIL, GOOD, SUSPECT
+from tribolab.qc.register import Check, Limit, Result, sample_result
+from tribolab.qc.subject import RunSubject
+
+_DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
+
+
+def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    flags = timing.time_order(subject.time)
+    text = "time stands still or goes back at {count} samples, {where}"
+    return [sample_result("time", flags, subject.time, text)]
+
+
+def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    time = subject.time
+    flags = timing.time_gaps(time, limits["intervals"])
+    if not (flags == SUSPECT).any():
+        return [sample_result("time", flags, time, "")]
+    lost = timing.lost_time(time, flags)
+    longest = float(np.diff(time)[flags[1:] == SUSPECT].max())
+    text = f"{{count}} gaps in time, the longest {longest:.4g} s, {{where}}"
+    if lost > limits["lost"]:
+        flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
+    return [sample_result("time", flags, time, text, value=lost)]
+
+
+def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    flags = timing.time_jitter(subject.time, limits["scatter"])
+    text = "the sampling intervals scatter over {count} samples, {where}"
+    return [sample_result("time", flags, subject.time, text)]
+
+
+def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    time = subject.time
+    places = timing.rate_changes(time, limits["factor"])
+    flags = np.full(time.size, GOOD, np.int8)
+    inside = [int(p) for p in places if subject.inside_segment(time[p])]
+    flags[inside] = SUSPECT
+    text = "the sampling rate changes within a segment {count} times, {where}"
+    result = sample_result("time", flags, time, text, value=float(len(places)))
+    if not inside and len(places):
+        text = f"the sampling rate changes {len(places)} times, never within a segment"
+        return [Result("pass", "time", text, float(len(places)), flags=flags)]
+    return [result]
+
+
+def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    run = subject.run
+    if "step" not in run:
+        return []
+    steps = run["step"].values
+    changes = np.flatnonzero(steps[1:] != steps[:-1]) + 1
+    flags = np.full(steps.size, GOOD, np.int8)
+    text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
+    if changes.size:
+        where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
+        return [Result("pass", "step", text, float(changes.size + 1), where=where, flags=flags)]
+    return [Result("pass", "step", "one step", 1.0, flags=flags)]
+
+
+def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for name, values in subject.signals.items():
+        flags = signals.missing(values)
+        count = int(np.isnan(values).sum())
+        share = count / values.size
+        if count == 0:
+            results.append(Result("pass", name, "nothing missing", 0.0, flags=flags))
+            continue
+        status = "fail" if share > limits["fail"] else "suspect"
+        if share <= limits["suspect"]:
+            status = "pass"
+        first = int(np.flatnonzero(np.isnan(values))[0])
+        where = f"first at t = {subject.time[first]:.6g} s (sample {first})"
+        text = f"{count} samples ({share:.2%}) have no value, {where}"
+        results.append(Result(status, name, text, share, "1", where, count, flags))
+    return results
+
+
+def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    text = "{count} samples repeat one value longer than noise allows, {where}"
+    return [
+        sample_result(
+            name,
+            signals.stuck(values, limits["chance"]),
+            subject.time,
+            text,
+            fail_share=limits["fail"],
+        )
+        for name, values in subject.force_signals.items()
+    ]
+
+
+def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for name, values in subject.force_signals.items():
+        flags = signals.saturation(values)
+        text = f"{{count}} samples lie at the end of the range ({np.nanmax(values):.6g} or "
+        text += f"{np.nanmin(values):.6g} {subject.unit(name)}): cut off there, {{where}}"
+        results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
+    return results
+
+
+def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for name, values in subject.force_signals.items():
+        step, noise = signals.quantisation_step(values), subject.noise(name)
+        if step == 0:
+            text = "values do not repeat: no step to be seen"
+            results.append(Result("pass", name, text, 0.0))
+            continue
+        typical = (
+            float(np.nanmedian(np.abs(values[subject.in_segments])))
+            if (subject.in_segments.any())
+            else float(np.nanmedian(np.abs(values)))
+        )
+        ratio = step / typical if typical > 0 else float("inf")
+        coarse = step > limits["steps"] * max(noise, 1e-300) and ratio > limits["share"]
+        text = (
+            f"one digit is {step:.4g} {subject.unit(name)}, {ratio:.2%} of the signal; "
+            f"the noise is {noise:.4g} {subject.unit(name)}"
+        )
+        results.append(Result("suspect" if coarse else "pass", name, text, ratio))
+    return results
+
+
+def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for name, values in subject.force_signals.items():
+        flags = signals.spikes(values, limits["noise"])
+        text = "{count} single samples stand out from both neighbours, {where}"
+        results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
+    return results
+
+
+RECORD_CHECKS = (
+    Check(
+        "time_order",
+        1,
+        "Does time go forward from sample to sample?",
+        "Export the file again, or let the dialect say what to do ([time] in the dialect).",
+        {},
+        _time_order,
+    ),
+    Check(
+        "time_gaps",
+        2,
+        "Are stretches of time missing?",
+        "Look whether the logger lost data or paused; segments across a gap are not whole.",
+        {
+            "intervals": Limit(5.0, "1", "buffers that arrive late stretch 2 to 3 intervals"),
+            "lost": Limit(0.2, "1", "a fifth of the record gone is no record of the experiment"),
+        },
+        _time_gaps,
+    ),
+    Check(
+        "time_jitter",
+        3,
+        "Are the samples evenly spaced?",
+        "Spectra need the times as recorded; use a hardware clock for the logger.",
+        {"scatter": Limit(0.25, "1", "above a quarter, a line in the spectrum is smeared out")},
+        _time_jitter,
+    ),
+    Check(
+        "rate_changes",
+        4,
+        "Does the sampling rate change within a segment?",
+        "Means weigh the denser part more; set the logger before the segment starts.",
+        {"factor": Limit(1.5, "1", "between a drifting clock and the next setting of a logger")},
+        _rate_changes,
+    ),
+    Check(
+        "restarts",
+        5,
+        "Does the file hold several steps with headers or clocks of their own?",
+        "Nothing to mend: the steps are joined as the dialect says.",
+        {},
+        _restarts,
+    ),
+    Check(
+        "missing",
+        6,
+        "Are values missing?",
+        "Look for error codes and empty cells in the file at these rows.",
+        {
+            "suspect": Limit(1e-3, "1", "single lost samples do not move a mean"),
+            "fail": Limit(_DEAD_CHANNEL, "1", "a tenth gone takes whole segments with it"),
+        },
+        _missing,
+    ),
+    Check(
+        "stuck",
+        7,
+        "Does a force signal stand still?",
+        "Check the cable and the amplifier; a healthy signal carries noise.",
+        {
+            "chance": Limit(1e-6, "1", "one false alarm in a million records"),
+            "fail": Limit(0.01, "1", "one sample in a hundred moves a mean by its error bar"),
+        },
+        _stuck,
+    ),
+    Check(
+        "saturation",
+        8,
+        "Does a force signal run into the end of its range?",
+        "Choose a larger range of the amplifier or a stronger force cell and measure again.",
+        {"fail": Limit(1e-3, "1", "what is cut off biases the mean; a few samples do not")},
+        _saturation,
+    ),
+    Check(
+        "quantisation",
+        9,
+        "Is one digit of the converter small against noise and signal?",
+        "Choose a smaller range of the amplifier.",
+        {
+            "steps": Limit(2.0, "1", "noise below half a digit no longer averages out"),
+            "share": Limit(0.005, "1", "half a percent of the signal is below usual scatter"),
+        },
+        _quantisation,
+    ),
+    Check(
+        "spikes",
+        10,
+        "Do single samples stand out?",
+        "Look for switching devices nearby; the mean hardly moves, extremes and spectra do.",
+        {
+            "noise": Limit(8.0, "1", "Gaussian noise reaches it once in 1e15 samples"),
+            "fail": Limit(0.01, "1", "one sample in a hundred is no longer a rare disturbance"),
+        },
+        _spikes,
+    ),
+)

@@ -1,0 +1,172 @@
+"""What a check is, what it answers, and how its limits are set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import ConfigError, nearest
+from tribolab.qc.flags import FAIL, SUSPECT
+from tribolab.units import to_si
+
+# From harmless to grave; the order decides what a summary shows.
+STATUSES = ("pass", "skipped", "suspect", "fail", "error")
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit of a check: its default in SI, its unit, and why it is what it is."""
+
+    value: float
+    unit: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one check found on one variable."""
+
+    status: str
+    variable: str
+    message: str
+    value: float = float("nan")
+    unit: str = "1"
+    where: str = ""
+    count: int = 0
+    flags: np.ndarray | None = field(default=None, repr=False, compare=False)
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check: its name, the bit it owns in the masks, what it looks for, and its limits.
+
+    Attributes
+    ----------
+    name
+        As in ``campaign.toml`` and in every table.
+    bit
+        Bit number in ``<variable>_qc_tests``; never reused for another check.
+    question
+        What it asks, in a sentence for a human.
+    cure
+        What to do when it objects.
+    limits
+        By name; each with a unit and a reason.
+    examine
+        ``examine(subject, limits) -> list of Result``.
+    """
+
+    name: str
+    bit: int
+    question: str
+    cure: str
+    limits: Mapping[str, Limit]
+    examine: Callable[[Any, Mapping[str, float]], list[Result]]
+
+
+def resolve_limits(
+    checks: Mapping[str, Check], settings: Mapping[str, Mapping[str, str | float]]
+) -> dict[str, dict[str, float]]:
+    """Return the limits of every check: the defaults, with the user's settings over them.
+
+    Parameters
+    ----------
+    checks
+        Known checks by name.
+    settings
+        ``{check: {limit: value}}``; values are SI numbers or text with a unit.
+
+    Raises
+    ------
+    ConfigError
+        If a check or a limit is unknown; the message names the nearest.
+    UnitError
+        If a value's unit does not fit.
+    """
+    resolved = {n: {k: limit.value for k, limit in c.limits.items()} for n, c in checks.items()}
+    for name, values in settings.items():
+        if name not in checks:
+            raise ConfigError(f"[qc]: no check is called '{name}'{nearest(name, checks)}")
+        for key, value in values.items():
+            if key not in checks[name].limits:
+                known = checks[name].limits
+                raise ConfigError(f"[qc.{name}]: no limit is called '{key}'{nearest(key, known)}")
+            unit = checks[name].limits[key].unit
+            resolved[name][key] = to_si(value, unit, name=f"[qc.{name}] {key}")
+    return resolved
+
+
+def examine(
+    checks: Mapping[str, Check],
+    subject: Any,
+    limits: Mapping[str, Mapping[str, float]],
+    skip: tuple[str, ...] = (),
+) -> dict[str, list[Result]]:
+    """Run every check on a subject; a check that crashes is a result, never a gap.
+
+    Returns
+    -------
+    dict
+        The results by name of the check, at least one for each check.
+    """
+    found: dict[str, list[Result]] = {}
+    for name, check in checks.items():
+        if name in skip:
+            found[name] = [Result("skipped", "", "switched off in the settings")]
+            continue
+        try:
+            found[name] = check.examine(subject, limits[name]) or [
+                Result("skipped", "", "no signal here that it looks at")
+            ]
+        except Exception as crash:  # any crash becomes a row of status "error", exit code 3
+            text = f"the check itself crashed: {type(crash).__name__}: {crash}"
+            found[name] = [Result("error", "", text)]
+    return found
+
+
+def sample_result(
+    variable: str,
+    flags: np.ndarray,
+    time: np.ndarray,
+    message: str,
+    *,
+    fail_share: float = float("inf"),
+    value: float = float("nan"),
+    unit: str = "1",
+) -> Result:
+    """Make a result from the flags of single samples: where they lie, how many, how grave.
+
+    Parameters
+    ----------
+    variable
+        The variable that was checked.
+    flags
+        Severities (time).
+    time
+        [s] (time)
+    message
+        Text with ``{count}`` and ``{where}`` to fill in.
+    fail_share
+        Share of the samples above which suspect becomes fail.
+    value, unit
+        The number that the check measured, if there is one that says more than the share.
+    """
+    bad = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
+    if bad.size == 0:
+        return Result("pass", variable, "nothing found", value, unit, flags=flags)
+    grave = bool((flags[bad] == FAIL).any()) or bad.size > fail_share * flags.size
+    if grave:
+        flags = flags.copy()
+        flags[bad] = FAIL
+    first, last = int(bad[0]), int(bad[-1])
+    where = f"t = {time[first]:.6g} s (sample {first})"
+    if last > first:
+        where += f" to t = {time[last]:.6g} s (sample {last})"
+    text = message.format(count=bad.size, where=where)
+    share = bad.size / flags.size
+    number = share if np.isnan(value) else value
+    status = "fail" if grave else "suspect"
+    return Result(status, variable, text, number, unit, where, int(bad.size), flags)

@@ -1,0 +1,100 @@
+"""Is this run usable? All checks on a run, one table of findings, flags on the samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import xarray as xr
+
+from tribolab.errors import ConfigError, nearest
+from tribolab.qc.findings import Findings
+from tribolab.qc.flags import attach
+from tribolab.qc.record_checks import RECORD_CHECKS
+from tribolab.qc.register import Check, examine, resolve_limits
+from tribolab.qc.sliding_checks import SLIDING_CHECKS
+from tribolab.qc.subject import RunSubject
+from tribolab.units import to_si
+
+RUN_CHECKS: dict[str, Check] = {c.name: c for c in (*RECORD_CHECKS, *SLIDING_CHECKS)}
+
+
+def check_run(
+    run: xr.Dataset,
+    segments: xr.Dataset | None = None,
+    friction: xr.Dataset | None = None,
+    *,
+    limits: Mapping[str, Mapping[str, str | float]] | None = None,
+    skip: Sequence[str] = (),
+    normal_force: str | float | None = None,
+    contact_width: str | float | None = None,
+    checks: Mapping[str, Check] = RUN_CHECKS,
+) -> Findings:
+    """Examine a run: what is wrong with it, where, how badly, and what to do.
+
+    Parameters
+    ----------
+    run
+        The run dataset (dim ``time``).
+    segments, friction
+        What `find_segments` and `friction_coefficient` gave for it; computed if not given.
+    limits
+        ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
+    skip
+        Names of checks to leave out; they appear as skipped.
+    normal_force
+        Set-point of the normal force [N], if the file does not tell.
+    contact_width
+        Width of the contact [m], if known.
+    checks
+        The checks to run, by name.
+
+    Returns
+    -------
+    Findings
+        ``.table`` shows one row for each check and variable, ``.status`` the gravest,
+        ``.flagged`` the run with ``<name>_qc`` and ``<name>_qc_tests`` on its signals.
+
+    Raises
+    ------
+    ConfigError
+        If a check or a limit is unknown; the message names the nearest.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rng = np.random.default_rng(0)
+    >>> force = 1.0 + 0.01 * rng.standard_normal(2000)
+    >>> force[700] = 9.0
+    >>> run = xr.Dataset({"friction_force": ("time", force)}, {"time": np.arange(2000) / 100})
+    >>> found = check_run(run.assign(sliding_velocity=("time", np.full(2000, 1e-3))))
+    >>> found.table.query("check == 'spikes'").message.item()
+    '1 single samples stand out from both neighbours, t = 7 s (sample 700)'
+    """
+    for name in skip:
+        if name not in checks:
+            raise ConfigError(f"[qc] skip: no check is called '{name}'{nearest(name, checks)}")
+    resolved = resolve_limits(checks, limits or {})
+    unknown = float("nan")
+    subject = RunSubject(
+        run,
+        segments,
+        friction,
+        set_normal_force=unknown
+        if normal_force is None
+        else to_si(normal_force, "N", name="normal_force"),
+        contact_width=unknown
+        if contact_width is None
+        else to_si(contact_width, "m", name="contact_width"),
+    )
+    found = examine(checks, subject, resolved, tuple(skip))
+    results = tuple((checks[name], result) for name, rows in found.items() for result in rows)
+    bits = {check.name: check.bit for check in checks.values()}
+    flagged = run
+    for variable in subject.signals:
+        flags = {
+            check.name: result.flags
+            for check, result in results
+            if result.flags is not None and result.variable == variable
+        }
+        flagged = attach(flagged, variable, flags, bits)
+    return Findings(str(run.attrs.get("source", "run")), results, flagged)

@@ -1,0 +1,186 @@
+"""Checks on one sampled signal: missing, stuck, saturated, quantised, spiked.
+
+Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`). None
+changes a sample. All are single passes of whole-array operations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT
+
+_LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
+
+
+def missing(values: np.ndarray) -> np.ndarray:
+    """Flag what is not a number as missing, the rest as good.
+
+    Examples
+    --------
+    >>> missing(np.array([1.0, np.nan]))
+    array([1, 9], dtype=int8)
+    """
+    return np.where(np.isnan(values), MISSING, GOOD).astype(np.int8)
+
+
+def quantisation_step(values: np.ndarray) -> float:
+    """Smallest step between recorded values, in their unit; 0 where values hardly repeat.
+
+    Notes
+    -----
+    A digitised signal takes few different values. Where more than half of the values are
+    different, no step can be told from the numbers and none is claimed.
+    """
+    values = values[~np.isnan(values)]
+    if values.size < 32:
+        return 0.0
+    sample = values[:: max(1, values.size // _LARGEST_SAMPLE)]
+    levels = np.unique(sample)
+    if levels.size < 2 or levels.size > 0.5 * sample.size:
+        return 0.0
+    steps = np.diff(levels)
+    # arithmetic leaves dust of 1e-12 between equal codes; it is not a step
+    steps = steps[steps > 1e-9 * np.abs(levels).max()]
+    return float(np.quantile(steps, 0.05)) if steps.size else 0.0
+
+
+def noise_level(values: np.ndarray) -> float:
+    """Robust standard deviation of the sample-to-sample noise, in the signal's unit.
+
+    Notes
+    -----
+    From second differences, which a drift or a slow wave leaves near zero: their median
+    absolute deviation over 0.6745 sqrt(6).
+    """
+    values = values[~np.isnan(values)]
+    if values.size < 5:
+        return 0.0
+    second = np.diff(values, 2)
+    return float(np.median(np.abs(second)) / (0.6745 * np.sqrt(6.0)))
+
+
+def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
+    """Flag single samples that stand out from both neighbours on the same side.
+
+    A stick-slip drop or a step is no spike: it stands out from one neighbour only.
+
+    Parameters
+    ----------
+    values
+        (time)
+    threshold
+        Height above the nearer neighbour, in standard deviations of the local noise.
+
+    Returns
+    -------
+    ndarray
+        suspect at spikes, good elsewhere; not evaluated at the ends and beside missing values.
+    """
+    flags = np.full(values.size, NOT_EVALUATED, np.int8)
+    if values.size < 16:
+        return flags
+    rise, fall = np.diff(values)[:-1], -np.diff(values)[1:]
+    height = np.where(rise * fall > 0, np.minimum(np.abs(rise), np.abs(fall)), 0.0)
+    height[np.isnan(rise) | np.isnan(fall)] = np.nan
+    scale = np.maximum(_local_noise(values)[1:-1], 0.3 * quantisation_step(values))
+    known = ~np.isnan(height)
+    inner = flags[1:-1]
+    inner[known] = GOOD
+    inner[known & (height > threshold * scale) & (height > 0)] = SUSPECT
+    return flags
+
+
+def _local_noise(values: np.ndarray, block: int = 512) -> np.ndarray:
+    """Noise level of each block, at least that of the quieter half of the record."""
+    second = np.abs(np.diff(values, 2, prepend=values[:1], append=values[-1:]))
+    second = np.nan_to_num(second)
+    blocks = max(1, values.size // block)
+    length = values.size // blocks
+    levels = np.median(second[: blocks * length].reshape(blocks, length), axis=1)
+    levels = np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0))
+    return np.repeat(levels, np.diff(np.append(np.arange(blocks) * length, values.size)))
+
+
+def _runs_of_equal(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First index and length of every stretch of identical values."""
+    change = np.flatnonzero(values[1:] != values[:-1]) + 1
+    first = np.concatenate([[0], change])
+    return first, np.diff(np.append(first, values.size))
+
+
+def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
+    """Flag stretches that repeat one value longer than chance allows.
+
+    Parameters
+    ----------
+    values
+        (time)
+    chance
+        Largest probability with which a healthy, quantised signal of this length may show such
+        a stretch anywhere.
+    shortest
+        Stretches below this number of samples are never flagged.
+
+    Returns
+    -------
+    ndarray
+        suspect over stuck stretches, good elsewhere.
+
+    Notes
+    -----
+    With r the share of equal neighbours (the longest stretch left out), a stretch of k equal
+    values appears somewhere among n samples with a probability of about n r^(k-1).
+    """
+    flags = np.full(values.size, GOOD, np.int8)
+    if values.size < 4 * shortest:
+        flags[:] = NOT_EVALUATED
+        return flags
+    first, length = _runs_of_equal(values)
+    longest = length.max()
+    others = max(values.size - longest, 1)
+    # quantisation coarser than the noise repeats values in a healthy signal too: let typical
+    # stretches (their 99th percentile, weighted by samples) set what is usual
+    usual = np.quantile(np.repeat(length, np.minimum(length, 1)), 0.99)
+    repeat = max((others - (length.size - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
+    allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
+    bad = np.flatnonzero(length >= max(shortest, allowed))
+    for index in bad:  # a loop over stuck stretches, few by their definition
+        flags[first[index] : first[index] + length[index]] = SUSPECT
+    return flags
+
+
+def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.ndarray:
+    """Flag samples that lie at the end of the range because the signal was cut off there.
+
+    Parameters
+    ----------
+    values
+        (time)
+    excess
+        How many times more samples lie on the outermost value than on the next level of the
+        quantised signal; the tail of a signal that is not cut off thins out.
+    fewest
+        Smallest number of samples on the outermost value; where the signal is quantised, at
+        least two of them in a row.
+
+    Returns
+    -------
+    ndarray
+        suspect at saturated samples, good elsewhere.
+    """
+    flags = np.full(values.size, GOOD, np.int8)
+    known = values[~np.isnan(values)]
+    if known.size < 32 or known.min() == known.max():
+        flags[:] = NOT_EVALUATED
+        return flags
+    step = 1.5 * quantisation_step(values)
+    for end, sign in ((known.max(), 1.0), (known.min(), -1.0)):
+        at_end = values == end
+        count = int(at_end.sum())
+        depth = sign * (end - known)
+        below = int(((depth > 0) & (depth <= step)).sum())
+        in_a_row = bool((at_end[1:] & at_end[:-1]).any())
+        if count >= fewest and (in_a_row or step == 0) and count > excess * below:
+            flags[at_end] = SUSPECT
+    return flags
