@@ -219,7 +219,9 @@ def _rezipped(content: bytes, change) -> bytes:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = [(name, archive.read(name)) for name in archive.namelist()]
-    except zipfile.BadZipFile:
+    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, struct.error):
+        return content  # damaged in another way before
+    except (NotImplementedError, RuntimeError):  # a kind of packing that there is not
         return content
     out = io.BytesIO()
     with warnings.catch_warnings(), zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
