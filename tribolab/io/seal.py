@@ -20,8 +20,10 @@ from tribolab.errors import ReadError
 
 _MARK = b"\ntribolab sha256 "
 _LENGTH = len(_MARK) + 64
-_SECONDS = 3.0  # of computing, for a small file; what waits for other programs does not count
+_SECONDS = 2.0  # of computing, for a small file; what waits for other programs does not count
 _BYTES_PER_SECOND = 30e6
+_NO_CRASH = 3  # exit code of a trial that ended in an error of its own
+_MEMORY = 2 << 30  # bytes of address space, for a small file
 _PATIENCE = 60.0  # s on the clock, if the computing cannot be limited
 _TRIAL = """
 import sys
@@ -33,6 +35,7 @@ try:
         used = int(resource.getrusage(resource.RUSAGE_SELF).ru_utime)
         resource.setrlimit(resource.RLIMIT_CPU, (used + seconds, used + seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (int(sys.argv[3]), int(sys.argv[3])))
     except (ImportError, ValueError, OSError):
         pass
     def visit(group):
@@ -44,8 +47,9 @@ try:
             visit(inner)
     with netCDF4.Dataset(path) as file:
         visit(file)
-except BaseException:
-    pass  # an error is no crash: it will be told when the file is read
+except BaseException as error:
+    sys.stderr.write(f"{type(error).__name__}: {error}")
+    sys.exit(3)
 """
 
 
@@ -94,12 +98,13 @@ def try_out(path: Path) -> None:
     Raises
     ------
     ReadError
-        If the other process crashed, or did not come to an end.
+        If the file cannot be read there, the process crashed, or did not come to an end.
     """
-    seconds = _SECONDS + path.stat().st_size / _BYTES_PER_SECOND
+    size = path.stat().st_size
+    seconds = _SECONDS + size / _BYTES_PER_SECOND
     try:
         done = subprocess.run(
-            [sys.executable, "-c", _TRIAL, str(path), str(int(seconds) + 1)],
+            [sys.executable, "-c", _TRIAL, str(path), str(int(seconds)), str(_MEMORY + 4 * size)],
             capture_output=True,
             check=False,
             timeout=_PATIENCE + seconds,
@@ -109,6 +114,9 @@ def try_out(path: Path) -> None:
     else:
         if done.returncode == 0:
             return
+        if done.returncode == _NO_CRASH:
+            told = " ".join(done.stderr.decode(errors="replace").split())[:300]
+            raise ReadError(f"{path}: this is not a netCDF file that can be read: {told}")
         ended = f"ended with code {done.returncode}"
         if done.returncode < 0:
             ended = f"was ended by signal {-done.returncode}"
