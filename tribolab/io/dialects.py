@@ -13,7 +13,7 @@ from tribolab.errors import ConfigError, ReadError, nearest
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.schema_folder import schema_folder
 
-__all__ = ["Dialect", "json_schema", "known_dialects", "load_dialect", "recognise"]
+__all__ = ["Dialect", "is_scan", "json_schema", "known_dialects", "load_dialect", "recognise"]
 
 
 def known_dialects() -> dict[str, Path]:
@@ -69,6 +69,7 @@ def recognise(path: str | Path) -> Dialect:
         ``instrument=``.
     """
     from tribolab.io.recognise import mismatch
+    from tribolab.io.scan_results import is_results
     from tribolab.io.signature import peek
 
     file = peek(path)
@@ -81,12 +82,28 @@ def recognise(path: str | Path) -> Dialect:
         raise ReadError(
             f"{file.path}: more than one instrument fits: {names}; say which with instrument="
         )
-    same_format = ", ".join(d.name for d in every if d.format == file.format)
+    if is_results(file.head):
+        raise ReadError(
+            f"{file.path}: this looks like the results of a roughness tester: use read_results()"
+        )
+    same_format = ", ".join(d.name for d in every if d.format == file.format and not is_scan(d))
     raise ReadError(
         f"{file.path}: no known instrument writes such a file ({file.format}); say which with "
         f"instrument=, one of {same_format or 'none of this format'}, or the path of a TOML "
-        "description of your own (see raw_data_schema/README.md)"
+        "description of your own (see raw_data_schema/README.md); a profile or map of heights is "
+        "read by read_scans()"
     )
+
+
+def is_scan(dialect: Dialect) -> bool:
+    """Whether a dialect's files hold a profile or map, and no run.
+
+    Examples
+    --------
+    >>> is_scan(load_dialect("surftest_csv")), is_scan(load_dialect("linear_slider"))
+    (True, False)
+    """
+    return {"x", "height"} <= {column.quantity for column in dialect.column}
 
 
 def json_schema() -> dict[str, Any]:

@@ -217,6 +217,7 @@ def _decode(content: bytes, file: File, dialect: Dialect) -> str:
 
 def compiled(pattern: str, dialect: Dialect) -> re.Pattern[bytes]:
     """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
-    if pattern.endswith("$") and not pattern.endswith(r"\$"):
+    # behind "\s*", a second wish for blanks would take a time that grows with their number squared
+    if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
         pattern = pattern[:-1] + r"[ \t\r]*$"
     return re.compile(pattern.encode(_encoding(dialect), errors="replace"), re.MULTILINE)

@@ -11,10 +11,14 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError
+from tribolab.io.seal import is_sealed, seal, try_out, unseal
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
 _COMPRESSION = 2
 _MARK, _TUPLE = "json:", "json-tuple:"
+# What netCDF4 and xarray raise on a file that is damaged.
+_DAMAGE = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError)
+_DAMAGE += (MemoryError, OverflowError)
 
 
 def write_netcdf(
@@ -50,7 +54,8 @@ def write_netcdf(
     Notes
     -----
     Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
-    dicts and lists among the attributes become JSON text behind the mark ``json:``.
+    dicts and lists among the attributes become JSON text behind the mark ``json:``. The file is
+    sealed (see `tribolab.io.seal`).
     """
     path = Path(path)
     mode = mode or ("a" if group and path.exists() else "w")
@@ -63,7 +68,10 @@ def write_netcdf(
         variable.encoding = {}
         encoding[name] = _storage(variable)
     try:
+        if mode == "a" and path.is_file():
+            unseal(path)
         encoded.to_netcdf(path, mode=mode, group=group, encoding=encoding, engine="netcdf4")
+        seal(path)
     except (OSError, ValueError, TypeError) as error:
         raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
     return path
@@ -82,11 +90,25 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
     Raises
     ------
     ReadError
-        If there is no such file or group, or the file is no netCDF.
+        If there is no such file or group, or the file is no netCDF, or damaged.
+
+    Notes
+    -----
+    A file that carries no seal, or is not what it was when it was sealed, is tried in another
+    process first.
     """
     path = Path(path)
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file")
+    try:
+        if not is_sealed(path):
+            try_out(path)
+    except OSError as error:
+        raise ReadError(f"{path}: the file cannot be read: {error}") from error
+    return _load(path, group)
+
+
+def _load(path: Path, group: str | None) -> xr.Dataset:
     import netCDF4
 
     try:
@@ -102,14 +124,15 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
             path, group=group, engine="netcdf4", decode_times=False, mask_and_scale=False
         ) as opened:
             data = opened.load()
-    except (OSError, ValueError, RuntimeError) as error:
-        raise ReadError(f"{path}: this is not a netCDF file that can be read: {error}") from error
-    data.attrs = _decoded(data.attrs)
-    for name in data.variables:
-        data[name].attrs = _decoded(data[name].attrs)
-        data[name].encoding = {}
-    data.encoding = {}
-    return data
+        data.attrs = _decoded(data.attrs)
+        for name in data.variables:
+            data[name].attrs = _decoded(data[name].attrs)
+            data[name].encoding = {}
+        data.encoding = {}
+        return data
+    except _DAMAGE as error:
+        told = str(error) or "it claims to hold more than the memory does"
+        raise ReadError(f"{path}: this is not a netCDF file that can be read: {told}") from error
 
 
 def _storage(variable: xr.DataArray) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError
 from tribolab.io.clock import join_clocks, kept_rows, set_time
-from tribolab.io.dialects import Dialect, known_dialects, load_dialect, recognise
+from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.pieces import Content, read_content
 from tribolab.io.signature import peek
 from tribolab.io.values import single_values, step_values
@@ -85,6 +85,9 @@ def read(
     if len(paths) == 1 and peek(paths[0]).format == "netcdf":
         return _own_run(paths[0])
     dialects = _dialects(paths, instrument)
+    for file, dialect in zip(paths, dialects, strict=True):
+        if is_scan(dialect):
+            raise ReadError(f"{file}: this looks like a profile ({dialect.title}): use read_scans")
     main, companions = _sorted_out(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])

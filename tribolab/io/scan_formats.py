@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.scan_grid import even
+from tribolab.io.scan_safety import openable
 from tribolab.units import conversion, to_si
 
 
@@ -41,32 +44,100 @@ def read_foreign(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImportWarning)  # of optional parts that it goes without
             from SurfaceTopography.Exceptions import CannotDetectFileFormat
-            from SurfaceTopography.IO import open_topography
+            from SurfaceTopography.IO import open_topography, readers
+            from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:
         raise ReadError(
             f"{path}: no dialect fits, and other formats need the package SurfaceTopography: "
             "pip install 'tribolab[formats]'"
         ) from error
+    formats = openable(path)
+    if (
+        formats is not None
+    ):  # formats of text that a mark at the file's start tells for sure go first
+        with path.open("rb") as file:
+            head = file.read(512)
+        sure = [r.format() for r in readers if r.can_read(head) == MagicMatch.YES]
+        formats = list(dict.fromkeys([*sure, *formats]))
+    with _foreign(path), warnings.catch_warnings():
+        # pictures in a workbook are no concern of ours, nor are numbers too large for a file's own
+        # arithmetic: they come out as infinite, and infinite heights are missing ones
+        warnings.simplefilter("ignore")
+        with _opened(path, formats, open_topography, CannotDetectFileFormat) as reader:
+            channel, topography, vertical = _topography(path, reader, x_unit, height_unit)
+            heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+            x = topography.positions() if topography.dim == 1 else ()
+            sizes, points = topography.physical_sizes, topography.nb_grid_pts
     try:
-        with warnings.catch_warnings():
-            # pictures in a workbook are no concern of ours
-            warnings.filterwarnings("ignore", module="openpyxl")
-            with open_topography(str(path)) as reader:
-                return _dataset(path, reader, x_unit, height_unit)
+        lateral = conversion(topography.unit, "m")[0]
+        attrs = _instrument(channel.info or {})
+    except (TribolabError, KeyError, TypeError, ValueError) as error:
+        raise ReadError(
+            f"{path}: what the file says of units and instrument cannot be understood: {error}; is "
+            "it damaged?"
+        ) from error
+    attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
+    vertical = lateral if vertical is None else vertical
+    heights = heights * vertical
+    heights[~np.isfinite(heights)] = np.nan
+    if len(points) == 2:
+        # SurfaceTopography's first index is x
+        steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
+        return xr.Dataset(
+            {"height": (("y", "x"), heights.T)},
+            {"y": steps[1] * np.arange(points[1]), "x": steps[0] * np.arange(points[0])},
+            attrs,
+        )
+    pitch, heights, evened = even(str(path), np.asarray(x, dtype=float) * lateral, heights)
+    return xr.Dataset(
+        {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, {**attrs, **evened}
+    )
+
+
+@contextlib.contextmanager
+def _foreign(path: Path) -> Iterator[None]:
+    """Around calls of SurfaceTopography only: its readers raise whatever they stumble over."""
+    try:
+        yield
     except TribolabError:
         raise
-    except CannotDetectFileFormat as error:
+    except Exception as error:
+        told = " ".join(str(error).split()) or "no reason given"
+        told = told if len(told) < 300 else f"{told[:300]} ..."
+        raise ReadError(
+            f"{path}: SurfaceTopography cannot read the file: {type(error).__name__}: {told}"
+        ) from error
+
+
+@contextlib.contextmanager
+def _opened(
+    path: Path, formats: list[str] | None, open_topography: Any, unknown: type[Exception]
+) -> Iterator[Any]:
+    """Open a file with the first of some formats that takes it, or let SurfaceTopography find."""
+    reader = None
+    try:
+        for name in formats or [None]:
+            try:
+                reader = open_topography(str(path), format=name)
+                break
+            except Exception:
+                if formats is None:
+                    raise
+        if reader is None:
+            raise unknown("no text format fits")
+    except unknown as error:
         raise ReadError(
             f"{path}: neither a known dialect nor a format that SurfaceTopography reads; name the "
             "dialect with instrument=, or describe the file in a TOML dialect of your own"
         ) from error
-    except Exception as error:  # its readers raise whatever the file makes them stumble over
-        raise ReadError(
-            f"{path}: SurfaceTopography cannot read the file: {type(error).__name__}: {error}"
-        ) from error
+    with reader:
+        yield reader
 
 
-def _dataset(path: Path, reader: Any, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+def _topography(
+    path: Path, reader: Any, x_unit: str | None, height_unit: str | None
+) -> tuple[Any, Any, float | None]:
+    """Channel, topography, and what turns its heights into m, if its own unit does not."""
     channel = reader.default_channel
     given: dict[str, Any] = {}
     if channel.physical_sizes is None:
@@ -83,27 +154,8 @@ def _dataset(path: Path, reader: Any, x_unit: str | None, height_unit: str | Non
                 "instrument="
             )
         given["unit"] = x_unit
-    topography = channel.topography(**given)
-    lateral = conversion(topography.unit, "m")[0]
-    vertical = lateral if channel.unit is not None else conversion(height_unit, "m")[0]
-    heights = topography.heights()
-    heights = np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan) * vertical
-    attrs = _instrument(channel.info or {})
-    attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
-    if topography.dim == 2:
-        sizes, points = topography.physical_sizes, topography.nb_grid_pts
-        # SurfaceTopography's first index is x
-        steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
-        return xr.Dataset(
-            {"height": (("y", "x"), heights.T)},
-            {"y": steps[1] * np.arange(points[1]), "x": steps[0] * np.arange(points[0])},
-            attrs,
-        )
-    x = np.asarray(topography.positions(), dtype=float) * lateral
-    pitch, heights, evened = even(str(path), x, heights)
-    return xr.Dataset(
-        {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, {**attrs, **evened}
-    )
+    vertical = conversion(height_unit, "m")[0] if channel.unit is None else None
+    return channel, channel.topography(**given), vertical
 
 
 def _name(reader: Any) -> str:

@@ -84,13 +84,21 @@ def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.
     ReadError
         If the points do not fill a rectangular grid of even steps once each.
     """
+    if not (np.isfinite(x).all() and np.isfinite(y).all()):
+        raise ReadError(f"{where}: a point has no place: x or y is missing or no number")
     axes = []
     for name, values in (("x", x), ("y", y)):
         levels = np.unique(values)
         if levels.size < 2:
             raise ReadError(f"{where}: all points have the same {name}, this is no map")
         pitch = float(np.median(np.diff(levels)))
-        number = int(round(float(np.ptp(levels)) / pitch)) + 1
+        steps = float(np.ptp(levels)) / pitch
+        if not steps < 2 * x.size:
+            raise ReadError(
+                f"{where}: the points do not lie on an even grid along {name}: they span "
+                f"{steps:.3g} steps, but there are only {x.size} points"
+            )
+        number = int(round(steps)) + 1
         index = np.rint((values - levels[0]) / pitch).astype(np.intp)
         if np.abs(values - levels[0] - index * pitch).max() > 0.1 * pitch:
             raise ReadError(f"{where}: the points do not lie on an even grid along {name}")

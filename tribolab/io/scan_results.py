@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, UnitError
 from tribolab.io.scan_formats import result
 from tribolab.io.signature import peek
 from tribolab.provenance import provenance
@@ -81,17 +81,16 @@ def read_results(path: str | Path) -> xr.Dataset:
             numeric = np.nan if value.startswith("Err") else _number(value, where)
             if value.startswith("Err"):
                 errors.append(f"{name}: {value}")
-            attribute = result(name, numeric, unit)
+            attribute = _result(name, numeric, unit, where)
             if name in QUANTITIES:
                 values[name] = next(iter(attribute.values()))
             elif twice:
-                attribute = result(f"{name} {condition}", numeric, unit)
+                attribute = _result(f"{name} {condition}", numeric, unit, where)
             attrs.update(attribute)
         elif name in _SETTINGS:
             wanted = "m/s" if unit.endswith("/s") else "m"
-            scale = conversion(unit, wanted)[0]
             key = f"{_SETTINGS[name]}_{wanted.replace('/', '_')}"
-            attrs[key] = float(f"{_number(value, where) * scale:.15g}")
+            attrs[key] = float(f"{_number(value, where) * _scale(unit, wanted, where):.15g}")
         elif section == "Header" and name == "Date":
             attrs["recorded_at_as_written"] = " ".join(filter(None, [value, unit]))
         elif section:
@@ -102,6 +101,20 @@ def read_results(path: str | Path) -> xr.Dataset:
     attrs["instrument_errors"] = "; ".join(errors) if errors else "none"
     data = xr.Dataset({name: ((), value) for name, value in values.items()})
     return stamp(data, **provenance([file.path], "read roughness results"), **attrs)
+
+
+def _result(name: str, value: float, unit: str, where: str) -> dict[str, float]:
+    try:
+        return result(name, value, unit)
+    except UnitError as error:
+        raise ReadError(f"{where}: {error}; is the line damaged?") from error
+
+
+def _scale(unit: str, wanted: str, where: str) -> float:
+    try:
+        return conversion(unit, wanted)[0]
+    except UnitError as error:
+        raise ReadError(f"{where}: {error}; is the line damaged?") from error
 
 
 def _number(text: str, where: str) -> float:

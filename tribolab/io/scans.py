@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError
-from tribolab.io.dialects import Dialect, known_dialects, load_dialect
+from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect
 from tribolab.io.scan_formats import read_foreign
 from tribolab.io.scan_grid import even, gridded
 from tribolab.io.scan_results import is_results
@@ -82,7 +82,7 @@ def read_scans(
     """
     files = _files(paths)
     dialect = load_dialect(instrument) if instrument is not None else None
-    if dialect is not None and not _is_scan(dialect):
+    if dialect is not None and not is_scan(dialect):
         scanning = ", ".join(d.name for d in _scan_dialects())
         raise ReadError(
             f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height'); "
@@ -107,13 +107,13 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
     return files
 
 
-def _is_scan(dialect: Dialect) -> bool:
-    return {"x", "height"} <= {column.quantity for column in dialect.column}
-
-
 @functools.cache  # the descriptions do not change while a program runs
-def _scan_dialects() -> tuple[Dialect, ...]:
-    return tuple(d for d in map(load_dialect, known_dialects()) if _is_scan(d))
+def _every_dialect() -> tuple[Dialect, ...]:
+    return tuple(map(load_dialect, known_dialects()))
+
+
+def _scan_dialects() -> list[Dialect]:
+    return [dialect for dialect in _every_dialect() if is_scan(dialect)]
 
 
 def _read(
@@ -150,14 +150,17 @@ def _recognised(path: Path) -> Dialect | None:
         if path.stat().st_size == 0:
             raise
         return None  # a format that only SurfaceTopography may know
-    if file.format != "text":
+    if file.format not in ("text", "tdms"):
         return None
     if is_results(file.head):
         raise ReadError(
             f"{path}: the file holds the results of a roughness tester, but no profile; read them "
             "with read_results(), or export the profile too"
         )
-    fitting = [d for d in _scan_dialects() if mismatch(file, d) is None]
+    known = [d for d in _every_dialect() if mismatch(file, d) is None]
+    fitting = [d for d in known if is_scan(d)]
+    if known and not fitting:
+        raise ReadError(f"{path}: this looks like a run ({known[0].title}): use read")
     if len(fitting) > 1:
         names = ", ".join(repr(d.name) for d in fitting)
         raise ReadError(f"{path}: more than one dialect fits: {names}; say which with instrument=")

@@ -17,7 +17,9 @@ _MAGIC = {
     b"CDF\x02": "netcdf",
 }
 _FOREIGN = {
-    b"PK\x03\x04": "a zip or Office file; export the table as text (csv)",
+    b"PK\x03\x04": "a zip or Office file; export the table as text (csv), or, if it holds a "
+    "profile, use read_scans()",
+    b"MATLAB 7.3": "a MAT file of version 7.3; save it with '-v7'",
     b"\xd0\xcf\x11\xe0": "an old Office file; export the table as text (csv)",
     b"\x1f\x8b": "compressed (gzip); unpack it first",
     b"%PDF": "a PDF",
@@ -66,5 +68,8 @@ def _format(path: Path, head: bytes) -> str:
         if head.startswith(magic):
             raise ReadError(f"{path}: this is {name}")
     if b"\0" in head and not head.startswith(_UTF16):
-        raise ReadError(f"{path}: this is neither text nor a binary format that is known")
+        raise ReadError(
+            f"{path}: this is neither text nor a binary format that is known; if it holds a "
+            "profile or map, use read_scans()"
+        )
     return "text"

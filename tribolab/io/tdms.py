@@ -18,6 +18,7 @@ from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
 
 _DAMAGE = (ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error)
+_DAMAGE += (MemoryError, OverflowError, NotImplementedError, AttributeError)
 
 
 def channel_names(path: Path) -> set[str]:
@@ -58,7 +59,8 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
         numbers = np.asarray(channels[signal.index][:])
         if numbers.dtype.kind not in "fiu":
             raise ReadError(f"{path}: channel '{signal.label}' holds no numbers")
-        columns[signal.quantity] = numbers * signal.scale + signal.offset
+        with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+            columns[signal.quantity] = numbers * signal.scale + signal.offset
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
@@ -110,4 +112,7 @@ def _open(path: Path, how: str) -> Any:
     try:
         return getattr(TdmsFile, how)(str(path))
     except _DAMAGE as error:
-        raise ReadError(f"{path}: the TDMS file is damaged: {error}") from error
+        told = str(error) or "it claims to hold more than the memory does"
+        raise ReadError(
+            f"{path}: the TDMS file is damaged: {told[:300]}; copy or save it again"
+        ) from error

@@ -230,7 +230,12 @@ class _Parser:
                         f"stands for a missing value, say so in the dialect: [text] missing = "
                         f"['{cell[:40]}']"
                     )
-        return f"{path}: the rows after line {before} cannot be read: {error}"
+        told = " ".join(str(error).split())
+        told = told if len(told) < 200 else f"{told[:150]} ..."
+        return (
+            f"{path}: the rows after line {before} cannot be read: {told}; is a quotation mark "
+            "left open there?"
+        )
 
     def _lines_before(self, place: int) -> int:
         if self._raw.memory is not None:

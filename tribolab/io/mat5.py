@@ -1,0 +1,127 @@
+"""MAT files of version 5 to 7, without native code: a damaged file is an error, never a crash."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError
+
+_HEADER = 128
+_MATRIX, _COMPRESSED = 14, 15
+_TYPES = dict(
+    zip((1, 2, 3, 4, 5, 6, 7, 9, 12, 13), "i1 u1 i2 u2 i4 u4 f4 f8 i8 u8".split(), strict=True)
+)
+_CLASSES = dict(zip(range(6, 16), "f8 f4 i1 u1 i2 u2 i4 u4 i8 u8".split(), strict=True))
+_COMPLEX = 0x0800
+
+
+class Variable(NamedTuple):
+    """One variable: its name, and its numbers (None: text, a structure, a complex array)."""
+
+    name: str
+    numbers: np.ndarray | None
+
+
+def read_variables(path: Path) -> list[Variable]:
+    """Read the variables of a MAT file.
+
+    Parameters
+    ----------
+    path
+        A file that begins with ``MATLAB 5.0``, as versions 5, 6 and 7 do.
+
+    Returns
+    -------
+    list of Variable
+        In the file's order.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged or cut short.
+
+    Notes
+    -----
+    SciPy's reader is native code that trusts the sizes in the file: a flipped byte can end the
+    whole program. Here every size is held against what is there.
+    """
+    try:
+        content = memoryview(path.read_bytes())
+        order = {b"IM": "<", b"MI": ">"}.get(bytes(content[126:_HEADER]))
+        if order is None:
+            raise ValueError("the mark of its byte order is missing")
+        found = []
+        for kind, data in _elements(content[_HEADER:], order):
+            if kind == _COMPRESSED:
+                inner = list(_elements(memoryview(zlib.decompress(data)), order))
+                if len(inner) != 1:
+                    raise ValueError(f"{len(inner)} variables stand where one should")
+                kind, data = inner[0]
+            if kind == _MATRIX:
+                found.append(_variable(data, order))
+        if not found:
+            raise ValueError("it holds no variable")
+    except (ValueError, struct.error, zlib.error, OSError, MemoryError) as error:
+        told = str(error) or "it claims to hold more than the memory does"
+        raise ReadError(
+            f"{path}: the MAT file is damaged or cut short: {told}; copy or save it again"
+        ) from error
+    return found
+
+
+def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
+    """Type and data of the elements that stand one after the other."""
+    place = 0
+    while place < len(content):
+        kind, size = struct.unpack_from(order + "II", content, place)
+        if kind >> 16:  # a short element: type and size share four bytes, the data the next four
+            kind, size, start = kind & 0xFFFF, kind >> 16, place + 4
+            after = place + 8
+            if size > 4:
+                raise ValueError(f"a short element claims {size} bytes")
+        else:
+            start = place + 8
+            # all but compressed elements are filled up to multiples of eight bytes
+            after = start + size + (0 if kind == _COMPRESSED else -size % 8)
+        if start + size > len(content):
+            raise ValueError(f"an element of {size} bytes goes beyond its end")
+        yield kind, content[start : start + size]
+        place = after
+
+
+def _variable(data: memoryview, order: str) -> Variable:
+    parts = list(_elements(data, order))
+    if len(parts) < 3:
+        raise ValueError("a variable has no name")
+    flags = _numbers(parts[0], order)
+    shape = _numbers(parts[1], order)
+    name = bytes(parts[2][1]).decode("utf-8", errors="replace").rstrip("\0")
+    if len(flags) < 1 or len(shape) < 2 or (shape < 0).any():
+        raise ValueError(f"the size of variable '{name[:40]}' is not given")
+    kind = int(flags[0]) & 0xFF
+    if kind not in _CLASSES or int(flags[0]) & _COMPLEX:
+        return Variable(name, None)
+    numbers = _numbers(parts[3], order) if len(parts) > 3 else np.empty(0)
+    wanted = 1
+    for length in shape.tolist():
+        wanted *= length
+    if wanted != numbers.size:
+        raise ValueError(f"variable '{name[:40]}' has {numbers.size} of {wanted} numbers")
+    values = numbers.astype(np.dtype(_CLASSES[kind]), casting="unsafe")
+    return Variable(name, values.reshape(shape.tolist(), order="F"))
+
+
+def _numbers(part: tuple[int, memoryview], order: str) -> np.ndarray:
+    kind, data = part
+    if kind not in _TYPES:
+        raise ValueError(f"there is no type of numbers {kind}")
+    dtype = np.dtype(order + _TYPES[kind])
+    if len(data) % dtype.itemsize:
+        raise ValueError(f"{len(data)} bytes are no whole numbers")
+    return np.frombuffer(data, dtype)

@@ -1,0 +1,96 @@
+"""What has to hold before a file is given to SurfaceTopography, whose readers trust files."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+import zlib
+from pathlib import Path
+
+from tribolab.errors import ReadError
+from tribolab.io.seal import is_sealed, try_out
+
+_MEGABYTE = 1 << 20
+_UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
+_RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
+_HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
+_LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square
+_NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
+# SurfaceTopography's formats for text, in its own order of trial; "xyz" tries every line of a
+# file's start as the first row, so it is for tables that are numbers to their end.
+_TEXT = ("sdf", "xyz", "asc")
+
+
+def openable(path: Path) -> list[str] | None:
+    """Say which formats SurfaceTopography may try on a file; None: whatever it finds.
+
+    Raises
+    ------
+    ReadError
+        If the file would unpack to more than it can hold, its structure is damaged in a way that
+        could crash native code, or it is text that is no profile.
+    """
+    with path.open("rb") as file:
+        head = file.read(_MEGABYTE)
+    if head.startswith(b"PK\x03\x04"):
+        _unpacks(path)
+    elif head.startswith(b"MATLAB 5.0"):
+        _arrays_only(path)
+    elif head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")):
+        if not is_sealed(path):
+            try_out(path)
+    elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return _text_formats(path)
+    return None
+
+
+def _unpacks(path: Path) -> None:
+    """Refuse an archive that unfolds to far more than it is."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            unpacked = sum(member.file_size for member in archive.infolist())
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        ValueError,
+        OSError,
+        EOFError,
+        NotImplementedError,
+    ) as e:
+        raise ReadError(
+            f"{path}: the zip or Office file is damaged: {e}; copy or save it again"
+        ) from e
+    if unpacked > max(_UNPACKED, _RATIO * path.stat().st_size):
+        raise ReadError(
+            f"{path}: the file unpacks to {unpacked / _MEGABYTE:.0f} MB, "
+            f"{unpacked / path.stat().st_size:.0f} times its size; that is no measurement. Export "
+            "the profile as text (csv)"
+        )
+
+
+def _arrays_only(path: Path) -> None:
+    """Read the MAT file with our own reader first: it holds every size against the file's."""
+    from tribolab.io.mat5 import read_variables
+
+    if any(variable.numbers is None for variable in read_variables(path)):
+        raise ReadError(
+            f"{path}: the MAT file holds more than arrays of numbers; save the heights alone"
+        )
+
+
+def _text_formats(path: Path) -> list[str]:
+    content = path.read_bytes()
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        content = content.decode("utf-16", errors="replace").encode()
+    lines = re.split(rb"\r\n|\r|\n", content)
+    words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
+    for number in words:
+        if len(lines[number]) > _LONG:
+            raise ReadError(
+                f"{path}: line {number + 1} has {len(lines[number])} characters that are not all "
+                "numbers; a profile's text has short lines of words. Is the file damaged?"
+            )
+    last = words[-1] if words else -1
+    rows = [len(re.split(rb"[\s,;]+", line.strip())) for line in lines[last + 1 :] if line.strip()]
+    columns = last < _HEADER_LINES and len(set(rows)) == 1
+    return [name for name in _TEXT if columns or name != "xyz"]

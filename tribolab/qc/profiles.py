@@ -1,0 +1,163 @@
+"""Checks on profiles of heights: steps, ends of the range, odd ones out.
+
+Each is a plain function from arrays and limits to flags or numbers; none changes a height.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.qc import signals
+from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
+
+_BLOCK = 512  # points whose slopes are compared with each other
+
+
+def longest_run(marked: np.ndarray) -> int:
+    """Length of the longest stretch of True.
+
+    Examples
+    --------
+    >>> longest_run(np.array([True, False, True, True, False]))
+    2
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(np.int8), [0]])))
+    return int((edges[1::2] - edges[::2]).max(initial=0))
+
+
+def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
+    """Flag points where the height jumps by far more than between other neighbours around.
+
+    Parameters
+    ----------
+    height
+        Heights of one profile [m] (x); NaN where there is none.
+    factor
+        Smallest jump, in robust standard deviations of the differences between neighbours of the
+        block of 512 points around (and of the quieter three quarters of the profile).
+
+    Returns
+    -------
+    ndarray
+        suspect at the point after a jump, good elsewhere; not evaluated without a neighbour.
+
+    Notes
+    -----
+    Rough profiles have slopes with long tails. A jump has to be three times larger than the
+    second-largest of other places in its block, too, and larger than three digits.
+
+    Examples
+    --------
+    >>> height = np.sin(np.linspace(0.0, 60.0, 2000))
+    >>> height[1200:] += 5.0
+    >>> np.flatnonzero(steps(height) == SUSPECT)
+    array([1200])
+    """
+    flags = np.full(height.size, NOT_EVALUATED, np.int8)
+    if height.size < 64:
+        return flags
+    jumps = np.diff(height)
+    known = np.isfinite(jumps)
+    flags[1:][known] = GOOD
+    if not known.any():
+        return flags
+    number = max(1, jumps.size // _BLOCK)
+    blocks = np.array_split(np.where(known, jumps, np.nan), number)
+    middles = np.array([np.nanmedian(b) if np.isfinite(b).any() else 0.0 for b in blocks])
+    spread = np.array([_spread(b, m) for b, m in zip(blocks, middles, strict=True)])
+    least = np.quantile(spread, 0.25)
+    digit = signals.quantisation_step(height)
+    for start, block, middle, scale in zip(
+        np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
+    ):  # a loop over blocks, not over points
+        size = np.nan_to_num(np.abs(block - middle))
+        limit = max(factor * max(scale, least), 3.0 * digit)
+        found = np.flatnonzero(size > limit)
+        if found.size:
+            usual = np.delete(
+                size, np.unique(np.clip([found - 1, found, found + 1], 0, size.size - 1))
+            )
+            found = found[size[found] > 3.0 * usual.max(initial=0.0)]
+        flags[start + 1 + found] = SUSPECT
+    return flags
+
+
+def _spread(values: np.ndarray, middle: float) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(np.abs(known - middle))) / 0.6745 if known.size else 0.0
+
+
+def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
+    """Flag flat tops or bottoms at the end of the gauge's range.
+
+    Parameters
+    ----------
+    height
+        Heights of one profile [m] (x), as measured: with tilt and form.
+    fewest
+        Smallest number of points in a row on the outermost height.
+
+    Returns
+    -------
+    ndarray
+        suspect at such points, good elsewhere.
+
+    Notes
+    -----
+    A profile that is quantised coarsely reaches its outermost height in a row by chance; as many
+    points on the next level below tell it from one that is cut off.
+    """
+    flags = signals.saturation(height, excess=3.0, fewest=fewest)
+    for end in (np.nanmax(height, initial=-np.inf), np.nanmin(height, initial=np.inf)):
+        at_end = height == end
+        if longest_run(at_end) < fewest:
+            flags[at_end & (flags == SUSPECT)] = GOOD
+    return flags
+
+
+def odd_one_out(
+    logs: np.ndarray, weights: np.ndarray, factor: float, certainty: float
+) -> tuple[int, float]:
+    """Find the one of several repeats whose spectrum differs from what the others agree on.
+
+    Parameters
+    ----------
+    logs
+        Natural logarithms of the repeats' spectra (repeat, band).
+    weights
+        Number of independent values behind each (band).
+    factor
+        A band that differs by less than this factor is no difference.
+    certainty
+        A band that differs by less than this many standard deviations is none either.
+
+    Returns
+    -------
+    tuple of int and float
+        Number of the repeat that is farthest off (-1: they agree) and its largest deviation from
+        the others' median, as a factor (above 1).
+
+    Notes
+    -----
+    The logarithm of a mean of n independent spectral values scatters by sqrt(1/n). The others'
+    median has about 1.5 / (repeats - 1) of that variance. With two repeats that differ nobody can
+    say which is wrong: the one with more power is named.
+    """
+    repeats = len(logs)
+    if repeats < 2:
+        return -1, 1.0
+    found = []
+    for one in range(repeats):
+        others = np.delete(logs, one, axis=0)
+        middle = np.median(others, axis=0)
+        deviation = logs[one] - middle
+        scatter = np.sqrt((1.0 + 1.5 / (repeats - 1)) / np.maximum(weights, 1.0))
+        # where the others disagree as much among themselves, this one is not the odd one
+        apart = np.abs(others - middle).max(axis=0)
+        real = np.abs(deviation) > np.maximum(certainty * scatter, 2.0 * apart)
+        found.append(np.abs(deviation)[real].max(initial=0.0))
+    worst = int(np.argmax(found))
+    if repeats == 2 and found[worst] > 0:
+        worst = int(np.argmax(logs.sum(axis=1)))
+    largest = float(np.exp(min(max(found), 700.0)))
+    return (worst, largest) if largest > factor else (-1, largest)

@@ -1,0 +1,296 @@
+"""Are these scans usable? All checks on profiles of one surface, one table of findings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, ConfigError, nearest
+from tribolab.qc import profiles, signals
+from tribolab.qc.findings import Findings
+from tribolab.qc.flags import FAIL, SUSPECT, attach
+from tribolab.qc.register import Check, Limit, Result, examine, resolve_limits
+from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
+from tribolab.qc.scan_subject import ScanSubject
+
+
+def check_scans(
+    scans: xr.Dataset,
+    *,
+    limits: Mapping[str, Mapping[str, str | float]] | None = None,
+    skip: Sequence[str] = (),
+    results: xr.Dataset | Sequence[xr.Dataset] | None = None,
+) -> Findings:
+    """Examine scans of one surface: what is wrong with them, where, how badly, what to do.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (scan, x) from `tribolab.io.scans.read_scans`; a single profile or a map
+        (y, x) will do.
+    limits
+        ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
+    skip
+        Names of checks to leave out; they appear as skipped.
+    results
+        What `tribolab.io.scan_results.read_results` gave for the instrument's own results.
+
+    Returns
+    -------
+    Findings
+        ``.table`` shows one row for each check and variable, ``.status`` the gravest,
+        ``.flagged`` the scans with ``height_qc`` and ``height_qc_tests``.
+
+    Raises
+    ------
+    AnalysisError
+        If the dataset holds no scan.
+    ConfigError
+        If a check or a limit is unknown; the message names the nearest.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> height = 1e-7 * rng.standard_normal(4096).cumsum()
+    >>> height[1000:] += 2e-5
+    >>> scans = xr.Dataset({"height": ("x", height)}, {"x": 1e-6 * np.arange(4096)})
+    >>> check_scans(scans).table.query("check == 'steps'").message.item()
+    'the height jumps 1 times, scan 1, x = 1 mm'
+    """
+    for name in skip:
+        if name not in SCAN_CHECKS:
+            raise ConfigError(f"[qc] skip: no check is called '{name}'{nearest(name, SCAN_CHECKS)}")
+    if "height" not in scans or "x" not in scans.height.dims or scans.sizes["x"] < 2:
+        raise AnalysisError(
+            "check_scans: scans with 'height' (scan, x) are wanted; read them with read_scans()"
+        )
+    resolved = resolve_limits(SCAN_CHECKS, limits or {})
+    given = [results] if isinstance(results, xr.Dataset) else list(results or ())
+    subject = ScanSubject(scans, given)
+    found = examine(SCAN_CHECKS, subject, resolved, tuple(skip))
+    listed = tuple((SCAN_CHECKS[name], result) for name, rows in found.items() for result in rows)
+    flags = {
+        check.name: subject.to_shape(result.flags)
+        for check, result in listed
+        if result.flags is not None
+    }
+    bits = {check.name: check.bit for check in SCAN_CHECKS.values()}
+    return Findings(
+        str(scans.attrs.get("source", "scans")), listed, attach(scans, "height", flags, bits)
+    )
+
+
+def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float) -> list[Result]:
+    """One result for flags (row, x): how many points, where, how grave."""
+    bad = np.isin(flags, (SUSPECT, FAIL))
+    count = int(bad.sum())
+    share = count / flags.size
+    if not count:
+        return [Result("pass", "height", "nothing found", 0.0, flags=flags)]
+    grave = share > fail_share
+    if grave:
+        flags = np.where(bad, FAIL, flags).astype(np.int8)
+    row = int(np.argmax(bad.any(axis=1)))
+    at = np.flatnonzero(bad[row])
+    where = subject.where(row, int(at[0]), int(at[-1]))
+    others = int(bad.any(axis=1).sum()) - 1
+    message = text.format(count=count) + f", {where}" + (f" and in {others} more" if others else "")
+    status = "fail" if grave else "suspect"
+    return [Result(status, "height", message, share, "1", where, count, flags)]
+
+
+def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    missing = ~np.isfinite(subject.rows)
+    flags = signals.missing(np.where(missing, np.nan, 0.0))
+    count, share = int(missing.sum()), float(missing.mean())
+    if not count:
+        return [Result("pass", "height", "nothing missing", 0.0, flags=flags)]
+    row = int(np.argmax([profiles.longest_run(m) for m in missing]))
+    longest = profiles.longest_run(missing[row])
+    at = np.flatnonzero(missing[row])
+    where = subject.where(row, int(at[0]), int(at[-1]))
+    span = longest * subject.pitch
+    text = (
+        f"{count} heights ({share:.2%}) are missing, at most {longest} in a row "
+        f"({span * 1e6:.4g} um), {where}"
+    )
+    whole = float(subject.x[-1] - subject.x[0])
+    status = "pass"
+    if share > limits["suspect"] or longest > limits["in_a_row"]:
+        status = "suspect"
+    if share > limits["fail"] or span > limits["fail"] * whole:
+        status = "fail"
+    return [Result(status, "height", text, share, "1", where, count, flags)]
+
+
+def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    flags = np.stack([profiles.steps(row, limits["factor"]) for row in subject.rows])
+    return _flagged(subject, flags, "the height jumps {count} times", limits["fail"])
+
+
+def _saturation(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    flags = np.stack([profiles.clipped(row, int(limits["points"])) for row in subject.rows])
+    text = "{count} points lie flat at the end of the range: cut off there"
+    return _flagged(subject, flags, text, limits["fail"])
+
+
+def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    kind, flat = subject.form
+    results = []
+    if kind == "none":
+        text = "the form was taken away before"
+        results.append(Result("skipped", "tilt", text))
+    else:
+        tilts = np.abs([float(profile.form_tilt) for profile in flat])
+        row, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
+        status = "fail" if angle > limits["fail"] else "pass"
+        status = "suspect" if limits["tilt"] < angle <= limits["fail"] else status
+        text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.names[row]}"
+        results.append(Result(status, "tilt", text, angle, "rad"))
+    share, digits = [], []
+    for row, profile in zip(subject.filled, flat, strict=True):
+        whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
+        share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
+        step = signals.quantisation_step(row.height.values)
+        digits.append(float(profile.height.std()) / step if step > 0 else np.inf)
+    fewest = min(digits)
+    status = "suspect" if fewest < limits["digits"] else "pass"
+    text = f"form ({kind}) takes {max(share):.2%} of the range"
+    if np.isfinite(fewest):
+        text += f"; the roughness left is {fewest:.3g} digits of the gauge (rms)"
+    return [*results, Result(status, "height", text, max(share))]
+
+
+def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    radius = max(subject.stated("tip_radius_m"), default=None)
+    if radius is None:
+        return [Result("skipped", "height", "the file does not say the radius of the tip")]
+    if not subject.spectra:
+        return [Result("skipped", "height", "no spectrum can be had of this scan")]
+    lost, reach = [], []
+    for spectrum in subject.spectra:
+        q, power = spectrum.wavenumber.values, spectrum.psd_1d.values
+        width = (spectrum.wavenumber_high - spectrum.wavenumber_low).values
+        top = float(spectrum.wavenumber_high[-1])
+        cut = top
+        if spectrum.attrs["trusted_high_limited_by"] == "stylus tip":
+            cut = float(spectrum.attrs["trusted_high_1_m"])
+        slopes = q**2 * power * width
+        lost.append(float(slopes[q > cut].sum() / slopes.sum()))
+        reach.append(2e6 * np.pi / cut)
+    worst = int(np.argmax(lost))
+    value = lost[worst]
+    if value == 0.0:
+        text = f"the tip of {radius * 1e6:.3g} um follows all that the pitch shows"
+        return [Result("pass", "height", text, 0.0)]
+    status = "pass"
+    if value > limits["suspect"]:
+        status = "fail" if value > limits["fail"] else "suspect"
+    text = (
+        f"the tip of {radius * 1e6:.3g} um does not follow waves shorter than {reach[worst]:.3g} "
+        f"um; {value:.0%} of the mean square slope lies there, {subject.names[worst]}"
+    )
+    return [Result(status, "height", text, value)]
+
+
+def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    spectra = subject.spectra
+    if subject.is_map or len(subject.rows) < 2 or len(spectra) < 2:
+        return [Result("skipped", "height", "one scan: nothing to compare it with")]
+    weights = spectra[0].independent_values.values
+    enough = weights >= limits["values"]
+    if not enough.any():
+        return [Result("skipped", "height", "the scans are too short to be compared")]
+    logs = np.stack([np.log(one.psd_1d.values[enough]) for one in spectra])
+    odd, factor = profiles.odd_one_out(logs, weights[enough], limits["factor"], limits["sigma"])
+    if odd < 0:
+        text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
+        return [Result("pass", "height", text, factor)]
+    status = "fail" if factor > limits["fail"] else "suspect"
+    text = f"{subject.names[odd]} has a spectrum up to {factor:.3g} times off the others'"
+    if len(spectra) == 2:
+        text = f"the two scans differ by up to a factor {factor:.3g} in their spectra"
+    return [Result(status, "height", text, factor, "1", subject.names[odd])]
+
+
+PROFILE_CHECKS = (
+    Check(
+        "dropouts",
+        1,
+        "Are heights missing?",
+        "Clean the surface or coat it; fill_dropouts() bridges short gaps by straight lines.",
+        {
+            "suspect": Limit(1e-3, "1", "bridged singly, they change no spectrum"),
+            "in_a_row": Limit(8.0, "1", "a bridge this long takes waves of its length away"),
+            "fail": Limit(0.05, "1", "more is bridge than a spectrum bears"),
+        },
+        _dropouts,
+    ),
+    Check(
+        "steps",
+        2,
+        "Does the height jump between neighbouring points?",
+        "Look for a slipping specimen, an edge or a scratch there; cut the scan before it.",
+        {
+            "factor": Limit(12.0, "1", "slopes of ground and blasted surfaces reach 7"),
+            "fail": Limit(1e-3, "1", "one jump may be an edge; one in a thousand points is none"),
+        },
+        _steps,
+    ),
+    Check(
+        "saturation",
+        3,
+        "Does the profile run into the end of the gauge's range?",
+        "Level the specimen or choose a larger range, and scan again.",
+        {
+            "points": Limit(8.0, "1", "a stylus rests on one height for some points by chance"),
+            "fail": Limit(0.01, "1", "a hundredth cut off changes Rq and spectrum"),
+        },
+        _saturation,
+    ),
+    Check(
+        "form",
+        4,
+        "How much of the range do tilt and form take?",
+        "Level the specimen; choose the smaller range that this allows.",
+        {
+            "tilt": Limit(0.0873, "rad", "5 deg: lengths along the surface are 0.4 % longer"),
+            "fail": Limit(0.349, "rad", "20 deg: the flank of a stylus begins to touch"),
+            "digits": Limit(2.0, "1", "roughness of fewer digits of the gauge is quantisation"),
+        },
+        _form,
+    ),
+    Check(
+        "tip",
+        5,
+        "Is the tip sharp enough for this surface?",
+        "Use a sharper tip, or trust the spectrum only up to the wavenumber named.",
+        {
+            "suspect": Limit(0.5, "1", "half of the mean square slope cannot be trusted"),
+            "fail": Limit(0.95, "1", "what is left says nothing of the surface's slopes"),
+        },
+        _tip,
+    ),
+)
+
+REPEAT_CHECKS = (
+    Check(
+        "repeats",
+        8,
+        "Do the scans of one surface agree with each other?",
+        "Look at the scan named: another surface, another filter, dirt, or a lifted stylus.",
+        {
+            "values": Limit(20.0, "1", "fewer independent values scatter by a quarter or more"),
+            "sigma": Limit(6.0, "1", "chance alone goes so far once in a billion bands"),
+            "factor": Limit(2.0, "1", "spots of one surface differ by less in C; Rq by 1.4"),
+            "fail": Limit(4.0, "1", "a factor 4 in C is twice the roughness"),
+        },
+        _repeats,
+    ),
+)
+
+SCAN_CHECKS: dict[str, Check] = {
+    check.name: check for check in (*PROFILE_CHECKS, *INSTRUMENT_CHECKS, *REPEAT_CHECKS)
+}

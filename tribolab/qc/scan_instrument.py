@@ -1,0 +1,167 @@
+"""Checks on what an instrument says of its scan: spacing, length, and its own results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.qc.register import Check, Limit, Result
+from tribolab.qc.scan_subject import ScanSubject
+from tribolab.surface.roughness import roughness_parameters
+
+_COMPARED = ("Ra", "Rq")
+
+
+def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    unevenness = max(subject.stated("x_unevenness"), default=float("nan"))
+    steps = np.diff(subject.x)
+    here = float(np.abs(steps / subject.pitch - 1.0).max())
+    resampled = "resampled" in subject.scans.attrs
+    if np.isnan(unevenness):
+        unevenness = here
+    if not resampled and unevenness <= limits["even"]:
+        return [Result("pass", "x", "the points are evenly spaced", unevenness)]
+    if not resampled:
+        text = (
+            f"the file's positions look uneven, by up to {unevenness:.2g} steps, as rounding of "
+            "their last digit explains: taken as even"
+        )
+        return [Result("pass", "x", text, unevenness)]
+    text = (
+        f"the file's positions deviate from even ones by up to {unevenness:.2g} steps, more than "
+        "their rounding: heights were interpolated, which takes short waves away"
+    )
+    status = "fail" if unevenness > limits["fail"] else "suspect"
+    return [Result(status, "x", text, unevenness)]
+
+
+def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    attrs = subject.scans.attrs
+    real = {"length": float(subject.x[-1] - subject.x[0]), "pitch": subject.pitch}
+    results = []
+    for name, unit, size in (("length", "mm", 1e3), ("pitch", "um", 1e6)):
+        stated = subject.stated(f"stated_{name}_m")
+        if not stated or np.isnan(stated).all():
+            continue
+        is_attr = subject.stated(f"{name}_m")
+        found = np.broadcast_to(is_attr if is_attr else [real[name]], len(stated))
+        # n points are n - 1 steps: a length of one step more is the same length
+        allowance = real["pitch"] if name == "length" else 0.0
+        apart = np.maximum(np.abs(np.array(stated) - found) - allowance, 0.0) / found
+        row = int(np.nanargmax(apart))
+        value = float(apart[row])
+        status = "pass" if value <= limits["suspect"] else "suspect"
+        status = "fail" if value > limits["fail"] else status
+        text = (
+            f"the file states a {name} of {stated[row] * size:.6g} {unit}, its positions say "
+            f"{found[row] * size:.6g} {unit}"
+        )
+        results.append(Result(status, name, text, value))
+    if not results and attrs.get("stated_length_m") is None:
+        return [Result("skipped", "length", "the file states neither length nor pitch")]
+    return results
+
+
+def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
+    """List the sets of results: where they come from, the values [m], the cut-off [m] or NaN."""
+    sets = []
+    for number, result in enumerate(subject.results, start=1):
+        values = {n: float(result[n]) for n in _COMPARED if n in result}
+        cut = float(result.attrs.get("lambda_c_m", np.nan))
+        sets.append((str(result.attrs.get("source", f"results {number}")), values, cut))
+    own = {name: subject.stated(f"instrument_{name}_m") for name in _COMPARED}
+    cut = min(subject.stated("lambda_c_m"), default=float("nan"))
+    for row in range(max((len(v) for v in own.values()), default=0)):
+        values = {n: v[row] for n, v in own.items() if row < len(v)}
+        sets.append((subject.names[min(row, len(subject.names) - 1)], values, cut))
+    return sets
+
+
+def _ours(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
+    """Roughness as it may have been computed: filtered (with the cut-off or ours), and levelled."""
+    found = []
+    for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
+        try:
+            values = roughness_parameters(profile, lambda_c=cutoff)
+        except AnalysisError:  # too short for two cut-offs
+            continue
+        found.append({name: float(values[name]) for name in _COMPARED})
+    return found
+
+
+def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for result in subject.results:
+        errors = str(result.attrs.get("instrument_errors", "none"))
+        source = str(result.attrs.get("source", "results"))
+        if errors not in ("", "none"):
+            text = f"{source}: the instrument could not compute {errors}"
+            results.append(Result("suspect", "results", text, count=errors.count(":")))
+    sets = _own_results(subject)
+    if not sets and not results:
+        return [Result("skipped", "Ra", "the instrument gives no results of its own")]
+    _, profiles = subject.form
+    if subject.is_map or not profiles or float(np.ptp(profiles[0].height.values)) == 0.0:
+        return results or [Result("skipped", "Ra", "there is no profile to compare with")]
+    ours = [_ours(profile, cut) for profile in profiles for cut in [sets[0][2] if sets else np.nan]]
+    for number, (source, values, cut) in enumerate(sets):
+        alone = len(sets) == len(profiles)
+        candidates = ours[number] if alone else [one for many in ours for one in many]
+        for name, value in values.items():
+            found = [one[name] for one in candidates if one[name] > 0]
+            if not found or not np.isfinite(value) or value <= 0:
+                continue
+            closest = min(found, key=lambda one: abs(np.log(one / value)))
+            apart = abs(closest - value) / value
+            grave = not np.isnan(cut) and apart > limits["fail"]
+            grave = grave or apart > limits["unknown_filter"]
+            status = "fail" if grave else "suspect" if apart > limits["suspect"] else "pass"
+            text = (
+                f"{source}: the instrument's {name} is {value * 1e6:.4g} um, ours "
+                f"{closest * 1e6:.4g} um"
+            )
+            if np.isnan(cut):
+                text += "; the file does not say how the instrument filtered"
+            results.append(Result(status, name, text, apart))
+    return results
+
+
+INSTRUMENT_CHECKS = (
+    Check(
+        "spacing",
+        6,
+        "Are the points of the scan evenly spaced?",
+        "Export x with more digits, or heights with the pitch alone.",
+        {
+            "even": Limit(0.01, "1", "a hundredth of a step moves no wave"),
+            "fail": Limit(5.0, "1", "gaps of several steps are no measurement there"),
+        },
+        _spacing,
+    ),
+    Check(
+        "length",
+        7,
+        "Is the scan as long and as fine as the file states?",
+        "Find out whether the unit of x is right and the scan was whole.",
+        {
+            "suspect": Limit(0.01, "1", "run-in and rounding stay below a hundredth"),
+            "fail": Limit(0.1, "1", "wavenumbers wrong by a tenth change C by a third"),
+        },
+        _length,
+    ),
+    Check(
+        "results",
+        9,
+        "Do the instrument's own Ra and Rq fit the profile?",
+        "Check units, filter and which profile the results belong to.",
+        {
+            "suspect": Limit(0.1, "1", "ends of the filter and form make up to a tenth"),
+            "fail": Limit(0.5, "1", "with a known filter, half as much again is another profile"),
+            "unknown_filter": Limit(9.0, "1", "a factor ten is a wrong unit, whatever the filter"),
+        },
+        _results,
+    ),
+)

@@ -1,0 +1,108 @@
+"""Scans under examination; what several checks need is computed once, when first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.surface.form import fill_dropouts, remove_form
+from tribolab.surface.psd import psd_1d
+
+
+class ScanSubject:
+    """Scans of one surface, as rows of heights.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (..., x).
+    results
+        Datasets of `tribolab.io.scan_results.read_results`, if the instrument wrote some.
+    """
+
+    def __init__(self, scans: xr.Dataset, results: Sequence[xr.Dataset] = ()) -> None:
+        self.scans, self.results = scans, tuple(results)
+        self.is_map = "y" in scans.height.dims
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """Heights [m] (row, x)."""
+        height = self.scans.height.transpose(..., "x").values
+        return np.asarray(height, dtype=float).reshape(-1, height.shape[-1])
+
+    @cached_property
+    def x(self) -> np.ndarray:
+        """Positions [m]."""
+        return self.scans.x.values
+
+    @cached_property
+    def pitch(self) -> float:
+        """Distance of neighbouring points [m]."""
+        return float(self.x[-1] - self.x[0]) / (self.x.size - 1)
+
+    @cached_property
+    def names(self) -> list[str]:
+        """What to call each row."""
+        if "file" in self.scans:
+            return [str(name) for name in np.atleast_1d(self.scans["file"].values)]
+        kind = "row" if self.is_map else "scan"
+        return [f"{kind} {number}" for number in range(1, len(self.rows) + 1)]
+
+    def stated(self, key: str) -> list[float]:
+        """Values of an attribute: one for each row, or one for all, or none."""
+        value = self.scans.attrs.get(key)
+        if isinstance(value, str):
+            parts = [part.strip() for part in value.split(";")]
+            return [float(part) if part else float("nan") for part in parts]
+        return [] if value is None else [float(value)]
+
+    def where(self, row: int, first: int, last: int) -> str:
+        """Words for a stretch of a row."""
+        text = f"{self.names[row]}, x = {self.x[first] * 1e3:.6g} mm"
+        return text if last <= first else f"{text} to {self.x[last] * 1e3:.6g} mm"
+
+    def to_shape(self, rows: np.ndarray) -> np.ndarray:
+        """Bring flags (row, x) to the dims of the heights."""
+        dims = self.scans.height.transpose(..., "x").dims
+        array = xr.DataArray(rows.reshape([self.scans.sizes[d] for d in dims]), dims=dims)
+        return array.transpose(*self.scans.height.dims).values
+
+    @cached_property
+    def filled(self) -> list[xr.Dataset]:
+        """Each row as a profile without dropouts; rows with too few heights are left out."""
+        x = self.x - self.x[0]
+        profiles = [
+            xr.Dataset({"height": ("x", row)}, {"x": x})
+            for row in self.rows
+            if np.isfinite(row).sum() >= 2
+        ]
+        return [fill_dropouts(profile) for profile in profiles]
+
+    @cached_property
+    def form(self) -> tuple[str, list[xr.Dataset]]:
+        """Profiles without form, and which form it was: a circle, or a line if none fits."""
+        if "form_removed" in self.scans.attrs:
+            return "none", self.filled
+        try:
+            return "circle", [remove_form(profile, "circle") for profile in self.filled]
+        except AnalysisError:  # no circle: a ramp, a profile of two flats, a chamfer
+            return "tilt", [remove_form(profile, "tilt") for profile in self.filled]
+
+    @cached_property
+    def spectra(self) -> list[xr.Dataset]:
+        """Power spectrum of each profile; empty for a map, too few points or no heights."""
+        if self.is_map:
+            return []
+        _, profiles = self.form
+        radius = max(self.stated("tip_radius_m"), default=None)
+        spectra = []
+        for profile in profiles:
+            if profile.sizes["x"] < 256 or float(np.ptp(profile.height.values)) == 0.0:
+                return []
+            one = profile.drop_vars(["form_tilt", "form_curvature", "dropout"], errors="ignore")
+            spectra.append(psd_1d(one.expand_dims("scan"), form="none", tip_radius=radius))
+        return spectra
