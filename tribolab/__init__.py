@@ -47,6 +47,8 @@ _PUBLIC = {
     "adhesion_uncertainty": "tribolab.contact.adhesion_uncertainty",
     "SurfaceEnergies": "tribolab.contact.work_of_adhesion",
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
+    "stribeck_curve": "tribolab.lubrication.stribeck",
+    "fit_shear_stress": "tribolab.compare.shear_stress",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
     "load_campaign": "tribolab.campaign.config",
@@ -86,6 +88,8 @@ __all__ = [
     "adhesion_uncertainty",
     "SurfaceEnergies",
     "work_of_adhesion_spread",
+    "stribeck_curve",
+    "fit_shear_stress",
     "viscoelastic_friction",
     "read_modulus",
     "load_campaign",
@@ -99,6 +103,7 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.campaign.config import load_campaign
+    from tribolab.compare.shear_stress import fit_shear_stress
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution
@@ -115,6 +120,7 @@ if TYPE_CHECKING:
     from tribolab.io.runs import read
     from tribolab.io.scan_results import read_results
     from tribolab.io.scans import read_scans
+    from tribolab.lubrication.stribeck import stribeck_curve
     from tribolab.qc.run_checks import check
     from tribolab.report.run import run_campaign
     from tribolab.rubber.friction import viscoelastic_friction
