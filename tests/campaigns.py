@@ -1,6 +1,7 @@
 """A small simulated campaign that several test files work on."""
 
 import hashlib
+import re
 import shutil
 from pathlib import Path
 
@@ -9,9 +10,15 @@ from tribolab.rig import simulate_campaign
 RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")
 
 
-def simulated(folder: Path, repeats: int = 2) -> Path:
-    """Runs in glycerol and dry, in repeats, at three speeds; returns campaign.toml."""
-    return simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=repeats)
+def simulated(folder: Path, repeats: int = 2, scans: bool = False) -> Path:
+    """Runs in glycerol and dry, in repeats, at three speeds; returns campaign.toml.
+
+    The campaign file names the scans only if asked to: tests of runs need no contact mechanics.
+    """
+    file = simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=repeats)
+    if not scans:
+        file.write_text(re.sub(r"(?m)^scans = .*\n", "", file.read_text("utf-8")), "utf-8")
+    return file
 
 
 def copied(campaign: Path, folder: Path) -> Path:

@@ -44,7 +44,7 @@ NOTHING_KNOWN = dict.fromkeys(CONTACT_TABLE)
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory):
-    return simulated(tmp_path_factory.mktemp("surfaces"), repeats=1)
+    return simulated(tmp_path_factory.mktemp("surfaces"), repeats=1, scans=True)
 
 
 @pytest.fixture(scope="module")

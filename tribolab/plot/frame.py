@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from tribolab.plot.labels import plain
 from tribolab.plot.style import (
@@ -17,6 +17,8 @@ from tribolab.plot.style import (
     new_figure,
     surface_styles,
 )
+
+_MANY = 1e10
 
 
 def single_axes() -> tuple[PaperFigure, Axes]:
@@ -31,7 +33,9 @@ def logarithmic(axes: Axes, *names: str) -> None:
         getattr(axes, f"set_{name}scale")("log")
         axis = getattr(axes, f"{name}axis")
         axis.set_major_locator(LogLocator(numticks=8))
-        axis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
+        low, high = getattr(axes.dataLim, f"interval{name}")
+        few = not (low > 0 and high / low > _MANY)  # over more decades they would be a black bar
+        axis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90) if few else NullLocator())
         axis.set_minor_formatter(NullFormatter())
 
 
