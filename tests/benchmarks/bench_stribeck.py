@@ -1,0 +1,151 @@
+"""Times of the Stribeck solver, as ratios against plain alternatives measured in the same run.
+
+Run from the project's root::
+
+    OPENBLAS_NUM_THREADS=1 PYTHONPATH=tests python tests/benchmarks/bench_stribeck.py
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+
+import numpy as np
+from contact_cases import CONTACT, E_STAR, reference_psd
+from threadpoolctl import threadpool_limits
+
+from tribolab.contact.line import line_kernel
+from tribolab.contact.separation import separation_table
+from tribolab.lubrication.factors import _tabulated, flow_factors
+from tribolab.lubrication.mixed import (
+    LEAK,
+    NotConvergedError,
+    State,
+    _rupture,
+    couette_number,
+    solve_speed,
+)
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.sweep import dry_state, film_estimate, lubrication_problem
+
+SPEEDS = np.geomspace(1e-9, 1e-1, 33)
+CASES = [("Smooth", 310.0)] + [
+    (name, load) for name in ("Sb-S", "Sb-R") for load in (310.0, 910.0, 1510.0, 2110.0)
+]
+
+
+def nine_curves() -> list[float]:
+    """Print each of the paper's curves, its table of factors made anew, and return the times."""
+    times = []
+    for name, load in CASES:
+        psd = reference_psd(name)
+        _tabulated.cache_clear()
+        start = time.perf_counter()
+        curve = stribeck_curve(CONTACT, psd, 1.4, load, 1e6, SPEEDS)
+        times.append(time.perf_counter() - start)
+        print(
+            f"  {name:7}{load:6.0f} N/m {times[-1]:6.2f} s, {int(curve.iterations.sum()):4} Newton "
+            f"steps, residual {float(curve.residual.max()):.0e}, "
+            f"load {float(np.abs(curve.load_balance).max()):.0e}, "
+            f"flux {float(curve.flux_variation.max()):.0e}"
+        )
+    print(f"  median {statistics.median(times):.2f} s a curve of {SPEEDS.size} speeds")
+    return times
+
+
+def picard(problem, couette: float, start: State, relaxation: float, steps: int = 20000):
+    """Fixed point the plain way: pressure from the film, film from the pressure, a little of it.
+
+    The pressure is a dense solve of the Reynolds equation up to the same rupture; the constant
+    follows the load.
+    """
+    mesh = problem.mesh
+    kernel = line_kernel(mesh.x, mesh.width, 1.0)
+    u, c, n = start.film.copy(), start.constant, start.film.size
+    for step in range(1, steps + 1):
+        between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2, u[-1:]])
+        phi, _, entrained, _ = problem.factors.transport(between * problem.gap)
+        conductance = between**3 * (phi + LEAK) / mesh.distance
+        matrix = np.diag(conductance[1:] + conductance[:-1])
+        matrix -= np.diag(conductance[1:-1], 1) + np.diag(conductance[1:-1], -1)
+        drive = -couette * np.diff(entrained) / problem.gap
+        front = _rupture(couette * entrained / problem.gap, conductance)[0]
+        fluid = np.zeros(n)
+        fluid[:front] = np.linalg.solve(matrix[:front, :front], drive[:front])
+        contact = problem.separation.pressure_and_slope(u * problem.gap)[0] / problem.pressure
+        total = fluid + contact
+        carried = mesh.width @ total / problem.load
+        c += relaxation * (carried - 1)
+        aim = c + mesh.x**2 + kernel @ total
+        change = np.max(np.abs(aim - u) / u)
+        if not np.isfinite(change):
+            return None
+        if change < 1e-6 and abs(carried - 1) < 1e-6:
+            return u, step
+        u = np.maximum(u + relaxation * (aim - u), 0.2 * u)
+    return None
+
+
+def against_picard() -> None:
+    """One speed from the one before it, Newton against the fixed point."""
+    psd = reference_psd("Sb-R")
+    problem = lubrication_problem(
+        CONTACT,
+        separation_table(psd, E_STAR),
+        flow_factors(psd),
+        310.0,
+        tuple(film_estimate(CONTACT, 1.4, 310.0, v) for v in (1e-9, 1e-1)),
+        400,
+        1.0,
+    )
+    state = dry_state(problem, CONTACT, psd, 310.0)
+    for speed in SPEEDS:
+        number = couette_number(problem, 1.4, speed)
+        start = time.perf_counter()
+        found = solve_speed(problem, number, state)
+        newton = time.perf_counter() - start
+        if any(np.isclose(speed, v) for v in (1e-7, 1e-5, 1e-3, 1e-1)):
+            for relaxation in (0.3, 0.1, 0.03, 0.01):
+                start = time.perf_counter()
+                plain = picard(problem, number, state, relaxation, 2000)
+                slow = time.perf_counter() - start
+                if plain is not None:
+                    off = np.max(np.abs(plain[0] / found.state.film - 1))
+                    print(
+                        f"  {speed:.0e} m/s: Newton {1e3 * newton:.0f} ms in {found.iterations} "
+                        f"steps, fixed point {slow:.1f} s in {plain[1]} (relaxation {relaxation}; "
+                        f"films within {off:.0e}): {slow / newton:.0f} x"
+                    )
+                    break
+            else:
+                print(f"  {speed:.0e} m/s: Newton {1e3 * newton:.0f} ms; the fixed point diverges")
+        state = found.state
+
+
+def against_two_threads() -> None:
+    """Print the solver's time where BLAS may use two threads over that on one."""
+    psd = reference_psd("Sb-S")
+    problem = lubrication_problem(
+        CONTACT, separation_table(psd, E_STAR), flow_factors(psd), 310.0, (1e-9, 1e-5), 400, 1.0
+    )
+    times = {}
+    for threads in (1, 2, 1, 2):
+        with threadpool_limits(threads, user_api="blas"):
+            state = dry_state(problem, CONTACT, psd, 310.0)
+            start = time.perf_counter()
+            for speed in SPEEDS[:24]:
+                try:
+                    state = solve_speed(problem, couette_number(problem, 1.4, speed), state).state
+                except NotConvergedError as error:
+                    print(f"  {speed:.0e} m/s: {error}")
+            took = time.perf_counter() - start
+            times[threads] = min(took, times.get(threads, np.inf))
+    print(f"  two threads of BLAS take {times[2] / times[1]:.1f} x the time of one")
+
+
+if __name__ == "__main__":
+    print("the paper's nine curves")
+    nine_curves()
+    print("one speed, Sb-R at 310 N/m")
+    against_picard()
+    against_two_threads()
