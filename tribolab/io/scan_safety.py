@@ -21,8 +21,15 @@ _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
 _TEXT = ("sdf", "xyz", "asc")
 
 
-def openable(path: Path) -> list[str] | None:
-    """Say which formats SurfaceTopography may try on a file; None: whatever it finds.
+def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str]:
+    """Say which formats SurfaceTopography may try on a file, in this order.
+
+    Parameters
+    ----------
+    path
+        The file.
+    sure, possible
+        SurfaceTopography's formats that the file's first bytes show, and do not exclude.
 
     Raises
     ------
@@ -40,8 +47,8 @@ def openable(path: Path) -> list[str] | None:
         if not is_sealed(path):
             try_out(path)
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return _text_formats(path)
-    return None
+        return list(dict.fromkeys([*sure, *_text_formats(path)]))
+    return [name for name in dict.fromkeys([*sure, *possible]) if name not in _TEXT or name in sure]
 
 
 def _unpacks(path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, brief
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import split_name
@@ -112,7 +112,6 @@ def _open(path: Path, how: str) -> Any:
     try:
         return getattr(TdmsFile, how)(str(path))
     except _DAMAGE as error:
-        told = str(error) or "it claims to hold more than the memory does"
         raise ReadError(
-            f"{path}: the TDMS file is damaged: {told[:300]}; copy or save it again"
+            f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
         ) from error

@@ -199,12 +199,12 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     spectra = subject.spectra
     if subject.is_map or len(subject.rows) < 2 or len(spectra) < 2:
         return [Result("skipped", "height", "one scan: nothing to compare it with")]
-    weights = spectra[0].independent_values.values
-    enough = weights >= limits["values"]
-    if not enough.any():
+    every = np.stack([np.log(one.psd_1d.values) for one in spectra])
+    counts = spectra[0].independent_values.values
+    logs, weights = profiles.pooled(every, counts, limits["values"])
+    if not weights.size:
         return [Result("skipped", "height", "the scans are too short to be compared")]
-    logs = np.stack([np.log(one.psd_1d.values[enough]) for one in spectra])
-    odd, factor = profiles.odd_one_out(logs, weights[enough], limits["factor"], limits["sigma"])
+    odd, factor = profiles.odd_one_out(logs, weights, limits["factor"], limits["sigma"])
     if odd < 0:
         text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
         return [Result("pass", "height", text, factor)]
