@@ -139,6 +139,8 @@ def _saturation(subject: ScanSubject, limits: Mapping[str, float]) -> list[Resul
 def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     kind, flat = subject.form
     results = []
+    if not flat:
+        return [Result("skipped", "height", "there are too few heights")]
     if kind == "none":
         text = "the form was taken away before"
         results.append(Result("skipped", "tilt", text))
@@ -147,7 +149,9 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         row, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
         status = "fail" if angle > limits["fail"] else "pass"
         status = "suspect" if limits["tilt"] < angle <= limits["fail"] else status
-        text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.names[row]}"
+        text = (
+            f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.profile_names[row]}"
+        )
         results.append(Result(status, "tilt", text, angle, "rad"))
     share, digits = [], []
     for row, profile in zip(subject.filled, flat, strict=True):
@@ -190,7 +194,7 @@ def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "fail" if value > limits["fail"] else "suspect"
     text = (
         f"the tip of {radius * 1e6:.3g} um does not follow waves shorter than {reach[worst]:.3g} "
-        f"um; {value:.0%} of the mean square slope lies there, {subject.names[worst]}"
+        f"um; {value:.0%} of the mean square slope lies there, {subject.profile_names[worst]}"
     )
     return [Result(status, "height", text, value)]
 
@@ -209,10 +213,10 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
         return [Result("pass", "height", text, factor)]
     status = "fail" if factor > limits["fail"] else "suspect"
-    text = f"{subject.names[odd]} has a spectrum up to {factor:.3g} times off the others'"
+    text = f"{subject.profile_names[odd]} has a spectrum up to {factor:.3g} times off the others'"
     if len(spectra) == 2:
         text = f"the two scans differ by up to a factor {factor:.3g} in their spectra"
-    return [Result(status, "height", text, factor, "1", subject.names[odd])]
+    return [Result(status, "height", text, factor, "1", subject.profile_names[odd])]
 
 
 PROFILE_CHECKS = (

@@ -105,9 +105,10 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     _, profiles = subject.form
     if subject.is_map or not profiles or float(np.ptp(profiles[0].height.values)) == 0.0:
         return results or [Result("skipped", "Ra", "there is no profile to compare with")]
-    ours = [_ours(profile, cut) for profile in profiles for cut in [sets[0][2] if sets else np.nan]]
+    cut = sets[0][2] if sets else float("nan")
+    ours = [_ours(profile, cut) for profile in profiles]
     for number, (source, values, cut) in enumerate(sets):
-        alone = len(sets) == len(profiles)
+        alone = len(sets) == len(profiles) == len(subject.rows)  # one set for each profile
         candidates = ours[number] if alone else [one for many in ours for one in many]
         for name, value in values.items():
             found = [one[name] for one in candidates if one[name] > 0]

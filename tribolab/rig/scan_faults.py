@@ -229,9 +229,7 @@ _ALL = (
         "uneven", "The traverse's speed wavers; x is recorded.", "suspect", "spacing", _uneven
     ),
     ScanFault("wrong_length", "The header states a longer scan.", "fail", "length", _wrong_length),
-    ScanFault(
-        "odd_scan", "One scan of three is of another surface.", "fail", "repeats", _odd_scan
-    ),
+    ScanFault("odd_scan", "One scan of three is of another surface.", "fail", "repeats", _odd_scan),
     ScanFault(
         "wrong_results",
         "The instrument's results are in inches.",
