@@ -56,9 +56,9 @@ def test_a_known_shift_is_found_to_two_samples_of_the_fastest_strokes(shift):
     assert abs(estimate.shift - shift) < 4 * estimate.uncertainty < 4 * FASTEST
 
 
-def test_noise_as_strong_as_friction_widens_the_uncertainty_and_not_the_error():
+def test_noise_as_strong_as_friction_widens_the_stated_uncertainty():
     quiet, loud = (estimate_clock_shift(*logs(2, 0.8, noise)) for noise in (0.3, 8.0))
-    assert abs(loud.shift - 0.8) < 2 * FASTEST
+    assert abs(loud.shift - 0.8) < 2 * loud.uncertainty < 0.1
     assert loud.uncertainty > quiet.uncertainty
     assert loud.explained < quiet.explained
 

@@ -39,6 +39,16 @@ Jobs = Annotated[
     ),
 ]
 
+Instrument = Annotated[
+    str | None,
+    typer.Option(
+        "--instrument",
+        "-i",
+        help="Name of an instrument, or the .toml file that describes it.",
+        show_default="the files tell",
+    ),
+]
+
 
 def _version(asked: bool) -> None:
     if asked:
@@ -154,6 +164,13 @@ def simulate(
     small: Annotated[
         bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
     ] = False,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Put this fault into one run; may be given again. A wrong name lists them.",
+            show_default=False,
+        ),
+    ] = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -165,6 +182,8 @@ def simulate(
         tribolab simulate practice --small
 
         tribolab run practice/campaign.toml
+
+        tribolab simulate faulty --small --fault spikes --fault sign
     """
     with _reported(debug):
         from tribolab.campaign.executor import default_jobs
@@ -176,6 +195,7 @@ def simulate(
                 seed,
                 small=small,
                 n_repeats=repeats,
+                faults=fault or (),
                 jobs=jobs or default_jobs(),
                 progress=progress,
             )
@@ -183,17 +203,52 @@ def simulate(
 
 
 @app.command()
+def check(
+    files: Annotated[
+        list[Path], typer.Argument(help="Raw files; the two logs of a run are one run.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
+    fail_on: Annotated[
+        str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
+    ] = "fail",
+    instrument: Instrument = None,
+    everything: Annotated[bool, typer.Option("--all", help="Show what passed, too.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Say whether runs are usable, while the sample is still mounted.
+
+    What is wrong, where, how badly, and what to do. Nothing is written.
+
+        tribolab check raw/friction/sb-r_dry_31N_01_*.csv
+
+        tribolab check raw/friction/*.csv --json --fail-on suspect
+    """
+    with _reported(debug):
+        import json
+
+        from tribolab.report import checks, terminal
+
+        code = checks.code_of([], fail_on)  # a wrong level is told before the work
+        checked = checks.check_files(files, instrument)
+        code = checks.code_of(checked, fail_on)
+        if as_json:
+            typer.echo(json.dumps(checks.document(checked, fail_on), indent=1, allow_nan=False))
+        else:
+            for one in checked:
+                typer.echo(checks.summary(one))
+                if one.findings is None:
+                    typer.echo(f"tribolab: {one.error}", err=True)
+                    continue
+                table = checks.findings_table(one.findings, everything)
+                if table.row_count:
+                    terminal.console().print(table)
+    raise typer.Exit(code)
+
+
+@app.command()
 def info(
     files: Annotated[list[Path], typer.Argument(help="Raw files.")],
-    instrument: Annotated[
-        str | None,
-        typer.Option(
-            "--instrument",
-            "-i",
-            help="Name of an instrument, or the .toml file that describes it.",
-            show_default="the files tell",
-        ),
-    ] = None,
+    instrument: Instrument = None,
     debug: Debug = False,
 ) -> None:
     """Show how raw files are understood, before anything is computed.

@@ -62,7 +62,6 @@ def friction_coefficient(
 
     Notes
     -----
-    <<<<<<< HEAD
     With F_f = mu N_f + F_0 and F_b = -mu N_b + F_0 the mean forces of a pair and N_f, N_b its mean
     normal forces, F_0 = (F_f N_b + F_b N_f)/(N_f + N_b) is removed (the half sum where the load is
     the same or unknown), and mu = (F_f - F_b)/(N_f + N_b). Both strokes then have the same
@@ -72,15 +71,6 @@ def friction_coefficient(
     sem_f and sem_b are the errors of the ratio times F_N; s^2 and D say how the zero moves from
     pair to pair beyond those errors (they need at least two pairs); dt is the time between the
     strokes.
-    =======
-    With F_f and F_b the mean forces of a pair, F_0 = (F_f + F_b)/2 is removed and the half loop
-    (F_f - F_b)/2 is what friction is. Both strokes then have the same mean force; their
-    coefficients differ only by their own normal forces: they are one observation, not two. Each
-    keeps the standard deviation and the trend of its own stroke. Both errors are
-    sqrt((sem_f^2 + sem_b^2)/4 + tau^2), because each value rests on both strokes; tau is the
-    scatter of the offsets from pair to pair beyond their errors, a wander of the zero that no
-    stroke shows by itself (it needs at least two pairs).
-    >>>>>>> campaign
     With another offset the error is sqrt(sem^2 + (sem(F_0)/F_N)^2). The zero of
     the normal force adds mu sem(F_N0)/F_N.
 
@@ -174,7 +164,7 @@ def _halves(
     for number in range(pair.max(initial=-1) + 1):
         both = np.flatnonzero(pair == number)
         forward, backward = both[np.argsort(-sign[both])]
-        result[both] = combine(values[forward], values[backward])
+        result[[forward, backward]] = combine(values[forward], values[backward])
     return result
 
 

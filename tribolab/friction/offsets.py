@@ -127,7 +127,7 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     -------
     Wander
         s^2 and D of <d^2> = e_i^2 + e_{i+1}^2 + s^2 + D dt for the differences d of successive
-        offsets, by weighted moments, each taken one standard error above its estimate; zeros
+        offsets, by weighted moments, together taken one standard error above their estimate; zeros
         below two pairs. One pair tells nothing, and a single difference is all s^2.
     """
     known = np.isfinite(offset) & np.isfinite(error)
@@ -146,7 +146,9 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
         expected = noise + parts @ found
         weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-300)
         found, _ = optimize.nnls(parts * weight[:, None], excess * weight)
-    # so few squares tell a variance poorly: one standard error above it, as Student's t would
-    inverse = np.linalg.pinv((parts * weight[:, None]).T @ (parts * weight[:, None]))
-    found = found + np.sqrt(2 * np.diag(inverse))
+    # so few squares tell a variance poorly: one standard error above it, as Student's t would;
+    # of both together, because even spacing does not tell them apart
+    level = (weight**2 @ (parts @ found)) / (weight @ weight)
+    error = np.sqrt(2 / (weight @ weight))
+    found = found * (1 + error / level) if level > 1e-9 * error else np.array([error, 0.0])
     return Wander(float(found[0]), float(found[1] / scale))

@@ -7,9 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy import stats
 
 from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
+
+FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
 
 
 class _Value(NamedTuple):
@@ -56,9 +59,11 @@ def measured_stribeck_curve(
     run, and then over the runs, the observations y_i with errors s_i are combined by the
     random-effects estimate of DerSimonian and Laird [1]_: weights 1/(s_i^2 + tau^2), tau^2 from
     Q = sum (y_i - y)^2/s_i^2. The standard error is the larger of 1/sqrt(sum w_i) and
-    that of Hartung and Knapp [2]_, sqrt(sum w_i (y_i - y)^2 / ((k - 1) sum w_i)). With one run the
-    spread between runs is unknown, and the error is that run's own. With two or three runs the
-    spread is itself known poorly; look at ``runs``.
+    that of Hartung and Knapp [2]_, sqrt(sum w_i (y_i - y)^2 / ((k - 1) sum w_i)), the latter
+    widened so that three standard errors cover 99 % of Student's distribution with k - 1 degrees
+    of freedom, but no fewer than 3: for two or three runs that disagree the error is a lower
+    bound, so look at ``runs``. With one run the spread between runs is unknown, and the error is
+    that run's own.
 
     References
     ----------
@@ -151,7 +156,8 @@ def _random_effects(y: np.ndarray, s: np.ndarray) -> tuple[float, float]:
     w = 1 / (1 / w + tau2)
     mean = (w @ y) / w.sum()
     spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
-    return float(mean), float(np.sqrt(max(1 / w.sum(), spread)))
+    student = stats.t.ppf(0.995, max(y.size - 1, FREEDOM)) / 3
+    return float(mean), float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
 
 
 def _combined(values: list[_Value]) -> tuple[float, ...]:

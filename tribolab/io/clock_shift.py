@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from tribolab.io.clock_onset import refine_by_onsets
 from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
 
 Array = NDArray[np.float64]
@@ -31,9 +32,10 @@ _BINS = 3  # classes per decade
 _LEAST_EXPLAINED = 0.2
 _LEAST_CONTRAST = 0.1
 _LEAST_SIGNIFICANCE = 10.0  # as an F ratio
-_SHARP = 0.03  # most that the uncertainty may be, in mean durations of a class
+_SHARP = 0.1  # most that the uncertainty may be, in mean durations of a class
 _WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
-_ALMOST_NOTHING = 1e-3  # and this
+_ALMOST_NOTHING = 1e-3  # and this,
+_STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 
 
@@ -108,11 +110,36 @@ def estimate_clock_shift(
     # late by up to a rest, as the force stays on
     span = max(8.0 * half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
     logs = Logs(force_time, force, motion_time, velocity, way)
-    unexplained = _WORSE * (1.0 - fit.ratio(shift)) + _ALMOST_NOTHING
+    ratio = fit.ratio(shift)
+    unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
     told = shift_from_starts(logs, shift, span, lambda s: 1.0 - fit.ratio(s) < unexplained)
-    if told is None:
-        return Estimate(shift, uncertainty, fit.ratio(shift))
-    return Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    found = Estimate(shift, uncertainty, ratio)
+    if told is not None:
+        found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    if found.rate != 0.0:
+        return found
+    return _sharpened(found, force_time, force, motion_time, velocity, fit)
+
+
+def _sharpened(
+    found: Estimate,
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    fit: _Classes,
+) -> Estimate:
+    """Sharpen an estimate by the fast strokes' beginnings taken together."""
+    onsets = refine_by_onsets(force_time, force, motion_time, velocity, found.shift, fit.period)
+    if onsets is None:
+        return found
+    apart = abs(onsets.shift - found.shift)
+    # known where the fast strokes are; the clocks' rates leave it open elsewhere
+    middle = 0.5 * (motion_time[0] + motion_time[-1])
+    error = float(np.hypot(onsets.uncertainty, QUARTZ * (onsets.time - middle)))
+    if apart > 3.0 * found.uncertainty:  # the two ways disagree, and neither can be trusted more
+        error = max(error, apart)
+    return Estimate(onsets.shift, error, fit.ratio(onsets.shift))
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
@@ -221,7 +248,7 @@ class _Classes:
         at, _, total = self._parts(shift)
         squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
         whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
-        return self.explained(shift) / max(whole, 1e-12)
+        return float(self.explained(shift) / max(whole, 1e-12))
 
     def significance(self, shift: float) -> float:
         """F ratio: variance explained per class against the residual's, correlation allowed for."""

@@ -25,7 +25,7 @@ QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard devia
 _MOST_STARTS = 64
 _REACH = 200  # samples after a start that are looked at, and at most as many before it
 _THINNED = 160  # of them, when all would be more
-_FIRST = 2.0  # samples: the distance slid within them is the shortest length
+_FIRST = 0.5  # samples: the distance slid within them is the shortest length
 _LENGTHS = 8  # exponentials that make up a start's curve
 _FLOOR = 20.0  # a start speaks against a shift by no more than this log-likelihood
 _TELLING = 0.3  # the rate is fitted if it becomes this much better known than it was
@@ -99,6 +99,7 @@ def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _starts(logs: Logs, shift: float) -> list[_Start]:
+    """Find the starts, also by reversal, that both logs see."""
     change = changes(logs.way)
     moving = logs.way[change[1:-1]] != 0
     numbers = np.flatnonzero(moving & (np.diff(change[1:]) >= 8)) + 1
@@ -122,7 +123,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
             _Start(
                 begin,
                 min(0.6 * rest, max(_REACH * interval, 12.0 * float(np.median(ahead)))),
-                min(0.5 * stroke, _REACH * interval),
+                min(0.5 * stroke, max(_REACH * interval, 12.0 * moved)),
                 _FIRST * interval,
                 0.5 * float(np.hypot(interval, moved)),
             )
@@ -133,7 +134,22 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
 def shift_from_starts(
     logs: Logs, shift: float, span: float, allowed: Callable[[float], bool]
 ) -> Told | None:
-    """Shift, its uncertainty, rate and its uncertainty; None where no start tells."""
+    """Shift that the starts of motion tell.
+
+    Parameters
+    ----------
+    logs
+        Both logs.
+    shift, span
+        Where to begin, and how far on either side of it to look [s].
+    allowed
+        Whether a shift [s] is possible otherwise; `shift` itself must be.
+
+    Returns
+    -------
+    Told or None
+        None where no start tells.
+    """
     for width in (span, 0.5 * span):  # what is around a start depends on the shift
         starts = _starts(logs, shift)
         if not starts:
@@ -218,7 +234,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
 
 
 def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told:
-    """Shift in the middle and rate, each with its uncertainty, from the starts' shifts."""
+    """Put the starts' shifts together, at times since the middle; `common` error is in all."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, QUARTZ**-2])
     order = np.argsort(shifts)

@@ -30,11 +30,14 @@ class Findings:
         ``(check, result)`` pairs, at least one for every known check.
     flagged
         The data with their quality flags, where the checks set any.
+    limits
+        The limits that held, SI, by check and name.
     """
 
     name: str
     results: tuple[tuple[Check, Result], ...]
     flagged: xr.Dataset | None = field(default=None, repr=False)
+    limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -48,9 +51,9 @@ class Findings:
                 "message": result.message,
                 "where": result.where,
                 "count": result.count,
-                "value": None if np.isnan(result.value) else result.value,
+                "value": result.value if np.isfinite(result.value) else None,
                 "unit": result.unit,
-                "limits": {key: limit.unit for key, limit in check.limits.items()},
+                "limits": dict(self.limits.get(check.name, {})),
                 "question": check.question,
                 "cure": check.cure if result.status in ("suspect", "fail") else "",
             }

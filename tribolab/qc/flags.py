@@ -29,6 +29,7 @@ _MEANINGS = "good not_evaluated suspect fail missing"
 # everything: a check that did look knows more.
 _PRECEDENCE = np.zeros(10, dtype=np.int8)
 _PRECEDENCE[[NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]] = [0, 1, 2, 3, 4]
+_BY_PRECEDENCE = np.array([NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING], dtype=np.int8)
 
 
 def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
@@ -50,11 +51,10 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
     array([1, 3, 2], dtype=int8)
     """
     flags = iter(flags)
-    worst = np.array(next(flags), dtype=np.int8)
+    worst = _PRECEDENCE[next(flags)]
     for other in flags:
-        other = np.asarray(other, dtype=np.int8)
-        np.copyto(worst, other, where=_PRECEDENCE[other] > _PRECEDENCE[worst])
-    return worst
+        np.maximum(worst, _PRECEDENCE[other], out=worst)
+    return _BY_PRECEDENCE[worst]
 
 
 def attach(

@@ -11,12 +11,52 @@ _NEIGHBOURS = 61  # bins around a line that give its background
 _LONGEST = 1 << 18  # samples of one transform; more do not make a line clearer than it must be
 
 
+_FEWEST = 256  # samples of a stretch whose spectrum is worth a look
+_SLOWEST = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
+_LOWEST = 5.0  # Hz; below, rigs do not ring and mains does not hum
+
+
 class Line(NamedTuple):
-    """A line: frequency [Hz], amplitude in the signal's unit, power over the background."""
+    """A line: frequency [Hz], amplitude in the signal's unit, power over the background.
+
+    Where it was found in a segment of a run, also the segment's number and sliding speed [m/s],
+    and whether it is of the mains.
+    """
 
     frequency: float
     amplitude: float
     prominence: float
+    segment: int = -1
+    speed: float = float("nan")
+    mains: bool = False
+
+
+def segment_lines(
+    time: np.ndarray, values: np.ndarray, segment: int, speed: float
+) -> list[Line] | None:
+    """Find the lines of one segment of a run; None if it is too short or sampled too slowly.
+
+    Parameters
+    ----------
+    time, values
+        [s] and any unit (time).
+    segment, speed
+        Number and sliding speed [m/s], for the record.
+    """
+    if values.size < _FEWEST:
+        return None
+    rate = (values.size - 1) / (time[-1] - time[0])
+    if rate < _SLOWEST:
+        return None
+    resolution = 2 * rate / min(values.size, _LONGEST)
+    return [
+        line._replace(
+            segment=segment,
+            speed=speed,
+            mains=bool(mains_harmonic(line.frequency, resolution, rate)),
+        )
+        for line in find_lines(time, values, lowest=_LOWEST)
+    ]
 
 
 def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -30,8 +70,6 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
         (time), without missing values.
     """
     n = min(values.size, _LONGEST)
-    n = fft.next_fast_len(n, real=True) if n == values.size else n
-    n = n if n <= values.size else values.size
     interval = (time[n - 1] - time[0]) / (n - 1)
     place = np.arange(n) / (n - 1) - 0.5
     part = values[:n] - values[:n].mean()

@@ -6,12 +6,31 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.qc import signals, timing
+from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT
-from tribolab.qc.register import Check, Limit, Result, sample_result
+from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
 
 _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
+
+
+def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    run = subject.run
+    results = [Result("suspect", "", text) for text in schema.lacks(run)]
+    for name, unit in schema.wrong_units(run).items():
+        results.append(Result("fail", name, f"{name} is in '{unit}', not in SI"))
+    for name, span in schema.RANGES.items():
+        if name not in run:
+            continue
+        flags = schema.in_range(run[name].values, span)
+        text = f"{{count}} values outside {span.low:g} to {span.high:g}: {span.reason}; {{where}}"
+        results.append(sample_result(name, flags, subject.time, text))
+    if "normal_force" in run:
+        share = schema.pulled(run["normal_force"].values)
+        if share > limits["pulled"]:
+            text = f"the normal force is negative in {share:.0%} of the loaded samples"
+            results.append(Result("fail", "normal_force", text, share))
+    return results
 
 
 def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -22,7 +41,7 @@ def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 
 def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     time = subject.time
-    flags = timing.time_gaps(time, limits["intervals"])
+    flags = timing.time_gaps(time, limits["intervals"], _step_changes(subject))
     if not (flags == SUSPECT).any():
         return [sample_result("time", flags, time, "")]
     lost = timing.lost_time(time, flags)
@@ -41,30 +60,42 @@ def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
 
 def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     time = subject.time
-    places = timing.rate_changes(time, limits["factor"])
     flags = np.full(time.size, GOOD, np.int8)
-    inside = [int(p) for p in places if subject.inside_segment(time[p])]
-    flags[inside] = SUSPECT
-    text = "the sampling rate changes within a segment {count} times, {where}"
-    result = sample_result("time", flags, time, text, value=float(len(places)))
-    if not inside and len(places):
-        text = f"the sampling rate changes {len(places)} times, never within a segment"
-        return [Result("pass", "time", text, float(len(places)), flags=flags)]
-    return [result]
+    for part in subject.slices if subject.sliding else []:
+        cut = timing.rate_change(time[part], limits["factor"])
+        if cut is not None:
+            flags[part.start + cut] = SUSPECT
+    if (flags == SUSPECT).any():
+        text = "the sampling rate changes within a segment {count} times, {where}"
+        return [sample_result("time", flags, time, text)]
+    places = timing.rate_changes(time, limits["factor"])
+    text, where = "one sampling rate", ", ".join(f"t = {time[p]:.6g} s" for p in places[:5])
+    if places.size:
+        text = f"the sampling rate changes {places.size} times, never within a trimmed segment"
+        text += f": {where}" + (" ..." if places.size > 5 else "")
+    return [Result("pass", "time", text, float(places.size), where=where, flags=flags)]
+
+
+def _step_changes(subject: RunSubject) -> np.ndarray:
+    """Return the indices of samples at which a new step or cycle of the instrument begins."""
+    changed = np.zeros(subject.time.size, dtype=bool)
+    for name in ("step", "cycle"):
+        if name in subject.run:
+            label = subject.run[name].values
+            changed[1:] |= label[1:] != label[:-1]
+    return np.flatnonzero(changed)
 
 
 def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    run = subject.run
-    if "step" not in run:
-        return []
-    steps = run["step"].values
-    changes = np.flatnonzero(steps[1:] != steps[:-1]) + 1
-    flags = np.full(steps.size, GOOD, np.int8)
+    if not {"step", "cycle"} & set(subject.run):
+        raise Skip("the instrument numbers no steps or cycles")
+    changes = _step_changes(subject)
+    if not changes.size:
+        return [Result("pass", "step", "one step", 1.0)]
     text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
-    if changes.size:
-        where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
-        return [Result("pass", "step", text, float(changes.size + 1), where=where, flags=flags)]
-    return [Result("pass", "step", "one step", 1.0, flags=flags)]
+    where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
+    text += f"; they begin at {where}" + (" ..." if changes.size > 5 else "")
+    return [Result("pass", "step", text, float(changes.size + 1), where=where)]
 
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -118,11 +149,8 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
             text = "values do not repeat: no step to be seen"
             results.append(Result("pass", name, text, 0.0))
             continue
-        typical = (
-            float(np.nanmedian(np.abs(values[subject.in_segments])))
-            if (subject.in_segments.any())
-            else float(np.nanmedian(np.abs(values)))
-        )
+        loaded = values[subject.in_segments] if subject.in_segments.any() else values
+        typical = float(np.nanmedian(np.abs(loaded)))
         ratio = step / typical if typical > 0 else float("inf")
         coarse = step > limits["steps"] * max(noise, 1e-300) and ratio > limits["share"]
         text = (
@@ -143,6 +171,14 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 RECORD_CHECKS = (
+    Check(
+        "schema",
+        0,
+        "Are the signals there, in SI units, and within what physics allows?",
+        "Correct the dialect: quantity, unit, sign or scale of the column.",
+        {"pulled": Limit(0.5, "1", "bodies that are pulled apart most of the time do not slide")},
+        _schema,
+    ),
     Check(
         "time_order",
         1,

@@ -16,6 +16,10 @@ from tribolab.units import to_si
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
 
 
+class Skip(Exception):  # noqa: N818 - not an error: the check has nothing to look at
+    """Raised by a check that has nothing to look at; the text says why."""
+
+
 @dataclass(frozen=True)
 class Limit:
     """A limit of a check: its default in SI, its unit, and why it is what it is."""
@@ -121,6 +125,8 @@ def examine(
             found[name] = check.examine(subject, limits[name]) or [
                 Result("skipped", "", "no signal here that it looks at")
             ]
+        except Skip as why:
+            found[name] = [Result("skipped", "", str(why))]
         except Exception as crash:  # any crash becomes a row of status "error", exit code 3
             text = f"the check itself crashed: {type(crash).__name__}: {crash}"
             found[name] = [Result("error", "", text)]

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError, nearest
 from tribolab.qc.findings import Findings
-from tribolab.qc.flags import attach
+from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
 from tribolab.qc.record_checks import RECORD_CHECKS
 from tribolab.qc.register import Check, examine, resolve_limits
+from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
 from tribolab.units import to_si
 
-RUN_CHECKS: dict[str, Check] = {c.name: c for c in (*RECORD_CHECKS, *SLIDING_CHECKS)}
+RUN_CHECKS: dict[str, Check] = {c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS)}
 
 
 def check_run(
@@ -91,10 +94,42 @@ def check_run(
     bits = {check.name: check.bit for check in checks.values()}
     flagged = run
     for variable in subject.signals:
-        flags = {
-            check.name: result.flags
-            for check, result in results
-            if result.flags is not None and result.variable == variable
-        }
-        flagged = attach(flagged, variable, flags, bits)
-    return Findings(str(run.attrs.get("source", "run")), results, flagged)
+        flags: dict[str, list[np.ndarray]] = {}
+        for check, result in results:
+            if result.flags is None or result.variable not in (variable, "time"):
+                continue
+            values = result.flags
+            if result.variable == "time":
+                # what is wrong with the time is wrong with every signal; that the time is right
+                # says nothing of a signal's value
+                values = np.where(values == GOOD, NOT_EVALUATED, values)
+            flags.setdefault(check.name, []).append(values)
+        flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
+    return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
+
+
+def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:
+    """Examine a run: short for `check_run`, with the same options.
+
+    Parameters
+    ----------
+    run, segments
+        The run dataset (time); its segments, found if not given.
+    **options
+        As for `check_run`: ``friction``, ``limits``, ``skip``, ``normal_force``, ``contact_width``.
+
+    Returns
+    -------
+    Findings
+        See `check_run`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(400) / 100
+    >>> noise = 0.01 * np.random.default_rng(0).standard_normal(400)
+    >>> run = xr.Dataset({"friction_force": ("time", 1 + noise)}, {"time": time})
+    >>> check(run.assign(sliding_velocity=("time", np.full(400, 1e-3)))).status
+    'pass'
+    """
+    return check_run(run, segments, **options)

@@ -61,33 +61,42 @@ def noise_level(values: np.ndarray) -> float:
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
-    """Flag single samples that stand out from both neighbours on the same side.
-
-    A stick-slip drop or a step is no spike: it stands out from one neighbour only.
+    """Flag single samples that stand out from what both sides lead to expect.
 
     Parameters
     ----------
     values
         (time)
     threshold
-        Height above the nearer neighbour, in standard deviations of the local noise.
+        Height in standard deviations of the local noise.
 
     Returns
     -------
     ndarray
         suspect at spikes, good elsewhere; not evaluated at the ends and beside missing values.
+
+    Notes
+    -----
+    The height of a sample is how far it lies beyond its neighbour *and* beyond the straight line
+    through the two nearest samples, on each side; the smaller side counts. The teeth of a saw and
+    steps are therefore none, and neither is a peak behind which the signal stays elsewhere: the
+    neighbours have to agree within half the height.
     """
     flags = np.full(values.size, NOT_EVALUATED, np.int8)
     if values.size < 16:
         return flags
-    rise, fall = np.diff(values)[:-1], -np.diff(values)[1:]
-    height = np.where(rise * fall > 0, np.minimum(np.abs(rise), np.abs(fall)), 0.0)
-    height[np.isnan(rise) | np.isnan(fall)] = np.nan
-    scale = np.maximum(_local_noise(values)[1:-1], 0.3 * quantisation_step(values))
-    known = ~np.isnan(height)
-    inner = flags[1:-1]
-    inner[known] = GOOD
-    inner[known & (height > threshold * scale) & (height > 0)] = SUSPECT
+    step = np.diff(values)
+    bend = np.diff(step)
+    # left of sample i: x[i] - x[i-1], and x[i] - (2 x[i-1] - x[i-2]); right likewise
+    sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
+    upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
+    downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
+    height = np.maximum(upward, -downward)
+    scale = np.maximum(_local_noise(values)[2:-2], 0.3 * quantisation_step(values))
+    back = np.abs(step[1:-2] + step[2:-1]) < 0.5 * height
+    inner = flags[2:-2]
+    inner[~np.isnan(height)] = GOOD
+    inner[(height > threshold * scale) & (height > 0) & back] = SUSPECT
     return flags
 
 
@@ -139,9 +148,12 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     first, length = _runs_of_equal(values)
     longest = length.max()
     others = max(values.size - longest, 1)
-    # quantisation coarser than the noise repeats values in a healthy signal too: let typical
-    # stretches (their 99th percentile, weighted by samples) set what is usual
-    usual = np.quantile(np.repeat(length, np.minimum(length, 1)), 0.99)
+    if length.size == 1:
+        flags[:] = SUSPECT  # one value from start to end
+        return flags
+    # a signal quantised more coarsely than its noise repeats values in health, too: what most
+    # stretches do sets what is usual
+    usual = float(np.quantile(length, 0.99))
     repeat = max((others - (length.size - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
     bad = np.flatnonzero(length >= max(shortest, allowed))
@@ -159,7 +171,8 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
         (time)
     excess
         How many times more samples lie on the outermost value than on the next level of the
-        quantised signal; the tail of a signal that is not cut off thins out.
+        quantised signal, and by five standard deviations of that count at least; the tail of a
+        signal that is not cut off thins out.
     fewest
         Smallest number of samples on the outermost value; where the signal is quantised, at
         least two of them in a row.
@@ -181,6 +194,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
         depth = sign * (end - known)
         below = int(((depth > 0) & (depth <= step)).sum())
         in_a_row = bool((at_end[1:] & at_end[:-1]).any())
-        if count >= fewest and (in_a_row or step == 0) and count > excess * below:
+        enough = max(fewest, excess * below + 5 * np.sqrt(below))
+        if count >= enough and (in_a_row or step == 0):
             flags[at_end] = SUSPECT
     return flags

@@ -7,8 +7,11 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
+from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import friction_coefficient
 from tribolab.friction.segments import find_segments
+from tribolab.qc.lines import Line, segment_lines
+from tribolab.qc.register import Skip
 from tribolab.qc.signals import noise_level
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
@@ -60,16 +63,44 @@ class RunSubject:
         return {name: values for name, values in self.signals.items() if name in _FORCES}
 
     @cached_property
+    def _found_segments(self) -> xr.Dataset | Skip:
+        if self._segments is not None:
+            return self._segments
+        try:
+            return find_segments(self.run)
+        except AnalysisError as why:  # e.g. nothing tells the speed: the `schema` check says so
+            return Skip(f"no segments: {why}")
+
+    @property
     def segments(self) -> xr.Dataset:
-        """Segments of constant speed."""
-        return find_segments(self.run) if self._segments is None else self._segments
+        """Segments of constant speed, at least one; the check is skipped where there are none."""
+        if isinstance(self._found_segments, Skip):
+            raise self._found_segments
+        if self._found_segments.sizes["segment"] == 0:
+            raise Skip("no segment of constant speed was found")
+        return self._found_segments
 
     @cached_property
-    def friction(self) -> xr.Dataset:
-        """Friction of each segment."""
-        if self._friction is None:
+    def _found_friction(self) -> xr.Dataset | Skip:
+        if self._friction is not None:
+            return self._friction
+        try:
             return friction_coefficient(self.run, self.segments)
-        return self._friction
+        except AnalysisError as why:
+            return Skip(f"no friction: {why}")
+
+    @property
+    def friction(self) -> xr.Dataset:
+        """Friction of each segment; the check is skipped where there is none."""
+        if isinstance(self._found_friction, Skip):
+            raise self._found_friction
+        return self._found_friction
+
+    @property
+    def sliding(self) -> bool:
+        """Whether there is any segment."""
+        found = self._found_segments
+        return not isinstance(found, Skip) and found.sizes["segment"] > 0
 
     @cached_property
     def slices(self) -> list[slice]:
@@ -82,14 +113,9 @@ class RunSubject:
     def in_segments(self) -> np.ndarray:
         """Which samples lie within a trimmed segment."""
         inside = np.zeros(self.time.size, dtype=bool)
-        for part in self.slices:
+        for part in self.slices if self.sliding else []:
             inside[part] = True
         return inside
-
-    def inside_segment(self, time: float) -> bool:
-        """Whether a moment [s] lies within a trimmed segment."""
-        starts, stops = self.segments["trimmed_start"].values, self.segments["trimmed_stop"].values
-        return bool(((starts < time) & (time < stops)).any())
 
     @cached_property
     def durations(self) -> np.ndarray:
@@ -113,49 +139,59 @@ class RunSubject:
         return np.full(size, float(self.run.attrs.get("set_normal_force_N", np.nan)))
 
     def segment_means(self, name: str) -> np.ndarray:
-        """Mean of a signal over each trimmed segment; empty if it was not recorded."""
+        """Mean of a signal over each trimmed segment; the check is skipped without the signal."""
         if name not in self.signals:
-            return np.zeros(0)
+            raise Skip(f"{name} was not recorded")
         return np.array([_mean(self.signals[name][part]) for part in self.slices])
 
     def segment_stds(self, name: str) -> np.ndarray:
         """Return the standard deviation of a signal over each trimmed segment."""
-        return np.array([np.nanstd(self.signals[name][part]) for part in self.slices])
+        parts = (self.signals[name][part] for part in self.slices)
+        return np.array([_std(values) for values in parts])
 
     @cached_property
-    def mean_force(self) -> float:
-        """Typical magnitude of the friction force over the segments [N], NaN if unknown.
+    def typical_friction(self) -> float:
+        """Typical magnitude of the friction signal over the segments, in its unit.
 
-        The mean of the magnitudes of the half loops where strokes go both ways, so that an
-        offset does not count as friction.
+        Half the difference of the mean strokes where they go both ways, so that an offset does
+        not count as friction; else the mean magnitude.
         """
-        means = self.segment_means("friction_force")
+        if self.friction_signal is None:
+            raise Skip("no friction was recorded")
+        means = self.segment_means(self.friction_signal)
         directions = self.segments["direction"].values
-        forward, backward = means[directions > 0], means[directions < 0]
-        if forward.size and backward.size:
-            return float(abs(np.nanmean(forward) - np.nanmean(backward)) / 2)
-        return float(np.nanmean(np.abs(means))) if means.size else float("nan")
+        forward, backward = _mean(means[directions > 0]), _mean(means[directions < 0])
+        loop = abs(forward - backward) / 2
+        # a coefficient that the instrument has rectified is the same on both strokes
+        typical = loop if loop > 0.1 * _mean(np.abs(means)) else _mean(np.abs(means))
+        if not typical > 0:
+            raise Skip("there is no friction to compare with")
+        return typical
 
     @cached_property
-    def mean_normal_force(self) -> float:
-        """Typical normal force over the segments [N], NaN if unknown."""
-        means = self.segment_means("normal_force")
-        return float(np.nanmean(means)) if means.size else float("nan")
+    def typical_normal_force(self) -> float:
+        """Typical normal force over the segments [N]."""
+        typical = abs(_mean(self.segment_means("normal_force")))
+        if not typical > 0:
+            raise Skip("there is no normal force to compare with")
+        return typical
 
     def unloaded_levels(self, name: str) -> list[float]:
-        """Mean of a signal in each unloaded rest, in the order of time.
+        """Median of a signal in each unloaded rest, in the order of time.
 
-        A rest is unloaded where the normal force stays below 5 % of its mean over the segments
-        for at least 20 samples, before, between or after the segments.
+        A rest is unloaded where the normal force stays below a tenth of its mean over the segments
+        for at least 20 samples, outside the segments. The load's ramp begins in it, hence the
+        median.
         """
-        if name not in self.signals or not np.isfinite(self.mean_normal_force):
-            return []
-        low = np.abs(self.signals["normal_force"]) < 0.05 * self.mean_normal_force
+        if name not in self.signals:
+            raise Skip(f"{name} was not recorded")
+        if "normal_force" not in self.signals:
+            raise Skip("no normal force was recorded that would show a rest without load")
+        low = np.abs(self.signals["normal_force"]) < 0.10 * self.typical_normal_force
         low &= ~self.in_segments
         edges = np.flatnonzero(np.diff(low.astype(np.int8), prepend=0, append=0))
-        stretches = edges.reshape(-1, 2)
-        values = self.signals[name]
-        return [_mean(values[a:b]) for a, b in stretches if b - a >= 20]
+        parts = [self.signals[name][a:b] for a, b in edges.reshape(-1, 2) if b - a >= 20]
+        return [float(np.nanmedian(part)) for part in parts if np.isfinite(part).any()]
 
     def speed_of(self, number: int) -> float:
         """Sliding speed of a segment [m/s]."""
@@ -168,16 +204,33 @@ class RunSubject:
         how = f"{speed:.3g} m/s {arrow}".strip() if np.isfinite(speed) else "speed unknown"
         return f"segment {number} ({how}, from t = {start:.6g} s)"
 
-    @cached_property
-    def _periods(self) -> np.ndarray:
+    def strong_periods(self, least: float) -> np.ndarray:
+        """How many stick-slip periods each segment holds; NaN where there is none to speak of.
+
+        Parameters
+        ----------
+        least
+            Least standard deviation, relative to the run's typical friction, that matters.
+        """
         name = self.friction_signal
         if name is None:
-            return np.full(len(self.slices), np.nan)
-        return np.array([stick_slip_periods(self.signals[name][part]) for part in self.slices])
+            raise Skip("no friction was recorded")
+        values, floor = self.signals[name], least * self.typical_friction
+        return np.array([stick_slip_periods(values[part], floor) for part in self.slices])
 
-    def periods(self, number: int) -> float:
-        """How many stick-slip periods a segment holds; NaN where there is no stick-slip."""
-        return float(self._periods[number])
+    @cached_property
+    def lines(self) -> list[Line]:
+        """Lines in the spectrum of the friction signal, over all segments."""
+        if self.friction_signal is None:
+            raise Skip("no friction was recorded")
+        values = self.signals[self.friction_signal]
+        found = [
+            segment_lines(self.time[part], values[part], number, self.speed_of(number))
+            for number, part in enumerate(self.slices)
+        ]
+        if all(lines is None for lines in found):
+            raise Skip("sampled too slowly or too shortly for a spectrum")
+        return [line for lines in found for line in lines or []]
 
     def unit(self, name: str) -> str:
         """Return the unit of a variable as text, empty for pure numbers."""
@@ -194,29 +247,38 @@ def _mean(values: np.ndarray) -> float:
     return float(known.mean()) if known.size else float("nan")
 
 
-def stick_slip_periods(values: np.ndarray, correlation: float = 0.4) -> float:
+def _std(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.std()) if known.size else float("nan")
+
+
+def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: float = 0.4) -> float:
     """Count the periods of an oscillation that dominates a signal; NaN if none does.
 
     Parameters
     ----------
     values
         (time), evenly sampled.
+    least
+        Least standard deviation that counts as an oscillation, in the unit of the values.
     correlation
         Least autocorrelation at the lag of one period.
 
     Notes
     -----
-    The lag of the highest peak of the autocorrelation behind its first zero, of the straightened
-    signal: on means over stretches for slow waves, on the first samples as they are for fast ones.
+    The lag of the first high summit of the autocorrelation behind its first zero. Of the
+    straightened signal: means over stretches for slow waves, the first samples for fast ones.
     """
     best, count = correlation, float("nan")
+    if values.size < 32:
+        return count
     size = values.size // 4096
     views = [values[:4096]]
     if size > 1:
         views.append(values[: 4096 * size].reshape(4096, size).mean(axis=1))
     for view, share in zip(views, (4096 / values.size, 1.0), strict=False):
         n = view.size
-        if n < 32 or not np.isfinite(view).all() or np.ptp(view) == 0:
+        if n < 32 or not np.isfinite(view).all() or not view.std() > least:
             continue
         place = np.linspace(-1, 1, n)
         part = view - np.polynomial.polynomial.polyval(
@@ -224,11 +286,20 @@ def stick_slip_periods(values: np.ndarray, correlation: float = 0.4) -> float:
         )
         power = np.abs(np.fft.rfft(part, 2 * n)) ** 2
         auto = np.fft.irfft(power)[: n // 2] / np.arange(n, n - n // 2, -1)
+        if not auto[0] > 0:
+            continue
         auto /= auto[0]
         below = np.flatnonzero(auto < 0)
         if below.size == 0:
             continue
-        lag = below[0] + int(np.argmax(auto[below[0] :]))
+        tail = auto[below[0] :]
+        if not tail.max() > 0:
+            continue
+        # periods that scatter agree again by chance at long lags: the first high summit counts
+        high = tail > 0.6 * tail.max()
+        start = int(np.argmax(high))
+        stop = start + int(np.argmin(np.append(high[start:], False)))
+        lag = below[0] + start + int(np.argmax(tail[start:stop]))
         if auto[lag] > best and lag < n // 2 - 1:
             best, count = float(auto[lag]), n / lag / min(share, 1.0)
     return count

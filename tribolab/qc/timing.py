@@ -12,14 +12,6 @@ from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
 _BLOCK = 64  # samples over which a sampling interval is called local
 
 
-def _local_interval(interval: np.ndarray) -> np.ndarray:
-    """Return the median interval of each block of samples, repeated to the intervals' length."""
-    blocks = max(1, interval.size // _BLOCK)
-    edges = np.linspace(0, interval.size, blocks + 1).astype(int)
-    whole = interval[: blocks * (interval.size // blocks)].reshape(blocks, -1)
-    return np.repeat(np.median(whole, axis=1), np.diff(edges))
-
-
 def time_order(time: np.ndarray) -> np.ndarray:
     """Flag samples whose time does not lie after the one before.
 
@@ -43,7 +35,9 @@ def time_order(time: np.ndarray) -> np.ndarray:
     return flags
 
 
-def time_gaps(time: np.ndarray, suspect: float = 5.0) -> np.ndarray:
+def time_gaps(
+    time: np.ndarray, suspect: float = 5.0, pauses: np.ndarray | None = None
+) -> np.ndarray:
     """Flag the samples that follow a gap in time.
 
     Parameters
@@ -51,26 +45,37 @@ def time_gaps(time: np.ndarray, suspect: float = 5.0) -> np.ndarray:
     time
         [s] (time)
     suspect
-        Length of a gap, in local sampling intervals (median of some 64 neighbours, the longer
-        of the two sides where the rate changes), above which it is one.
+        Length of a gap in usual sampling intervals: the median of the three before or of the three
+        after, whichever is longer. A slower rate, even for a few samples, is thus no gap.
+    pauses
+        Indices of samples before which the instrument paused on purpose.
 
     Returns
     -------
     ndarray
-        suspect at the first sample after a gap, good elsewhere; not evaluated below three samples.
+        suspect at the first sample after a gap, good elsewhere; not evaluated below eight samples.
+
+    Examples
+    --------
+    >>> time_gaps(np.array([0, 1, 2, 3, 4, 15, 16, 17, 18.0]))
+    array([1, 1, 1, 1, 1, 3, 1, 1, 1], dtype=int8)
     """
-    if time.size < 3:
+    if time.size < 8:
         return np.full(time.size, NOT_EVALUATED, np.int8)
     interval = np.diff(time)
-    local = _local_interval(interval)
-    step = min(_BLOCK, interval.size)
-    usual = np.maximum(local, np.maximum(np.roll(local, step), np.roll(local, -step)))
-    # the roll wraps at the ends: there only the block itself and its one neighbour count
-    usual[:step] = np.maximum(local[:step], local[min(step, local.size - 1)])
-    usual[-step:] = np.maximum(local[-step:], local[max(-step - 1, -local.size)])
+    three = _middle(interval[:-2], interval[1:-1], interval[2:])
+    before = np.concatenate([np.zeros(3), three[:-1]])
+    after = np.concatenate([three[1:], np.zeros(3)])
     flags = np.full(time.size, GOOD, np.int8)
-    flags[1:][interval > suspect * usual] = SUSPECT
+    flags[1:][interval > suspect * np.maximum(before, after)] = SUSPECT
+    if pauses is not None:
+        flags[pauses] = GOOD
     return flags
+
+
+def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Median of three arrays, element by element."""
+    return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
 
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
@@ -87,51 +92,106 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     time
         [s] (time)
     suspect
-        Robust standard deviation of the intervals within a block of some 64, relative to their
-        median, above which the whole block is flagged.
+        Robust standard deviation of an interval, relative to it, within a block of some 64
+        samples, above which the whole block is flagged.
 
     Returns
     -------
     ndarray
-        suspect over blocks that jitter, good elsewhere; not evaluated below three samples.
+        suspect over blocks that jitter, good elsewhere; not evaluated below one block.
+
+    Notes
+    -----
+    From the difference of neighbouring intervals over their mean, so that a change of the rate
+    within a block is one odd value among many: its median over 0.6745 sqrt(2).
     """
-    if time.size < 3:
+    if time.size < _BLOCK:
         return np.full(time.size, NOT_EVALUATED, np.int8)
     interval = np.diff(time)
-    local = _local_interval(interval)
-    scatter = 1.4826 * _local_interval(np.abs(interval - local))
+    both = interval[1:] + interval[:-1]
+    odd = np.abs(np.diff(interval)) / np.where(both > 0, both / 2, np.inf)
+    scatter = _by_block(odd) / (0.6745 * np.sqrt(2))
     flags = np.full(time.size, GOOD, np.int8)
-    flags[1:][scatter > suspect * local] = SUSPECT
+    flags[1:-1][scatter > suspect] = SUSPECT
     return flags
 
 
-def rate_changes(time: np.ndarray, factor: float = 1.5) -> np.ndarray:
-    """Find the samples at which the sampling rate changes for good.
+def _by_block(values: np.ndarray) -> np.ndarray:
+    """Return the median of each block of samples, repeated to the length of the values."""
+    blocks = max(1, values.size // _BLOCK)
+    edges = np.linspace(0, values.size, blocks + 1).astype(int)
+    length = values.size // blocks
+    whole = np.lib.stride_tricks.sliding_window_view(values, length)[edges[:-1]]
+    return np.repeat(np.median(whole, axis=1), np.diff(edges))
+
+
+def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
+    """Find where the sampling rate of a stretch changes for good.
 
     Parameters
     ----------
     time
         [s] (time)
     factor
-        Ratio of the median intervals before and after.
+        Ratio of the median intervals before and after that counts.
+
+    Returns
+    -------
+    int or None
+        Index of the first sample at the new rate, within some samples; None if it holds.
+
+    Examples
+    --------
+    >>> rate_change(np.concatenate([np.arange(100.0), 100 + 0.1 * np.arange(100)]))
+    100
+    """
+    interval = np.diff(time)
+    parts = min(16, interval.size // 8)
+    if parts < 2:
+        return None
+    edges = np.linspace(0, interval.size, parts + 1).astype(int)
+    medians = np.array([np.median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
+    if not medians.max() > factor * medians.min() or medians.min() <= 0:
+        return None
+    # the cut that parts the logarithms best into two levels
+    level = np.log(np.maximum(interval, 1e-3 * medians.min()))
+    count = np.arange(1, level.size)
+    total = np.cumsum(level)
+    means = total[:-1] / count, (total[-1] - total[:-1]) / (level.size - count)
+    cut = int(np.argmax(count * (level.size - count) * (means[0] - means[1]) ** 2)) + 1
+    return cut
+
+
+def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
+    """Find the samples at which the sampling rate changes for at least a stretch of samples.
+
+    Parameters
+    ----------
+    time
+        [s] (time)
+    factor
+        Ratio of the median intervals before and after that counts.
+    stretch
+        Samples over which a rate has to hold.
 
     Returns
     -------
     ndarray of int
-        Index of the first sample of each new rate, found to within one block of some 64 samples.
+        Index of the first sample at each new rate, within some samples.
     """
-    if time.size < 4 * _BLOCK:
+    if time.size <= 2 * stretch:
         return np.zeros(0, dtype=int)
-    local = _local_interval(np.diff(time))
-    jump = np.abs(np.diff(np.log(local)))
-    places = np.flatnonzero(jump > 0) + 1
-    if places.size == 0:
-        return places
-    # a block that straddles the change has a median of its own: compare across it
-    before = np.log(local[np.maximum(places - 1, 0)])
-    after = np.log(local[np.minimum(places + _BLOCK, local.size - 1)])
-    places = places[np.abs(after - before) > np.log(factor)]
-    if places.size == 0:
-        return places
-    apart = np.diff(places, prepend=-10 * _BLOCK) > 2 * _BLOCK
-    return places[apart]
+    interval = np.diff(time)
+    blocks = interval.size // stretch
+    level = np.median(interval[: blocks * stretch].reshape(blocks, stretch), axis=1)
+    level = np.log(np.maximum(level, np.finfo(float).tiny))
+    # the block that holds the change may have any median: compare across it
+    jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
+    first = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
+    found = []
+    for block in first:  # a loop over changes of the rate, few by their nature
+        start = block * stretch
+        cut = rate_change(time[start : start + 3 * stretch + 1], factor)
+        if cut is not None:
+            found.append(start + cut)
+    return np.array(found, dtype=int)

@@ -1,6 +1,7 @@
 """The virtual rig: signals and files with known truth, for the demo, the tests and teaching."""
 
 from tribolab.rig.campaign import simulate_campaign
+from tribolab.rig.faults import FAULTS, Fault, inject
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
@@ -8,9 +9,11 @@ from tribolab.rig.runs import SimulatedRun, simulate_run
 from tribolab.rig.truth import Truth, read_truth
 
 __all__ = [
+    "FAULTS",
     "Clocks",
     "DryLaw",
     "Encoder",
+    "Fault",
     "ForceCell",
     "Loggers",
     "Protocol",
@@ -21,6 +24,7 @@ __all__ = [
     "StribeckLaw",
     "Truth",
     "friction_law",
+    "inject",
     "read_truth",
     "scans",
     "simulate_campaign",

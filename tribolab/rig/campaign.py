@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.errors import ConfigError
+from tribolab.rig.faults import known_fault
 from tribolab.rig.files import force_file, motion_file, scan_file
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
@@ -43,6 +44,7 @@ class _Job:
     number: int  # of the repeat; 0: the surface's scans
     scans: int
     date: dt.datetime
+    faults: tuple[str, ...] = ()
 
 
 def simulate_campaign(
@@ -55,6 +57,7 @@ def simulate_campaign(
     n_repeats: int = 2,
     n_scans: int | None = None,
     rig: Rig | None = None,
+    faults: str | Sequence[str] = (),
     progress: Callable[[str, int, int], None] | None = None,
     jobs: int = 1,
 ) -> Path:
@@ -75,6 +78,9 @@ def simulate_campaign(
         Runs per condition, scans per surface.
     rig
         Protocol and sensors.
+    faults
+        Names of faults (`tribolab.rig.faults.FAULTS`): each strikes one run, the first that it can
+        happen in and that has none yet. The truth says which.
     progress
         Called as ``progress(stage, done, total)``.
     jobs
@@ -88,7 +94,7 @@ def simulate_campaign(
     Raises
     ------
     ConfigError
-        If the folder holds anything already.
+        If the folder holds anything already; if a fault is not known or finds no run.
 
     Examples
     --------
@@ -124,6 +130,7 @@ def simulate_campaign(
         for room in ("raw/friction", "raw/profiles", "truth"):
             (aside / room).mkdir(parents=True)
         work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
+        work = _deal([faults] if isinstance(faults, str) else faults, work)
         facts = _run_all(work, jobs, progress)
         _write_facts(aside, seed, rig, names, facts)
         (aside / "campaign.toml").write_text(
@@ -155,6 +162,25 @@ def _jobs(
             made += 1
     for name in names:
         yield _Job(folder, seed, rig, _Condition(name, "", 0.0), 0, n_scans, _date(made))
+
+
+def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
+    """Give each fault to the run that has the fewest among those it can happen in."""
+    for name in faults:
+        fault = known_fault(name)
+        able = [
+            k
+            for k, job in enumerate(work)
+            if job.number and fault.suits(job.condition.surface, job.condition.medium)
+        ]
+        if not able:
+            raise ConfigError(
+                f"fault '{name}' happens on {fault.surface} {fault.medium} only, "
+                "and the campaign has no such run"
+            )
+        k = min(able, key=lambda k: len(work[k].faults))
+        work[k] = replace(work[k], faults=(*work[k].faults, name))
+    return work
 
 
 def _date(made: int) -> dt.datetime:
@@ -207,6 +233,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
         job.number,
         seed=_generator(job.seed, name),
         rig=job.rig,
+        faults=job.faults,
     )
     raw = job.folder / "raw/friction"
     (raw / f"{name}_force.csv").write_bytes(force_file(run.force_log, job.date))

@@ -25,7 +25,7 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
     -----
     Loggers write fixed decimals; the fast CSV writers know the shortest form only (``1e-05``). All
     digits of a column are laid out in one byte matrix; leading zeros and absent signs are masked
-    away.
+    away. What is not a number becomes an empty cell.
 
     Examples
     --------
@@ -34,7 +34,9 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
     """
     blocks, masks = [], []
     for number, (values, decimals) in enumerate(columns):
-        counts = np.rint(np.asarray(values) * 10**decimals).astype(np.int64)
+        known = np.isfinite(values)[:, None]
+        scaled = np.where(known[:, 0], np.asarray(values) * 10**decimals, 0.0)
+        counts = np.rint(scaled).astype(np.int64)
         size = np.abs(counts)
         width = max(len(str(int(size.max(initial=0)))), decimals + 1)
         digits = np.empty((counts.size, width), dtype=np.uint8)
@@ -52,8 +54,8 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
         sign = np.full((counts.size, 1), ord("-"), dtype=np.uint8)
         close = np.full((counts.size, 1), end, dtype=np.uint8)
         blocks += [sign, digits[:, :whole], point, digits[:, whole:], close]
-        masks += [counts[:, None] < 0, shown[:, :whole], always & (decimals > 0)]
-        masks += [shown[:, whole:], always]
+        masks += [counts[:, None] < 0, shown[:, :whole] & known, known & (decimals > 0)]
+        masks += [shown[:, whole:] & known, always]
     return np.concatenate(blocks, axis=1)[np.concatenate(masks, axis=1)].tobytes()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, is_dataclass
 from typing import Any
 
@@ -76,6 +76,7 @@ def simulate_run(
     rig: Rig | None = None,
     law: Callable[[np.ndarray], np.ndarray] | None = None,
     slip: StickSlip | None = None,
+    faults: str | Sequence[str] = (),
 ) -> SimulatedRun:
     """Simulate one run on the linear slider.
 
@@ -95,6 +96,9 @@ def simulate_run(
         Friction coefficient at speeds [m/s]; default `friction_law` of surface, medium and load.
     slip
         Stick-slip; default `stick_slip` of surface and medium.
+    faults
+        Names of faults (`tribolab.rig.faults.FAULTS`) that strike the logs; the run beneath is the
+        same as without.
 
     Returns
     -------
@@ -105,6 +109,8 @@ def simulate_run(
     ------
     AnalysisError
         If surface or medium is not known.
+    ConfigError
+        If a fault is not known, or cannot happen in this run.
     UnitError
         If the load's text has no unit of force.
 
@@ -146,7 +152,7 @@ def simulate_run(
         "stick_slip": _named(slip),
         **_clock_facts(errors, float(moved[0]), float(moved[-1])),
     }
-    return SimulatedRun(
+    run = SimulatedRun(
         name,
         _log(time, friction_force=friction, normal_force=normal),
         _log(
@@ -166,6 +172,11 @@ def simulate_run(
         signals.truth,
         facts,
     )
+    if not faults:
+        return run
+    from tribolab.rig.faults import inject
+
+    return inject(run, faults, rng)
 
 
 def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:

@@ -1,0 +1,168 @@
+"""The shift between two clocks is found from the signals, with an uncertainty that holds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab import rig
+from tribolab.io.clock_shift import estimate_clock_shift
+
+STROKES = tuple((way * speed, 2.0) for speed in (1e-3, 1e-2) for way in (1, -1)) * 2
+
+
+def logs(
+    shift=1.234,
+    *,
+    strokes=STROKES,
+    rest=2.0,
+    lead=5.0,
+    rate=100.0,
+    motion_rate=None,
+    build_up=0.0,
+    noise=0.02,
+    sign=1.0,
+    clock_rate=0.0,
+    seed=0,
+):
+    """Two logs of strokes (velocity, duration): friction turns over within `build_up` and stays."""
+    rng = np.random.default_rng(seed)
+    parts = [(0.0, lead), *(part for stroke in strokes for part in (stroke, (0.0, rest)))]
+    parts = [part for part in [*parts, (0.0, lead)] if part[1] > 0]
+    ends = np.cumsum([duration for _, duration in parts])
+    ramp = 0.05
+    knots = np.ravel(
+        [[end - duration + ramp, end] for (_, duration), end in zip(parts, ends, strict=True)]
+    )
+    velocities = np.repeat([velocity for velocity, _ in parts], 2)
+
+    fine = np.arange(0.0, ends[-1], 1e-3)
+    velocity = np.interp(fine, knots, velocities)
+    way = np.sign(velocity)
+    begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
+    path = np.cumsum(np.abs(velocity)) * 1e-3
+    friction, before = np.zeros(len(fine)), 0.0
+    for first, last in zip(begins, [*begins[1:], len(fine)], strict=True):
+        slid = path[first:last] - path[first]
+        left = np.exp(-slid / build_up) if build_up else np.zeros(last - first)
+        friction[first:last] = way[first] + (before - way[first]) * left
+        before = friction[last - 1]
+    time = np.arange(0.0, ends[-1], 1.0 / rate)
+    force = sign * np.interp(time, fine, friction) + noise * rng.standard_normal(len(time))
+    moved = np.arange(1.0, ends[-1] - 1.0, 1.0 / (motion_rate or rate))
+    middle = 0.5 * (moved[0] + moved[-1])
+    shown = middle - shift + (moved - middle) / (1.0 + clock_rate)
+    return time, force, shown, np.interp(moved, knots, velocities)
+
+
+@pytest.mark.parametrize("shift", [-1.7, 0.0, 1.234])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("rate", [100.0, 1000.0])
+def test_without_build_up_the_error_is_below_two_samples(shift, sign, rate):
+    estimate = estimate_clock_shift(*logs(shift, sign=sign, rate=rate))
+    assert abs(estimate.shift - shift) < 2.0 / rate
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("build_up", [3e-6, 1e-5, 3e-5])
+def test_friction_that_builds_up_over_a_distance_does_not_delay_the_shift(build_up, seed):
+    estimate = estimate_clock_shift(*logs(build_up=build_up, seed=seed))
+    assert abs(estimate.shift - 1.234) < 0.02
+    assert abs(estimate.shift - 1.234) < 3 * estimate.uncertainty
+
+
+def test_reversals_without_rest_tell_the_shift():
+    strokes = tuple((way * 1e-3, 3.0) for way in (1, -1) * 10)
+    estimate = estimate_clock_shift(*logs(strokes=strokes, rest=0.0, build_up=1e-5))
+    assert abs(estimate.shift - 1.234) < 0.02
+
+
+def test_logs_of_different_rates_are_matched():
+    estimate = estimate_clock_shift(*logs(rate=500.0, motion_rate=50.0, build_up=1e-5))
+    assert abs(estimate.shift - 1.234) < 0.02
+
+
+def test_a_long_run_tells_which_clock_is_faster():
+    strokes = tuple((way * 1e-2, 10.0) for way in (1, -1) * 60)
+    quiet = estimate_clock_shift(*logs(strokes=strokes, rate=200.0, clock_rate=20e-6))
+    assert quiet.rate == pytest.approx(20e-6, abs=3 * quiet.rate_uncertainty)
+    assert quiet.rate_uncertainty < 3e-6
+
+
+def test_a_single_start_is_enough_and_its_uncertainty_says_how_far():
+    clear = estimate_clock_shift(*logs(strokes=((1e-3, 20.0),), lead=10.0, build_up=1e-5))
+    noisy = estimate_clock_shift(
+        *logs(strokes=((1e-3, 20.0),), lead=10.0, build_up=1e-5, noise=0.3)
+    )
+    assert abs(clear.shift - 1.234) < 3 * clear.uncertainty < 0.1
+    assert abs(noisy.shift - 1.234) < 3 * noisy.uncertainty
+    assert noisy.uncertainty > 2 * clear.uncertainty
+
+
+def test_speed_changes_after_one_start_do_not_mislead():
+    strokes = ((1e-3, 5.0), (2e-3, 7.0), (1e-3, 4.0), (3e-3, 9.0))
+    estimate = estimate_clock_shift(*logs(strokes=strokes, rest=0.0, lead=10.0, build_up=1e-5))
+    assert abs(estimate.shift - 1.234) < 3 * estimate.uncertainty
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("kind", ["noise", "random walk", "drift", "constant"])
+def test_a_force_that_does_not_follow_the_motion_tells_nothing(kind, seed):
+    time, _, shown, velocity = logs()
+    noise = np.random.default_rng(seed).standard_normal(len(time))
+    forces = {
+        "noise": noise,
+        "random walk": np.cumsum(noise),
+        "drift": time + 0.1 * noise,
+        "constant": np.full(len(time), 2.0),
+    }
+    assert estimate_clock_shift(time, forces[kind], shown, velocity) is None
+
+
+def test_a_table_that_does_not_move_tells_nothing():
+    time, force, shown, velocity = logs()
+    assert estimate_clock_shift(time, force, shown, np.zeros_like(velocity)) is None
+
+
+@pytest.mark.parametrize(
+    ("surface", "medium", "load"),
+    [("Smooth", "glycerol", 31.0), ("Smooth", "glycerol", 211.0), ("Sb-S", "glycerol", 91.0)]
+    + [("Sb-R", "glycerol", 151.0), ("Smooth", "dry", 31.0), ("Sb-R", "dry", 31.0)],
+)
+def test_runs_of_the_rig_are_matched_to_what_the_fast_strokes_need(surface, medium, load):
+    run = rig.simulate_run(surface, medium, load, seed=5)
+    time = run.motion_log["time"].to_numpy()
+    force = run.force_log["friction_force"].to_numpy()
+    velocity = run.motion_log["sliding_velocity"].to_numpy()
+    estimate = estimate_clock_shift(run.force_log["time"].to_numpy(), force, time, velocity)
+    error = estimate.shift - run.facts["clock_shift_at_middle_s"]
+    assert abs(error) < 0.015
+    assert abs(error) < 2 * estimate.uncertainty < 0.03
+    middle = 0.5 * (time[0] + time[-1])
+    error_at_fastest = error + (estimate.rate - run.facts["clock_rate"]) * (time[-1] - middle)
+    assert abs(error_at_fastest) < 0.006  # segments there last 0.9 s and are trimmed by 0.09 s
+
+
+@pytest.fixture(scope="module")
+def force_file(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("campaign") / "small"
+    rig.simulate_campaign(folder, seed=3, small=True)
+    return sorted(folder.glob("raw/friction/*_force.csv"))[0]
+
+
+def test_a_merged_run_says_what_was_estimated(force_file):
+    run = tl.read(force_file)
+    truth = rig.read_truth(force_file.parents[2]).facts["runs"]
+    name = force_file.name.removesuffix("_force.csv")
+    error = run.attrs["clock_shift_s"] - truth[name]["clock_shift_at_middle_s"]
+    assert run.attrs["clock_shift_source"] == "estimated"
+    assert abs(error) < 2 * run.attrs["clock_shift_uncertainty_s"] < 0.05
+    assert abs(run.attrs["clock_rate"]) < 1e-4
+
+
+def test_a_given_shift_is_taken_as_it_is(force_file):
+    run = tl.read(force_file, clock_shift="0.25 s")
+    assert run.attrs["clock_shift_s"] == 0.25
+    assert run.attrs["clock_shift_source"] == "given"
+    assert run.attrs["clock_rate"] == 0.0

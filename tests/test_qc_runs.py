@@ -1,0 +1,214 @@
+"""Whole runs: sound runs of the rig pass, and real files get the verdict a person gives."""
+
+import datetime as dt
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tribolab import cli
+from tribolab.friction.segments import find_segments
+from tribolab.io.runs import read
+from tribolab.qc.run_checks import check_run
+from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
+from tribolab.rig.files import force_file, motion_file
+
+SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
+
+
+def measured(folder, *words, **options):
+    """Simulate a run, write its files, read them back."""
+    run = simulate_run(*words, **options)
+    paths = [folder / f"{run.name}_{log}.csv" for log in ("force", "motion")]
+    paths[0].write_bytes(force_file(run.force_log, dt.datetime(2026, 3, 2)))
+    paths[1].write_bytes(motion_file(run.motion_log, dt.datetime(2026, 3, 2)))
+    return read(paths)
+
+
+def objections(found):
+    return {
+        row["check"]: row["status"]
+        for row in found.rows
+        if row["status"] not in ("pass", "skipped")
+    }
+
+
+def message(found, check):
+    return " ".join(row["message"] for row in found.rows if row["check"] == check)
+
+
+CONDITIONS = [("Smooth", "dry", 31.0), ("Smooth", "glycerol", 211.0), ("Sb-R", "glycerol", 31.0)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("seed", [2000, 2001])
+def test_a_sound_run_passes(tmp_path, condition, seed):
+    run = measured(tmp_path, *condition, seed=seed)
+    found = check_run(run, normal_force=condition[2], contact_width="2 cm")
+    assert objections(found) == {}
+    assert found.status == "pass"
+    skipped = {row["check"] for row in found.rows if row["status"] == "skipped"}
+    assert skipped == {"restarts"}  # the rig's files number no steps
+
+
+def test_flags_cover_segments_and_leave_the_rest_unjudged(tmp_path):
+    run = measured(tmp_path, "Sb-R", "dry", 31.0, rig=SHORT, seed=2003)
+    shifted = run.assign(normal_force=1.05 * run.normal_force)
+    found = check_run(shifted, normal_force="31 N")
+    assert objections(found) == {"normal_force_error": "suspect"}
+    objected = found.flagged.normal_force_qc.values == 3
+    segments = find_segments(run)
+    assert 0.5 < objected.mean() < 0.85  # trimmed segments
+    for start, stop in zip(
+        segments.trimmed_start.values, segments.trimmed_stop.values, strict=True
+    ):
+        inside = (run.time.values >= start) & (run.time.values <= stop)
+        assert objected[inside].all()
+
+
+def test_an_offset_of_the_load_cell_is_not_an_error_of_the_load(tmp_path):
+    run = measured(tmp_path, "Sb-R", "dry", 31.0, rig=SHORT, seed=2004)
+    shifted = run.assign(normal_force=run.normal_force + 1.4)  # 4.5 %, but seen at rest
+    assert objections(check_run(shifted, normal_force=31.0)) == {}
+
+
+def test_a_lone_force_log_is_suspect_for_want_of_a_speed_not_a_crash(tmp_path):
+    measured(tmp_path, "Sb-R", "dry", 31.0, rig=SHORT, seed=2005)
+    run = read(tmp_path / "sb-r_dry_31N_01_force.csv", pair=False)
+    found = check_run(run)
+    assert objections(found) == {"schema": "suspect"}
+    assert "nothing tells the speed" in message(found, "schema")
+
+
+# --- real files
+
+
+def verdict(folder, *path):
+    run = read(folder.joinpath(*path))
+    found = check_run(run)
+    assert found.count()["error"] == 0
+    return run, found
+
+
+@pytest.mark.parametrize("name", ["k1002Nm_v4300", "k168Nm_v1100", "k168Nm_v4300", "k2254Nm_v1100"])
+def test_paper_on_paper_has_spikes_and_its_stick_slip_is_no_fault(shared_data, name):
+    run, found = verdict(shared_data, "stickslip_paper_CeCILL-B", f"{name}.mat")
+    known = objections(found)
+    assert known.pop("spikes") == "suspect"
+    # 3.6 periods in the whole record: the mean depends on where it is cut
+    assert known == ({"distance": "suspect"} if name == "k168Nm_v4300" else {})
+    flagged = found.flagged.friction_coefficient_qc.values == 3
+    values = run.friction_coefficient.values
+    assert 20 < flagged.sum() < 0.01 * values.size
+    # the flagged samples are what stands out from the mean of the samples beside them
+    apart = np.abs(values[1:-1] - (values[:-2] + values[2:]) / 2)
+    assert np.median(apart[flagged[1:-1]]) > 8 * np.median(apart)
+
+
+def test_the_mains_line_of_paper_on_paper_is_named_and_too_small_to_object_to(shared_data):
+    _, found = verdict(shared_data, "stickslip_paper_CeCILL-B", "k168Nm_v1100.mat")
+    assert "mains hum at 49.96 Hz, 0.14% of the typical friction" in message(found, "hum")
+    assert "hum" not in objections(found)
+
+
+@pytest.mark.parametrize("name", ["Circle_1bar", "Kidney_2bar", "O-ring257_1bar"])
+def test_the_actuators_irregular_first_step_is_a_gap(shared_data, name):
+    run, found = verdict(shared_data, "actuator_friction_CC0", f"{name}.csv")
+    known = objections(found)
+    assert known.pop("time_gaps") == "suspect"
+    step = np.diff(run.time.values)
+    gap = found.flagged.friction_force_qc_tests.values & (1 << 2) != 0
+    early = int(np.argmax(step[:15]))  # some 0.27 s within the first dozen samples
+    assert step[early] > 0.26 and gap[early + 1]
+    # a seal that is not the same over the stroke, and a start-up peak, a person sees as well
+    assert set(known) <= {"steadiness", "spikes"} and set(known.values()) <= {"suspect"}
+
+
+def test_the_rocks_change_of_rate_is_seen_and_lies_outside_the_segments(shared_data):
+    _, found = verdict(shared_data, "rock_velstep_MIT", "velstep4_BRAVA_expb819_basalt.txt")
+    assert objections(found) == {}
+    told = message(found, "rate_changes")
+    assert "changes 1 times, never within a trimmed segment: t = 66.5 s" in told
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_the_second_header_of_cetr_is_a_step_and_not_a_gap(shared_data, number):
+    _, found = verdict(shared_data, "cetr_umt2_MIT", f"HT-2n-6-4 2_00{number}.csv")
+    assert "the file holds 2 steps, each with its own header or clock" in message(found, "restarts")
+    assert set(objections(found)) <= {"spikes"}
+
+
+@pytest.mark.parametrize("name", ["demo_2.txt", "demo_3.txt", "demo_12.txt"])
+def test_films_without_friction_are_suspect_for_that_alone(shared_data, name):
+    _, found = verdict(shared_data, "pcs_mtm_ehd_MIT", name)
+    assert objections(found) == {"schema": "suspect"}
+    assert "no friction was recorded" in message(found, "schema")
+
+
+@pytest.mark.parametrize("path", ["pcs_mtm_ehd_MIT/demo_5.txt", "pcs_mtm_ehd_MIT/trios_demo.txt"])
+def test_sound_exports_of_other_instruments_pass(shared_data, path):
+    assert objections(verdict(shared_data, path)[1]) == {}
+
+
+def test_the_optical_trap_passes(shared_data):
+    (file,) = (shared_data / "tdms_force_MIT").glob("*.tdms")
+    assert objections(verdict(shared_data, file)[1]) == {}
+
+
+# --- command line
+
+
+@pytest.fixture(scope="module")
+def faulty(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("faulty") / "campaign"
+    simulate_campaign(
+        folder, small=True, surfaces=["Sb-R"], n_repeats=2, faults=["spikes", "sign", "restart"]
+    )
+    return folder / "raw" / "friction"
+
+
+def tribolab_check(*words):
+    return CliRunner().invoke(cli.app, ["check", *map(str, words)])
+
+
+def test_the_command_checks_every_run_and_a_bad_one_stops_none(faulty):
+    done = tribolab_check(*sorted(faulty.glob("*.csv")), "--json")
+    told = json.loads(done.stdout)
+    statuses = sorted(run["status"] for run in told["runs"])
+    assert statuses == ["fail", "pass", "suspect", "unreadable"]
+    assert done.exit_code == told["exit_code"] == 3
+    bad = next(run for run in told["runs"] if run["status"] == "unreadable")
+    assert "time goes backwards" in bad["error"] and bad["findings"] == []
+
+
+def test_the_commands_exit_code_is_the_level_asked_for(faulty):
+    by_status = {
+        run["status"]: run["files"]
+        for run in json.loads(tribolab_check(*sorted(faulty.glob("*.csv")), "--json").stdout)[
+            "runs"
+        ]
+    }
+    for status, fail_on, code in (
+        ("pass", "suspect", 0),
+        ("suspect", "fail", 0),
+        ("suspect", "suspect", 1),
+        ("fail", "fail", 1),
+        ("fail", "never", 0),
+    ):
+        done = tribolab_check(*by_status[status], "--fail-on", fail_on)
+        assert done.exit_code == code, (status, fail_on, done.stderr)
+    done = tribolab_check(*by_status["suspect"])
+    assert "spikes" in done.stdout and "Look for switching devices" in done.stdout
+    assert "1 objected" in done.stdout and "saturation" not in done.stdout
+    assert "saturation" in tribolab_check(*by_status["suspect"], "--all").stdout
+
+
+def test_the_command_explains_wrong_use(faulty):
+    file = next(iter(faulty.glob("*.csv")))
+    done = tribolab_check(file, "--fail-on", "fial")
+    assert done.exit_code == 2 and "did you mean 'fail'" in done.stderr
+    done = tribolab_check(file, "--instrument", "linear_slidr")
+    assert done.exit_code == 2 and "linear_slider" in done.stderr
+    assert tribolab_check(faulty / "none.csv").exit_code == 3

@@ -1,0 +1,116 @@
+"""Faults of the virtual rig: found by their checks, told in the truth, harmless to the rest."""
+
+import datetime as dt
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tribolab.errors import ConfigError, ReadError
+from tribolab.io.runs import read
+from tribolab.qc.register import STATUSES
+from tribolab.qc.run_checks import RUN_CHECKS, check_run
+from tribolab.rig import FAULTS, Protocol, Rig, inject, read_truth, simulate_campaign, simulate_run
+from tribolab.rig.files import fixed_table, force_file, motion_file
+
+SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
+
+
+def condition(fault):
+    return (fault.surface or "Sb-R", fault.medium or "dry", 31.0)
+
+
+def write(folder, run):
+    paths = [folder / f"{run.name}_{log}.csv" for log in ("force", "motion")]
+    paths[0].write_bytes(force_file(run.force_log, dt.datetime(2026, 3, 2)))
+    paths[1].write_bytes(motion_file(run.motion_log, dt.datetime(2026, 3, 2)))
+    return paths
+
+
+def test_every_check_has_a_fault_that_it_finds():
+    assert {fault.check for fault in FAULTS.values()} == set(RUN_CHECKS)
+    for name, fault in FAULTS.items():
+        assert fault.name == name and fault.what.endswith(".")
+        assert fault.severity in ("suspect", "fail", "unreadable")
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_found_by_its_check(tmp_path, name):
+    fault = FAULTS[name]
+    run = simulate_run(*condition(fault), seed=3000, rig=SHORT, faults=name)
+    paths = write(tmp_path, run)
+    if fault.severity == "unreadable":
+        with pytest.raises(ReadError, match="time goes backwards"):
+            read(paths)
+        return
+    found = check_run(read(paths), normal_force=31.0)
+    statuses = {row["status"] for row in found.rows if row["check"] == fault.check}
+    assert max(map(STATUSES.index, statuses)) >= STATUSES.index(fault.severity)
+    assert found.count()["error"] == 0
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_drawn_from_its_seed_and_leaves_the_run_beneath_alone(name):
+    where = condition(FAULTS[name])
+    sound = simulate_run(*where, seed=3001, rig=SHORT)
+    kept = sound.force_log.copy(deep=True), sound.motion_log.copy(deep=True)
+    one, again = (simulate_run(*where, seed=3001, rig=SHORT, faults=name) for _ in range(2))
+    xr.testing.assert_identical(one.force_log, again.force_log)
+    xr.testing.assert_identical(one.motion_log, again.motion_log)
+    assert one.facts == again.facts
+    changed = not (
+        one.force_log.identical(sound.force_log) and one.motion_log.identical(sound.motion_log)
+    )
+    assert changed
+    xr.testing.assert_identical(one.noise_free, sound.noise_free)
+    assert one.segments.equals(sound.segments)
+    inject(sound, name, 5)
+    xr.testing.assert_identical(sound.force_log, kept[0])
+    xr.testing.assert_identical(sound.motion_log, kept[1])
+
+
+def test_faults_add_up_and_are_listed_in_order():
+    run = simulate_run("Sb-R", "dry", rig=SHORT, faults=["zero_offset", "spikes"])
+    first, second = run.facts["faults"]
+    assert (first["name"], second["name"]) == ("zero_offset", "spikes")
+    sound = simulate_run("Sb-R", "dry", rig=SHORT)
+    added = run.force_log.friction_force.values - sound.force_log.friction_force.values
+    assert np.median(added) == pytest.approx(first["offset_N"])
+    apart = np.flatnonzero(np.abs(added - first["offset_N"]) > 1)
+    assert apart.tolist() == second["rows"]
+
+
+def test_the_truth_of_a_campaign_tells_where_each_fault_is(tmp_path):
+    wanted = ["slow_logger", "hum", "gaps"]
+    folder = tmp_path / "faulty"
+    simulate_campaign(folder, small=True, n_repeats=1, seed=4, faults=wanted)
+    runs = read_truth(folder).facts["runs"]
+    told = {name: [f["name"] for f in fact.get("faults", [])] for name, fact in runs.items()}
+    assert sorted(sum(told.values(), [])) == sorted(wanted)
+    assert max(map(len, told.values())) == 1
+    assert told["smooth_dry_31N_01"] == ["slow_logger"]  # the only one that has such stick-slip
+    # a run that was not struck is the same as in a campaign without faults
+    simulate_campaign(tmp_path / "sound", small=True, n_repeats=1, seed=4)
+    for name, faults in told.items():
+        raw = [
+            (tmp_path / kind / "raw/friction" / f"{name}_force.csv").read_bytes()
+            for kind in ("faulty", "sound")
+        ]
+        assert (raw[0] == raw[1]) == (not faults)
+
+
+def test_what_cannot_be_is_refused_with_a_reason(tmp_path):
+    with pytest.raises(ConfigError, match="did you mean 'spikes'"):
+        simulate_run(rig=SHORT, faults="spike")
+    with pytest.raises(ConfigError, match="Smooth dry only, not on Sb-R dry"):
+        simulate_run("Sb-R", "dry", rig=SHORT, faults="slow_logger")
+    with pytest.raises(ConfigError, match="2 are wanted"):
+        simulate_run("Sb-R", "dry", rig=Rig(Protocol(speeds=(2.15e-3,))), faults="resonance")
+    with pytest.raises(ConfigError, match="no such run"):
+        simulate_campaign(tmp_path / "x", small=True, surfaces=["Sb-R"], faults=["slow_logger"])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_value_is_an_empty_cell():
+    values = np.array([1.25, np.nan, -0.5])
+    assert fixed_table([(values, 2), (values, 1)], ",") == b"1.25,1.2\n,\n-0.50,-0.5\n"

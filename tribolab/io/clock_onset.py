@@ -1,0 +1,157 @@
+"""The fine adjustment of two clocks, by the moments at which sliding sets in.
+
+Friction does not turn over at once when a stroke begins, but within a distance: sorted by velocity
+alone, force samples seem to come late. So each stroke's beginning is fitted by
+
+    F(t) = a + b exp(-s(t - shift) / d),
+
+with s the distance moved since the stroke began (0 before it), a and b free, and d the best of a
+few distances. All strokes share the shift; a stroke counts as much as its fit gets worse beside it:
+
+    L(shift) = sum_i n_i / 2 log RSS_i(shift).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_PART = 0.05  # of a stroke's length is looked at, and as long before it
+_DISTANCES = 1e-6 * 4.0 ** np.arange(9)  # d, in lengths of the stroke
+_REACH = 0.3  # of a fast stroke's (or rest's) duration, within which the shift is sought
+_NOISE = 1e-3  # of the longest stroke's way: less is noise of a table at rest
+_FAST = 0.1  # strokes at less than this part of the highest speed are too slow to tell the moment
+_SAMPLES = 5000  # most samples of one beginning; one that lasts longer is too slow to tell
+_PLAIN = 20.0  # least rise of L on both sides: noise alone stays below
+_RISE = 4.0  # of L, to the edge of the uncertainty
+
+
+class Sharpened(NamedTuple):
+    """Shift [s], its uncertainty [s], and the mean moment [s, motion clock] that it refers to."""
+
+    shift: float
+    uncertainty: float
+    time: float
+
+
+class Onset(NamedTuple):
+    """The beginning of one stroke: force samples, and the distance moved by the motion clock."""
+
+    time: Array
+    force: Array
+    motion_time: Array
+    distance: Array
+    length: float
+
+
+def refine_by_onsets(
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    shift: float,
+    period: float,
+) -> Sharpened | None:
+    """Refine the shift between two clocks by the beginnings of strokes.
+
+    Parameters
+    ----------
+    force_time, force
+        Force log: its own clock [s] and the friction force.
+    motion_time, velocity
+        Motion log: its own clock [s] and the signed velocity [m/s].
+    shift
+        First estimate: motion clock + shift = force clock [s].
+    period
+        Sample period [s] of the fastest region: neither log can tell less than half of it.
+
+    Returns
+    -------
+    Sharpened or None
+        None if no beginning of a stroke can be made out, or the shift
+        does not lie near the first estimate.
+    """
+    onsets, half_width = _onsets(force_time, force, motion_time, velocity, shift)
+    if not onsets:
+        return None
+    centre, half = shift, half_width
+    while half > 0.5 * period:
+        shifts = centre + half * np.linspace(-1.0, 1.0, 41)
+        centre = float(shifts[np.argmin(_misfit(onsets, shifts))])
+        half /= 8.0
+    if abs(centre - shift) > 0.98 * half_width:
+        return None
+    steps = period * np.concatenate([[0.0], 0.5 * 1.25 ** np.arange(30)])
+    steps = steps[steps <= half_width]
+    left, right = (_misfit(onsets, centre + sign * steps) for sign in (-1.0, 1.0))
+    if min(left.max(), right.max()) - left[0] < _PLAIN:
+        return None
+    risen = np.flatnonzero(np.minimum(left, right)[1:] - left[0] > _RISE)
+    if risen.size == 0:
+        return None
+    when = float(np.mean([onset.motion_time[0] for onset in onsets]))
+    return Sharpened(centre, float(steps[1 + risen[0]]), when)
+
+
+def _onsets(
+    force_time: Array, force: Array, motion_time: Array, velocity: Array, shift: float
+) -> tuple[list[Onset], float]:
+    """Beginnings of the fast strokes, and how far from `shift` they can tell it."""
+    speed = np.abs(np.nan_to_num(velocity))
+    moving = speed > 1e-5 * speed.max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], moving.astype(np.int8), [0]])))
+    way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(motion_time))])
+    lengths = way[edges[1::2] - 1] - way[edges[::2]]
+    strokes = lengths > _NOISE * lengths.max(initial=0.0)
+    firsts, lasts = edges[::2][strokes], edges[1::2][strokes]
+    fast = np.array(
+        [
+            first > 1 and speed[first:last].max() > _FAST * speed.max()
+            for first, last in zip(firsts, lasts, strict=True)
+        ]
+    )
+    if not fast.any():
+        return [], 0.0
+    rested = motion_time[firsts - 1] - motion_time[np.concatenate([[0], lasts[:-1]])]
+    lasted = motion_time[lasts - 1] - motion_time[firsts]
+    half_width = _REACH * float(np.median(np.minimum(rested, lasted)[fast]))
+    onsets = []
+    for first, last, rest in zip(firsts[fast], lasts[fast], rested[fast], strict=True):
+        distance = way[first - 1 : last] - way[first - 1]
+        begin = motion_time[first - 1]
+        until = motion_time[first - 1 + int(np.searchsorted(distance, _PART * distance[-1]))]
+        before = max(min(until - begin, rest - 2.0 * half_width), 0.0) + half_width
+        ends = [begin - before, until + half_width]
+        window = slice(*np.searchsorted(force_time - shift, ends))
+        if 8 <= window.stop - window.start <= _SAMPLES and np.ptp(force[window]) > 0:
+            onsets.append(
+                Onset(
+                    force_time[window],
+                    force[window],
+                    motion_time[first - 1 : last],
+                    distance,
+                    float(distance[-1]),
+                )
+            )
+    return onsets, half_width
+
+
+def _misfit(onsets: list[Onset], shifts: Array) -> Array:
+    """L at each shift."""
+    total = np.zeros(len(shifts))
+    for onset in onsets:
+        way = np.interp(onset.time - shifts[:, None], onset.motion_time, onset.distance)
+        left = np.full(len(shifts), np.inf)
+        force = onset.force - onset.force.mean()
+        square = float(force @ force)
+        for d in _DISTANCES * onset.length:
+            decay = np.exp(-way / d)
+            decay -= decay.mean(axis=1, keepdims=True)
+            norm = np.maximum((decay**2).sum(axis=1), 1e-12)
+            left = np.minimum(left, square - (decay @ force) ** 2 / norm)
+        total += 0.5 * len(force) * np.log(np.maximum(left, 1e-9 * square + 1e-30))
+    return total

@@ -1,0 +1,199 @@
+"""Checks on what the rig did: zero points, load, speed, and the match of two clocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.qc.per_segment import by_segment, status_of
+from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.subject import RunSubject
+
+
+def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    offsets = subject.unloaded_levels("friction_force")
+    if not offsets:
+        raise Skip("the zero of the force was not measured: no rest without load")
+    share = float(np.median(offsets)) / subject.typical_friction
+    text = f"the force cell's zero lies {share:+.2%} of the friction force off"
+    return [Result(status_of(share, limits), "friction_force", text, share)]
+
+
+def _zero_drift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    results = []
+    for name in ("friction_force", "normal_force"):
+        levels = subject.unloaded_levels(name)
+        if len(levels) < 2:
+            text = "fewer than two rests without load: no drift to be seen"
+            results.append(Result("skipped", name, text))
+            continue
+        force = name == "friction_force"
+        scale = subject.typical_friction if force else subject.typical_normal_force
+        drift = (levels[-1] - levels[0]) / scale
+        text = f"the zero moved by {drift:+.2%} of the signal from the first to the last rest"
+        results.append(Result(status_of(drift, limits), name, text, float(drift)))
+    return results
+
+
+def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    target = subject.target_normal_force
+    means = subject.segment_means("normal_force")
+    if not np.isfinite(target).any():
+        raise Skip("the set-point of the normal force is not known")
+    levels = subject.unloaded_levels("normal_force")
+    zero = float(np.mean(levels)) if levels else 0.0
+    error = (means - zero) / target - 1
+    return by_segment(subject, "normal_force", error, limits, "normal force off its set-point")
+
+
+def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    means = subject.segment_means("normal_force")
+    share = subject.segment_stds("normal_force") / np.where(means == 0, np.nan, means)
+    return by_segment(subject, "normal_force", share, limits, "scatter of the normal force")
+
+
+def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    segments = subject.segments
+    if segments.attrs.get("velocity_source") not in ("recorded", "position"):
+        raise Skip("the speed was not measured")
+    if "set_speed" in segments:
+        target = np.abs(segments["set_speed"].values)
+    else:
+        target = np.full(segments.sizes["segment"], subject.run.attrs.get("set_speed_m_s", np.nan))
+    if not np.isfinite(target).any():
+        raise Skip("the set-point of the speed is not known")
+    error = segments["sliding_speed"].values / np.where(target > 0, target, np.nan) - 1
+    return by_segment(subject, "sliding_velocity", error, limits, "speed off its set-point")
+
+
+def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    if not {"sliding_velocity", "position"} <= set(subject.run):
+        raise Skip("velocity and position were not both recorded")
+    slopes, scatter, spread = np.array([_slope(subject, part) for part in subject.slices]).T
+    if not np.isfinite(slopes).any():
+        raise Skip("no position within the segments")
+    # readings that repeat one value do not scatter, and yet are no more exact than the others
+    errors = np.fmax(scatter, np.nanmedian(scatter)) / spread
+    # the slope is a mean over the segment: compare it with the mean of the signed velocity
+    velocity = subject.segment_means("sliding_velocity")
+    velocity = np.where(velocity == 0, np.nan, velocity)
+    # a creep that the encoder does not resolve is no speed to compare with
+    resolved = limits["errors"] * errors < limits["suspect"] * np.abs(velocity)
+    error = np.where(resolved, slopes / velocity - 1, np.nan)
+    return by_segment(subject, "sliding_velocity", error, limits, "d(position)/dt off the velocity")
+
+
+def _slope(subject: RunSubject, part: slice) -> tuple[float, float, float]:
+    """Slope of the position over a segment [m/s], scatter about it [m], spread of the times [s]."""
+    time, position = subject.time[part], subject.signals["position"][part]
+    good = np.isfinite(position)
+    if good.sum() < 3:
+        return float("nan"), float("nan"), float("nan")
+    t, x = time[good] - time[good].mean(), position[good] - position[good].mean()
+    slope = float(t @ x) / float(t @ t)
+    return slope, float(np.std(x - slope * t)), float(np.sqrt(t @ t))
+
+
+def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    attrs = subject.run.attrs
+    if "clock_shift_source" not in attrs:
+        raise Skip("one clock only")
+    source = str(attrs["clock_shift_source"])
+    if source == "given":
+        return [Result("pass", "time", "the shift between the clocks was given", unit="s")]
+    error = float(attrs.get("clock_shift_uncertainty_s", np.nan))
+    if source == "none" or not np.isfinite(error):
+        text = "the shift between the clocks could not be told from the signals"
+        return [Result("fail", "time", text, unit="s")]
+    share = error / float(np.min(subject.durations))
+    text = f"the clocks are matched to {error:.3g} s, {share:.1%} of the shortest segment"
+    return [Result(status_of(share, limits), "time", text, error, "s")]
+
+
+_OFF = "Calibrate or zero the instrument; check what the file calls its unit."
+
+RIG_CHECKS = (
+    Check(
+        "zero_offset",
+        11,
+        "Does the friction force read zero when nothing slides?",
+        "Zero the force cell before loading. The offset was removed, and is listed.",
+        {
+            "suspect": Limit(
+                0.5, "1", "zeros hold to a tenth of themselves: 5 % of the friction is in doubt"
+            ),
+            "fail": Limit(5.0, "1", "a tenth of the zero is then half of the friction"),
+        },
+        _zero_offset,
+    ),
+    Check(
+        "zero_drift",
+        12,
+        "Does the zero stay where it was?",
+        "Let the amplifier warm up; measure strokes both ways, whose half loop drops a drift.",
+        {
+            "suspect": Limit(
+                0.10, "1", "half loops leave what passes within a pair: 1 % in a run of ten pairs"
+            ),
+            "fail": Limit(1.0, "1", "the zero moves as much as friction does"),
+        },
+        _zero_drift,
+    ),
+    Check(
+        "normal_force_error",
+        13,
+        "Is the normal force what it was set to?",
+        _OFF,
+        {
+            "suspect": Limit(0.03, "1", "friction coefficients of Hertz contacts go as F^-1/3"),
+            "fail": Limit(0.15, "1", "half the step to the next load that is usually chosen"),
+        },
+        _normal_force_error,
+    ),
+    Check(
+        "normal_force_scatter",
+        14,
+        "Does the load control hold the normal force?",
+        "Check the control loop and the flatness of the counter body.",
+        {
+            "suspect": Limit(0.03, "1", "three times what a good control leaves"),
+            "fail": Limit(0.20, "1", "the load is not one load any more"),
+        },
+        _normal_force_scatter,
+    ),
+    Check(
+        "velocity_set",
+        15,
+        "Is the speed what it was set to?",
+        _OFF,
+        {
+            "suspect": Limit(0.03, "1", "stages keep their speed to 1 %"),
+            "fail": Limit(0.20, "1", "a fifth moves the point on a Stribeck curve visibly"),
+        },
+        _velocity_set,
+    ),
+    Check(
+        "velocity_position",
+        16,
+        "Do velocity and position agree?",
+        "One of the two has a wrong scale or unit; compare with a ruler and a watch.",
+        {
+            "suspect": Limit(0.03, "1", "encoder and tachometer agree to 1 %"),
+            "fail": Limit(0.20, "1", "one of the two is wrong"),
+            "errors": Limit(3.0, "1", "what three standard errors hide is not known"),
+        },
+        _velocity_position,
+    ),
+    Check(
+        "clock_shift",
+        17,
+        "Are the clocks of the two logs matched?",
+        "Give the shift (clock_shift), or record a common mark such as a start and a stop.",
+        {
+            "suspect": Limit(0.10, "1", "the usual trim of 10 % takes up a shift up to that"),
+            "fail": Limit(0.50, "1", "segments and forces no longer belong together"),
+        },
+        _clock_shift,
+    ),
+)

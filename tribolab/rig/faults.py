@@ -1,0 +1,239 @@
+"""Faults that real rigs have, to be put into simulated runs: one for each check on a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tribolab.errors import ConfigError, nearest
+from tribolab.rig import strikes
+from tribolab.rig.runs import SimulatedRun
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault: what happens, how grave it is, and which check has to find it.
+
+    Attributes
+    ----------
+    name
+        As in ``tribolab simulate --fault NAME``.
+    what
+        What it does, in a sentence.
+    severity
+        "suspect", "fail", or "unreadable": the reader itself refuses the file.
+    check
+        Name of the check on runs that should find it.
+    strike
+        ``strike(run, rng) -> (force log, motion log, facts)``; changes nothing in place.
+    surface, medium
+        The only ones it can happen on; empty: any.
+    """
+
+    name: str
+    what: str
+    severity: str
+    check: str
+    strike: Callable[[SimulatedRun, np.random.Generator], strikes.Struck]
+    surface: str = ""
+    medium: str = ""
+
+    def suits(self, surface: str, medium: str) -> bool:
+        """Whether the fault can happen on this surface in this medium."""
+        return self.surface in ("", surface) and self.medium in ("", medium)
+
+
+def inject(
+    run: SimulatedRun, faults: str | Iterable[str], rng: int | np.random.Generator = 0
+) -> SimulatedRun:
+    """Return the run with faults in its logs, listed under ``facts["faults"]``.
+
+    Parameters
+    ----------
+    run
+        A simulated run; stays as it is.
+    faults
+        Names of faults, in the order in which they strike.
+    rng
+        Seed or generator.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such fault, or it cannot happen in this run.
+
+    Examples
+    --------
+    >>> from tribolab.rig.parameters import Protocol, Rig
+    >>> from tribolab.rig.runs import simulate_run
+    >>> run = simulate_run(rig=Rig(Protocol(speeds=(1e-4,))))
+    >>> inject(run, "frozen").facts["faults"][0]["check"]
+    'stuck'
+    """
+    rng = np.random.default_rng(rng)
+    for name in [faults] if isinstance(faults, str) else faults:
+        fault = known_fault(name)
+        surface, medium = str(run.facts["surface"]), str(run.facts["medium"])
+        if not fault.suits(surface, medium):
+            raise ConfigError(
+                f"fault '{name}' happens on {fault.surface} {fault.medium} only, "
+                f"not on {surface} {medium}"
+            )
+        force_log, motion_log, facts = fault.strike(run, rng)
+        told = {"name": name, "what": fault.what, "severity": fault.severity}
+        listed = [*run.facts.get("faults", []), {**told, "check": fault.check, **facts}]
+        run = replace(
+            run,
+            force_log=force_log,
+            motion_log=motion_log,
+            facts={**run.facts, "faults": listed},
+        )
+    return run
+
+
+def known_fault(name: str) -> Fault:
+    """Return the fault of this name; an unknown one is an error that names the nearest."""
+    if name not in FAULTS:
+        raise ConfigError(f"the rig has no fault '{name}'{nearest(name, FAULTS)}")
+    return FAULTS[name]
+
+
+_ALL = (
+    Fault("load_sign", "The normal force is wired backwards.", "fail", "schema", strikes.load_sign),
+    Fault(
+        "time_back",
+        "A time server sets the force logger's clock back in the middle of the run.",
+        "unreadable",
+        "time_order",
+        strikes.time_back,
+    ),
+    Fault(
+        "gaps", "The logger loses three stretches of seconds.", "suspect", "time_gaps", strikes.gaps
+    ),
+    Fault(
+        "jitter",
+        "A busy computer stamps the samples anywhere within their intervals.",
+        "suspect",
+        "time_jitter",
+        strikes.jitter,
+    ),
+    Fault(
+        "rate_switch",
+        "The logger changes its rate in the middle of a segment.",
+        "suspect",
+        "rate_changes",
+        strikes.rate_switch,
+    ),
+    Fault(
+        "restart",
+        "The logger starts anew in the same file, its clock at zero.",
+        "unreadable",
+        "restarts",
+        strikes.restart,
+    ),
+    Fault(
+        "dropouts",
+        "Single samples of the force have no value.",
+        "suspect",
+        "missing",
+        strikes.dropouts,
+    ),
+    Fault("frozen", "The force repeats one value for a while.", "fail", "stuck", strikes.frozen),
+    Fault(
+        "saturation",
+        "The amplifier's range ends below the largest friction.",
+        "fail",
+        "saturation",
+        strikes.saturation,
+    ),
+    Fault(
+        "coarse",
+        "The converter resolves 9 bits of its range.",
+        "suspect",
+        "quantisation",
+        strikes.coarse,
+    ),
+    Fault(
+        "spikes", "A switch nearby puts spikes on the force.", "suspect", "spikes", strikes.spikes
+    ),
+    Fault(
+        "zero_offset",
+        "The force cell was not zeroed: it reads as much as the friction when nothing slides.",
+        "suspect",
+        "zero_offset",
+        strikes.zero_offset,
+    ),
+    Fault(
+        "zero_drift",
+        "The amplifier warms up during the run.",
+        "suspect",
+        "zero_drift",
+        strikes.zero_drift,
+    ),
+    Fault(
+        "load_error",
+        "The load cell's calibration is wrong by some percent.",
+        "suspect",
+        "normal_force_error",
+        strikes.load_error,
+    ),
+    Fault(
+        "load_hunting",
+        "The load control hunts around its set-point.",
+        "suspect",
+        "normal_force_scatter",
+        strikes.load_hunting,
+    ),
+    Fault(
+        "slow_table",
+        "The table does not reach its set speed.",
+        "suspect",
+        "velocity_set",
+        strikes.slow_table,
+    ),
+    Fault(
+        "encoder_scale",
+        "The position has a wrong scale.",
+        "suspect",
+        "velocity_position",
+        strikes.encoder_scale,
+    ),
+    Fault(
+        "wrong_motion",
+        "The motion log is that of a run with the speeds in falling order.",
+        "fail",
+        "clock_shift",
+        strikes.wrong_motion,
+    ),
+    Fault("hum", "A ground loop: 50 Hz on the force.", "suspect", "hum", strikes.hum),
+    Fault(
+        "resonance",
+        "The rig rings at its own frequency.",
+        "suspect",
+        "resonance",
+        strikes.resonance,
+    ),
+    Fault("sign", "The friction force is wired backwards.", "fail", "friction_sign", strikes.sign),
+    Fault(
+        "run_in", "Friction changes along every stroke.", "suspect", "steadiness", strikes.run_in
+    ),
+    Fault(
+        "long_wave",
+        "Friction waves with a period hardly shorter than the stroke.",
+        "suspect",
+        "distance",
+        strikes.long_wave,
+    ),
+    Fault(
+        "slow_logger",
+        "The force logger is too slow for the stick-slip.",
+        "suspect",
+        "sampling",
+        strikes.slow_logger,
+        surface="Smooth",
+        medium="dry",
+    ),
+)
+FAULTS: dict[str, Fault] = {fault.name: fault for fault in _ALL}

@@ -1,0 +1,297 @@
+"""What each fault does to the logs of a simulated run; `tribolab.rig.faults` lists them.
+
+Every function takes the run and a generator, draws a realistic strength, and returns the force log,
+the motion log and the facts: where it struck, and how hard. Nothing is changed in place.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ConfigError
+from tribolab.rig.runs import SimulatedRun
+
+Facts = dict[str, Any]
+Struck = tuple[xr.Dataset, xr.Dataset, Facts]
+_FAST = 130.0  # Hz; slower logs do not show the lines of mains and rig
+
+
+def _typical(run: SimulatedRun) -> float:
+    """Mean magnitude of the friction force over the segments [N]."""
+    mean = float(np.abs(run.segments["friction_coefficient"]).mean())
+    return mean * float(run.facts["normal_force_N"])
+
+
+def _force(run: SimulatedRun, values: np.ndarray, facts: Facts) -> Struck:
+    """Return the logs with another friction force."""
+    return run.force_log.assign(friction_force=("time", values)), run.motion_log, facts
+
+
+def _normal(run: SimulatedRun, values: np.ndarray, facts: Facts) -> Struck:
+    """Return the logs with another normal force."""
+    return run.force_log.assign(normal_force=("time", values)), run.motion_log, facts
+
+
+def _retimed(run: SimulatedRun, time: np.ndarray, facts: Facts) -> Struck:
+    """Return the logs with other times in the force log."""
+    return run.force_log.assign_coords(time=time), run.motion_log, facts
+
+
+def _kept(run: SimulatedRun, keep: np.ndarray, facts: Facts) -> Struck:
+    """Return the logs with some rows of the force log only."""
+    return run.force_log.isel(time=keep), run.motion_log, facts
+
+
+def _rows(run: SimulatedRun, stroke: int) -> slice:
+    """Rows of the force log within a constant-speed segment."""
+    row = run.segments.iloc[stroke]
+    first, last = np.searchsorted(run.force_log.time.values, [row.start_s, row.stop_s])
+    return slice(int(first), int(last))
+
+
+def _interval(run: SimulatedRun) -> np.ndarray:
+    """Return the sampling interval after each row [s]; that of the last is not a number."""
+    return np.diff(run.force_log.time.values, append=np.nan)
+
+
+def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the sign of the normal force."""
+    return _normal(run, -run.force_log.normal_force.values, {})
+
+
+def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Set the clock back by some seconds in the middle of the force log."""
+    time = run.force_log.time.values.copy()
+    row, step = int(rng.uniform(0.2, 0.8) * time.size), float(rng.uniform(1, 4))
+    time[row:] -= step
+    return _retimed(run, time, {"row": row, "step_s": step})
+
+
+def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Start the clock anew at zero in the middle of the force log."""
+    time = run.force_log.time.values.copy()
+    row = int(rng.uniform(0.2, 0.8) * time.size)
+    time[row:] -= time[row]
+    return _retimed(run, time, {"row": row})
+
+
+def gaps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Drop three stretches of the force log."""
+    time = run.force_log.time.values
+    starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
+    lengths = rng.uniform(1.5, 4.0, 3)
+    keep = np.ones(time.size, dtype=bool)
+    for start, length in zip(starts, lengths, strict=True):
+        keep &= (time < start) | (time > start + length)
+    return _kept(run, keep, {"start_s": starts.tolist(), "length_s": lengths.tolist()})
+
+
+def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Move each time stamp within its interval."""
+    time = run.force_log.time.values
+    step = np.diff(time)
+    shorter = np.minimum(np.append(step, step[-1]), np.insert(step, 0, step[0]))
+    moved = np.round(time + 0.45 * shorter * rng.uniform(-1, 1, time.size), 5)
+    moved[0] = 0.0
+    return _retimed(run, np.maximum.accumulate(moved), {"largest_part_of_interval": 0.45})
+
+
+def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Thin out the second half of one segment."""
+    stroke, factor = int(rng.integers(len(run.segments))), int(rng.integers(3, 6))
+    rows = _rows(run, stroke)
+    keep = np.ones(run.force_log.sizes["time"], dtype=bool)
+    middle = (rows.start + rows.stop) // 2
+    keep[middle : rows.stop] = np.arange(rows.stop - middle) % factor == 0
+    return _kept(run, keep, {"segment": stroke, "factor": factor})
+
+
+def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Lose single values of the friction force."""
+    values = run.force_log.friction_force.values.copy()
+    share = float(rng.uniform(0.01, 0.04))
+    values[rng.random(values.size) < share] = np.nan
+    return _force(run, values, {"share": share})
+
+
+def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Hold the friction force at one value for a while."""
+    values = run.force_log.friction_force.values.copy()
+    length = int(rng.uniform(0.02, 0.05) * values.size)
+    row = int(rng.uniform(0.1, 0.8) * values.size)
+    values[row : row + length] = values[row]
+    return _force(run, values, {"row": row, "samples": length})
+
+
+def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Cut the friction force off at both ends of a range."""
+    highest = float(np.abs(run.noise_free.friction_force.values).max())
+    limit = float(rng.uniform(0.6, 0.8)) * highest
+    values = np.clip(run.force_log.friction_force.values, -limit, limit)
+    return _force(run, values, {"limit_N": limit})
+
+
+def coarse(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Round the friction force to 9 bits of the range."""
+    step = 1000 / 2**9
+    values = np.round(run.force_log.friction_force.values / step) * step
+    return _force(run, values, {"step_N": step})
+
+
+def spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add single samples that stand far out."""
+    values = run.force_log.friction_force.values.copy()
+    rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))
+    height = np.maximum(rng.uniform(0.2, 0.6, rows.size) * _typical(run), 2.0)
+    values[rows] += height * rng.choice([-1, 1], rows.size)
+    return _force(run, values, {"rows": rows.tolist(), "height_N": height.tolist()})
+
+
+def zero_offset(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a constant to the friction force."""
+    # far beyond what the cell itself has drawn, which may have the other sign
+    offset = float(rng.choice([-1, 1]) * (rng.uniform(0.8, 1.5) * _typical(run) + 4.0))
+    return _force(run, run.force_log.friction_force.values + offset, {"offset_N": offset})
+
+
+def zero_drift(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a steady drift to the friction force."""
+    time = run.force_log.time.values
+    drift = float(rng.choice([-1, 1]) * (rng.uniform(0.2, 0.4) * _typical(run) + 0.6))
+    values = run.force_log.friction_force.values + drift * time / time[-1]
+    return _force(run, values, {"drift_N": drift})
+
+
+def load_error(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Scale the normal force."""
+    factor = float(rng.choice([-1, 1]) * rng.uniform(0.06, 0.10) + 1)
+    return _normal(run, factor * run.force_log.normal_force.values, {"factor": factor})
+
+
+def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let the load oscillate, and friction with it."""
+    time = run.force_log.time.values
+    part, frequency = float(rng.uniform(0.06, 0.12)), float(rng.uniform(0.5, 2.0))
+    wave = part * np.sin(2 * np.pi * frequency * time)
+    log = run.force_log.assign(
+        normal_force=run.force_log.normal_force + wave * run.noise_free.normal_force.values,
+        friction_force=run.force_log.friction_force + wave * run.noise_free.friction_force.values,
+    )
+    return log, run.motion_log, {"part": part, "frequency_Hz": frequency}
+
+
+def slow_table(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Raise the set speed above what the table does."""
+    factor = float(rng.uniform(0.88, 0.95))
+    motion = run.motion_log.assign(set_speed=run.motion_log.set_speed / factor)
+    return run.force_log, motion, {"factor": factor}
+
+
+def encoder_scale(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Scale the position."""
+    factor = float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.12) + 1)
+    motion = run.motion_log.assign(position=run.motion_log.position * factor)
+    return run.force_log, motion, {"factor": factor}
+
+
+def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the motion log round in time."""
+    motion = run.motion_log
+    time = motion.time.values
+    turned = motion.isel(time=slice(None, None, -1)).assign_coords(
+        time=np.round(time[0] + time[-1] - time[::-1], 5)
+    )
+    return run.force_log, turned.assign(sliding_velocity=-turned.sliding_velocity), {}
+
+
+def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -> np.ndarray:
+    """Sine as a logger that averages over its interval records it."""
+    seen = np.nan_to_num(np.sinc(frequency * _interval(run)))
+    time = run.force_log.time.values
+    return amplitude * seen * np.sin(2 * np.pi * frequency * time + phase)
+
+
+def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add 50 Hz to the friction force, as far as the logger sees it."""
+    _fast_speeds(run, "hum", 1)
+    amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
+    values = run.force_log.friction_force.values
+    values = values + _wave(run, amplitude, 50.0, float(rng.uniform(0, 2 * np.pi)))
+    return _force(run, values, {"amplitude_N": amplitude})
+
+
+def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Add a line at one frequency, whatever the speed."""
+    _fast_speeds(run, "resonance", 2)
+    amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
+    frequency = float(rng.uniform(15, 40))
+    values = run.force_log.friction_force.values
+    values = values + _wave(run, amplitude, frequency, float(rng.uniform(0, 2 * np.pi)))
+    return _force(run, values, {"amplitude_N": amplitude, "frequency_Hz": frequency})
+
+
+def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
+    """Refuse a run that cannot show lines: at too few speeds is the logger fast enough."""
+    interval = _interval(run)
+    speeds = []
+    for stroke, speed in enumerate(run.segments["sliding_speed_m_s"]):
+        rows = _rows(run, stroke)
+        if rows.stop - rows.start > 320 and np.median(interval[rows]) < 1 / _FAST:
+            speeds.append(float(speed))
+    if not speeds or (wanted > 1 and max(speeds) < 2 * min(speeds)):
+        raise ConfigError(
+            f"fault '{name}' does not show in this run: its log is faster than {_FAST:g} Hz at "
+            f"{len(set(speeds))} speeds, {wanted} are wanted (with --small there is one)"
+        )
+
+
+def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Turn the sign of the friction force."""
+    return _force(run, -run.force_log.friction_force.values, {})
+
+
+def _progress(run: SimulatedRun) -> np.ndarray:
+    """Part of the segment that has passed at each row; NaN outside segments."""
+    time = run.force_log.time.values
+    result = np.full(time.size, np.nan)
+    for stroke in range(len(run.segments)):
+        rows, row = _rows(run, stroke), run.segments.iloc[stroke]
+        result[rows] = (time[rows] - row.start_s) / (row.stop_s - row.start_s)
+    return result
+
+
+def run_in(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let friction change linearly along every segment."""
+    part = float(rng.choice([-1, 1]) * rng.uniform(0.2, 0.4))
+    change = part * np.nan_to_num(_progress(run) - 0.5) * run.noise_free.friction_force.values
+    return _force(run, run.force_log.friction_force.values + change, {"change": part})
+
+
+def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let friction wave three or four times along every segment."""
+    part, periods = float(rng.uniform(0.12, 0.25)), float(rng.uniform(3.2, 4.2))
+    phase = float(rng.uniform(0, 2 * np.pi))
+    wave = np.nan_to_num(np.sin(2 * np.pi * periods * _progress(run) + phase))
+    change = part * wave * run.noise_free.friction_force.values
+    facts = {"part": part, "periods": periods}
+    return _force(run, run.force_log.friction_force.values + change, facts)
+
+
+def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Keep so few rows that stick-slip has three to five samples in a period."""
+    strong = 0.12 * float(run.segments["friction_coefficient"].mean())
+    slip = run.segments[run.segments["stick_slip_drop"] > strong]
+    if slip.empty:
+        raise ConfigError("fault 'slow_logger' needs a speed at which there is strong stick-slip")
+    interval = _interval(run)
+    period = slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]
+    per_period = [
+        float(p / np.median(interval[_rows(run, stroke)])) for stroke, p in period.items()
+    ]
+    wanted = float(rng.uniform(3.0, 5.0))  # samples in the fastest period
+    every = max(2, round(min(per_period) / wanted))
+    keep = np.arange(interval.size) % every == 0
+    return _kept(run, keep, {"every": every, "samples_per_period": min(per_period) / every})
