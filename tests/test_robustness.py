@@ -323,3 +323,37 @@ def test_a_mat_file_of_version_7_3_says_how_to_save_it(tmp_path):
     (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file".ljust(512, b"\0"))
     with pytest.raises(ReadError, match=r"a\.mat: this is a MAT file of version 7\.3.*-v7"):
         tl.read(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize(
+    "rows", ["inf,1,31\n0.1,1,31", "0.0,1,31\ninf,1,31\ninf,1,31", "0,1,31\n1e999,1,31"]
+)
+def test_infinite_times_are_refused_with_their_row(tmp_path, rows):
+    head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n")
+    with pytest.raises(ReadError, match=r"a\.csv: time is infinite in row [12]"):
+        tl.read(tmp_path / "a.csv")
+
+
+def test_a_map_that_states_one_size_of_two_is_refused(tmp_path):
+    (tmp_path / "a.txt").write_text(
+        "# Channel: Height\n# Width: 10 µm\n# Value units: m\n1 2 3\n4 5 6\n7 8 9\n"
+    )
+    with pytest.raises(ReadError, match=r"a\.txt: "):
+        read_scans(tmp_path / "a.txt")
+
+
+def test_numbers_run_into_each_other_do_not_take_for_ever(shared_data, tmp_path):
+    rows = (shared_data / "surfacetopography_MIT" / "xy-4.txt").read_text().splitlines()
+    rows[8687] = "-1.7e308" + rows[8687]
+    (tmp_path / "a.txt").write_text("\n".join(rows))
+    with pytest.raises(ReadError, match=r"a\.txt: neither a known dialect"):
+        read_scans(tmp_path / "a.txt", x_unit="mm", height_unit="um")
+
+
+def test_a_tdms_file_cut_short_says_so(shared_data, tmp_path):
+    whole = (shared_data / "tdms_force_MIT" / "TDMSSample.tdms").read_bytes()
+    (tmp_path / "a.tdms").write_bytes(whole[:-30_000])
+    run = tl.read(tmp_path / "a.tdms")
+    assert "ends before" in run.attrs["file_incomplete"]
+    assert "file_incomplete" not in tl.read(shared_data / "tdms_force_MIT/TDMSSample.tdms").attrs

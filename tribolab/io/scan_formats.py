@@ -77,6 +77,8 @@ def read_foreign(
     vertical = lateral if vertical is None else vertical
     heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
+    if sizes is None or len(sizes) != len(points):
+        raise ReadError(f"{path}: the file does not say how large the scan is in each direction")
     if len(points) == 2:
         # SurfaceTopography's first index is x
         steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]

@@ -98,6 +98,16 @@ def _text_formats(path: Path) -> list[str]:
                 "numbers; a profile's text has short lines of words. Is the file damaged?"
             )
     last = words[-1] if words else -1
-    rows = [len(re.split(rb"[\s,;]+", line.strip())) for line in lines[last + 1 :] if line.strip()]
-    columns = last < _HEADER_LINES and len(set(rows)) == 1
+    widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
+    columns = last < _HEADER_LINES and len(widths) == 1 and None not in widths
     return [name for name in _TEXT if columns or name != "xyz"]
+
+
+def _width(line: bytes) -> int | None:
+    """Count the cells of a row of numbers; None if one is no number."""
+    cells = re.split(rb"[\s,;]+", line.strip())
+    try:
+        [float(cell) for cell in cells]
+    except ValueError:
+        return None
+    return len(cells)

@@ -65,12 +65,21 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
     text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
-    notes = {}
+    notes = _incomplete(file)
     if dialect.marks is not None:
-        columns["step"], notes = _steps(path, file, columns["time"], dialect)
+        columns["step"], more = _steps(path, file, columns["time"], dialect)
+        notes |= more
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
     piece = Piece(columns, before=text)
     return Content(path, sha256_of_file(path), [piece], labels, tuple(unused), notes=notes)
+
+
+def _incomplete(file: Any) -> dict[str, str]:
+    """Note that the file ends within its last segment: the run is shorter than it was."""
+    status = file.file_status
+    if not status.incomplete_final_segment:
+        return {}
+    return {"file_incomplete": "the file ends before its last segment does"}
 
 
 def _steps(
