@@ -30,6 +30,19 @@ class OutputError(TribolabError):
     """Results could not be written."""
 
 
+def brief(error: BaseException, most: int = 300) -> str:
+    r"""Say in one short line of text what another library's error says, whatever it holds.
+
+    >>> brief(ValueError("bad tag\n in \x00 the file"))
+    'bad tag in the file'
+    """
+    if isinstance(error, MemoryError):
+        return "it claims to hold more than the memory does"
+    text = "".join(c if c.isprintable() else " " for c in str(error)[: 10 * most])
+    text = " ".join(text.split()) or type(error).__name__
+    return text if len(text) <= most else f"{text[:most]} ..."
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return a hint naming the known words nearest to `word`, ready to end an error message.
 

@@ -67,9 +67,10 @@ def first_fault(time: np.ndarray) -> int | None:
     """Row (from 0) of the first time that is missing or not later than the one before it."""
     for start in range(0, len(time), _BLOCK):
         part = time[max(start - 1, 0) : start + _BLOCK]
-        bad = ~(np.diff(part) > 0)
-        if start == 0 and np.isnan(part[0]):
+        if start == 0 and not np.isfinite(part[0]):
             return 0
+        with np.errstate(invalid="ignore"):  # from one infinite time to the next
+            bad = ~(np.diff(part) > 0) | ~np.isfinite(part[1:])
         if bad.any():
             return max(start - 1, 0) + int(np.argmax(bad)) + 1
     return None
@@ -87,11 +88,16 @@ def kept_rows(time: np.ndarray, where: str, dialect: Dialect) -> np.ndarray | No
     if row is None:
         return None
     if dialect.time.on_repeat == "drop":
-        highest = np.fmax.accumulate(time)
+        highest = np.fmax.accumulate(np.where(np.isfinite(time), time, np.nan))
         keep = np.ones(len(time), dtype=bool)
         keep[1:] = time[1:] > highest[:-1]
-        return keep & ~np.isnan(time)
-    if np.isnan(time[row]):
+        keep &= np.isfinite(time)
+        if not keep.any():
+            raise ReadError(f"{where}: not one time is a finite number")
+        return keep
+    if np.isinf(time[row]):
+        what = f"time is infinite in row {row + 1}"
+    elif np.isnan(time[row]):
         what = f"time is missing in row {row + 1}"
     elif time[row] == time[row - 1]:
         what = f"time stands still at row {row + 1}: {time[row]:.9g} s twice"

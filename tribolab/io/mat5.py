@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, brief
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -68,9 +68,8 @@ def read_variables(path: Path) -> list[Variable]:
         if not found:
             raise ValueError("it holds no variable")
     except (ValueError, struct.error, zlib.error, OSError, MemoryError) as error:
-        told = str(error) or "it claims to hold more than the memory does"
         raise ReadError(
-            f"{path}: the MAT file is damaged or cut short: {told}; copy or save it again"
+            f"{path}: the MAT file is damaged or cut short: {brief(error)}; copy or save it again"
         ) from error
     return found
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError
+from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
@@ -131,8 +131,9 @@ def _load(path: Path, group: str | None) -> xr.Dataset:
         data.encoding = {}
         return data
     except _DAMAGE as error:
-        told = str(error) or "it claims to hold more than the memory does"
-        raise ReadError(f"{path}: this is not a netCDF file that can be read: {told}") from error
+        raise ReadError(
+            f"{path}: this is not a netCDF file that can be read: {brief(error)}"
+        ) from error
 
 
 def _storage(variable: xr.DataArray) -> dict[str, Any]:

@@ -85,6 +85,8 @@ def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
         return "it is not all numbers"
     for one, other in dialect.recognise.linked:
         a, b = numbers[:, one - 1], numbers[:, other - 1]
-        if np.ptp(a) == 0 or np.ptp(b) == 0 or abs(np.corrcoef(a, b)[0, 1]) < _LINKED:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            linked = np.ptp(a) > 0 and np.ptp(b) > 0 and abs(np.corrcoef(a, b)[0, 1]) >= _LINKED
+        if not linked:
             return f"columns {one} and {other} are not the same signal"
     return None

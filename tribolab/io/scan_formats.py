@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError
+from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.scan_grid import even
-from tribolab.io.scan_safety import openable
+from tribolab.io.scan_safety import formats_to_try
 from tribolab.units import conversion, to_si
 
 
@@ -43,7 +43,6 @@ def read_foreign(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImportWarning)  # of optional parts that it goes without
-            from SurfaceTopography.Exceptions import CannotDetectFileFormat
             from SurfaceTopography.IO import open_topography, readers
             from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:
@@ -51,19 +50,17 @@ def read_foreign(
             f"{path}: no dialect fits, and other formats need the package SurfaceTopography: "
             "pip install 'tribolab[formats]'"
         ) from error
-    formats = openable(path)
-    if (
-        formats is not None
-    ):  # formats of text that a mark at the file's start tells for sure go first
-        with path.open("rb") as file:
-            head = file.read(512)
-        sure = [r.format() for r in readers if r.can_read(head) == MagicMatch.YES]
-        formats = list(dict.fromkeys([*sure, *formats]))
+    with path.open("rb") as file:
+        head = file.read(512)
+    match = {reader.format(): reader.can_read(head) for reader in readers}
+    sure = [name for name, how in match.items() if how == MagicMatch.YES]
+    possible = [name for name, how in match.items() if how != MagicMatch.NO]
+    formats = formats_to_try(path, sure, possible)
     with _foreign(path), warnings.catch_warnings():
         # pictures in a workbook are no concern of ours, nor are numbers too large for a file's own
         # arithmetic: they come out as infinite, and infinite heights are missing ones
         warnings.simplefilter("ignore")
-        with _opened(path, formats, open_topography, CannotDetectFileFormat) as reader:
+        with _opened(path, formats, open_topography) as reader:
             channel, topography, vertical = _topography(path, reader, x_unit, height_unit)
             heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
             x = topography.positions() if topography.dim == 1 else ()
@@ -80,6 +77,8 @@ def read_foreign(
     vertical = lateral if vertical is None else vertical
     heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
+    if sizes is None or len(sizes) != len(points):
+        raise ReadError(f"{path}: the file does not say how large the scan is in each direction")
     if len(points) == 2:
         # SurfaceTopography's first index is x
         steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
@@ -102,34 +101,28 @@ def _foreign(path: Path) -> Iterator[None]:
     except TribolabError:
         raise
     except Exception as error:
-        told = " ".join(str(error).split()) or "no reason given"
-        told = told if len(told) < 300 else f"{told[:300]} ..."
         raise ReadError(
-            f"{path}: SurfaceTopography cannot read the file: {type(error).__name__}: {told}"
+            f"{path}: SurfaceTopography cannot read the file: {type(error).__name__}: "
+            f"{brief(error)}"
         ) from error
 
 
 @contextlib.contextmanager
-def _opened(
-    path: Path, formats: list[str] | None, open_topography: Any, unknown: type[Exception]
-) -> Iterator[Any]:
-    """Open a file with the first of some formats that takes it, or let SurfaceTopography find."""
+def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[Any]:
+    """Open a file with the first of some formats that takes it."""
     reader = None
-    try:
-        for name in formats or [None]:
-            try:
-                reader = open_topography(str(path), format=name)
-                break
-            except Exception:
-                if formats is None:
-                    raise
-        if reader is None:
-            raise unknown("no text format fits")
-    except unknown as error:
+    for name in formats:
+        try:
+            reader = open_topography(str(path), format=name)
+            break
+        except Exception as error:  # a format that does not fit says so in its own way
+            refused = error
+    if reader is None:
+        told = f" ({formats[0]}: {brief(refused)})" if len(formats) == 1 else ""
         raise ReadError(
-            f"{path}: neither a known dialect nor a format that SurfaceTopography reads; name the "
-            "dialect with instrument=, or describe the file in a TOML dialect of your own"
-        ) from error
+            f"{path}: neither a known dialect nor a format that SurfaceTopography reads{told}; "
+            "name the dialect with instrument=, or describe the file in a TOML dialect of your own"
+        )
     with reader:
         yield reader
 

@@ -8,6 +8,7 @@ import xarray as xr
 from tribolab.errors import ReadError
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
+_LARGEST = 1e4  # m
 _ROUNDED = 0.6  # in units of the last digit
 
 
@@ -44,6 +45,8 @@ def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarr
             "end to the other"
         )
     count = np.arange(x.size, dtype=float)
+    if not max(abs(x[0]), abs(x[-1]), pitch, *np.abs([x.min(), x.max()])) < _LARGEST:
+        raise ReadError(f"{where}: x reaches {np.abs(x).max():.3g} m, no profile is so long")
     ideal = x[0] + pitch * count
     unevenness = float(np.abs(ideal - x).max()) / pitch
     if unevenness > _JITTER:
@@ -60,6 +63,11 @@ def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarr
             f"{where}: x goes back after point {at + 1} ({x[at]:.9g} m, then {x[at + 1]:.9g} m); "
             "is the file more than one scan?"
         )
+    # the straight line through all positions may begin before the first: nothing is known there
+    pitch = float(x[-1] - x[0]) / (x.size - 1)
+    ideal = x[0] + pitch * count
+    attrs |= {"x_origin_m": float(x[0]), "x_unevenness": float(np.abs(ideal - x).max()) / pitch}
+    unevenness = attrs["x_unevenness"]
     attrs["resampled"] = (
         f"positions deviate from an even grid by up to {unevenness:.2g} steps, more than their "
         "rounding; heights were interpolated along straight lines"

@@ -21,8 +21,15 @@ _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
 _TEXT = ("sdf", "xyz", "asc")
 
 
-def openable(path: Path) -> list[str] | None:
-    """Say which formats SurfaceTopography may try on a file; None: whatever it finds.
+def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str]:
+    """Say which formats SurfaceTopography may try on a file, in this order.
+
+    Parameters
+    ----------
+    path
+        The file.
+    sure, possible
+        SurfaceTopography's formats that the file's first bytes show, and do not exclude.
 
     Raises
     ------
@@ -40,8 +47,8 @@ def openable(path: Path) -> list[str] | None:
         if not is_sealed(path):
             try_out(path)
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return _text_formats(path)
-    return None
+        return list(dict.fromkeys([*sure, *_text_formats(path)]))
+    return [name for name in dict.fromkeys([*sure, *possible]) if name not in _TEXT or name in sure]
 
 
 def _unpacks(path: Path) -> None:
@@ -91,6 +98,16 @@ def _text_formats(path: Path) -> list[str]:
                 "numbers; a profile's text has short lines of words. Is the file damaged?"
             )
     last = words[-1] if words else -1
-    rows = [len(re.split(rb"[\s,;]+", line.strip())) for line in lines[last + 1 :] if line.strip()]
-    columns = last < _HEADER_LINES and len(set(rows)) == 1
+    widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
+    columns = last < _HEADER_LINES and len(widths) == 1 and None not in widths
     return [name for name in _TEXT if columns or name != "xyz"]
+
+
+def _width(line: bytes) -> int | None:
+    """Count the cells of a row of numbers; None if one is no number."""
+    cells = re.split(rb"[\s,;]+", line.strip())
+    try:
+        [float(cell) for cell in cells]
+    except ValueError:
+        return None
+    return len(cells)

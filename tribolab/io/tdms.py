@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, brief
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import split_name
@@ -65,12 +65,21 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
     text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
-    notes = {}
+    notes = _incomplete(file)
     if dialect.marks is not None:
-        columns["step"], notes = _steps(path, file, columns["time"], dialect)
+        columns["step"], more = _steps(path, file, columns["time"], dialect)
+        notes |= more
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
     piece = Piece(columns, before=text)
     return Content(path, sha256_of_file(path), [piece], labels, tuple(unused), notes=notes)
+
+
+def _incomplete(file: Any) -> dict[str, str]:
+    """Note that the file ends within its last segment: the run is shorter than it was."""
+    status = file.file_status
+    if not status.incomplete_final_segment:
+        return {}
+    return {"file_incomplete": "the file ends before its last segment does"}
 
 
 def _steps(
@@ -112,7 +121,6 @@ def _open(path: Path, how: str) -> Any:
     try:
         return getattr(TdmsFile, how)(str(path))
     except _DAMAGE as error:
-        told = str(error) or "it claims to hold more than the memory does"
         raise ReadError(
-            f"{path}: the TDMS file is damaged: {told[:300]}; copy or save it again"
+            f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
         ) from error

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, brief
 from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
@@ -230,11 +230,9 @@ class _Parser:
                         f"stands for a missing value, say so in the dialect: [text] missing = "
                         f"['{cell[:40]}']"
                     )
-        told = " ".join(str(error).split())
-        told = told if len(told) < 200 else f"{told[:150]} ..."
         return (
-            f"{path}: the rows after line {before} cannot be read: {told}; is a quotation mark "
-            "left open there?"
+            f"{path}: the rows after line {before} cannot be read: {brief(error, 150)}; is a "
+            "quotation mark left open there?"
         )
 
     def _lines_before(self, place: int) -> int:

@@ -72,7 +72,12 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     ):  # a loop over blocks, not over points
         size = np.nan_to_num(np.abs(block - middle))
         limit = max(factor * max(scale, least), 3.0 * digit)
-        found = np.flatnonzero(size > limit)
+        # a flank that several points climb is no jump: what stands beside it, same way, counts
+        signed = np.nan_to_num(block - middle)
+        beside = np.zeros(size.size)
+        beside[1:] = np.maximum(beside[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
+        beside[:-1] = np.maximum(beside[:-1], np.maximum(signed[1:] * np.sign(signed[:-1]), 0.0))
+        found = np.flatnonzero((size > limit) & (size > 3.0 * beside))
         if found.size:
             usual = np.delete(
                 size, np.unique(np.clip([found - 1, found, found + 1], 0, size.size - 1))
@@ -113,6 +118,43 @@ def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
         if longest_run(at_end) < fewest:
             flags[at_end & (flags == SUSPECT)] = GOOD
     return flags
+
+
+def pooled(logs: np.ndarray, weights: np.ndarray, fewest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pool neighbouring bands until each has enough independent values; the rest is left out.
+
+    Parameters
+    ----------
+    logs
+        Logarithms of spectra (repeat, band).
+    weights
+        Independent values (band).
+    fewest
+        Independent values wanted in each pooled band.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Weighted mean logarithms (repeat, pooled band), and the pooled bands' values.
+
+    Examples
+    --------
+    >>> pooled(np.array([[0.0, 1.0, 3.0, 5.0]]), np.array([1.0, 1.0, 2.0, 1.0]), 2.0)
+    (array([[0.5, 3. ]]), array([2., 2.]))
+    """
+    starts, held = [], 0.0
+    for band, weight in enumerate(weights):  # a loop over some forty bands
+        if held == 0.0:
+            starts.append(band)
+        held += weight
+        if held >= fewest:
+            held = 0.0
+    if not starts:
+        return logs, weights
+    sums = np.add.reduceat(weights, starts)
+    means = np.add.reduceat(logs * weights, starts, axis=1) / sums
+    enough = sums >= fewest
+    return means[:, enough], sums[enough]
 
 
 def odd_one_out(

@@ -139,6 +139,8 @@ def _saturation(subject: ScanSubject, limits: Mapping[str, float]) -> list[Resul
 def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     kind, flat = subject.form
     results = []
+    if not flat:
+        return [Result("skipped", "height", "there are too few heights")]
     if kind == "none":
         text = "the form was taken away before"
         results.append(Result("skipped", "tilt", text))
@@ -147,7 +149,9 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         row, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
         status = "fail" if angle > limits["fail"] else "pass"
         status = "suspect" if limits["tilt"] < angle <= limits["fail"] else status
-        text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.names[row]}"
+        text = (
+            f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.profile_names[row]}"
+        )
         results.append(Result(status, "tilt", text, angle, "rad"))
     share, digits = [], []
     for row, profile in zip(subject.filled, flat, strict=True):
@@ -190,7 +194,7 @@ def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "fail" if value > limits["fail"] else "suspect"
     text = (
         f"the tip of {radius * 1e6:.3g} um does not follow waves shorter than {reach[worst]:.3g} "
-        f"um; {value:.0%} of the mean square slope lies there, {subject.names[worst]}"
+        f"um; {value:.0%} of the mean square slope lies there, {subject.profile_names[worst]}"
     )
     return [Result(status, "height", text, value)]
 
@@ -199,20 +203,20 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     spectra = subject.spectra
     if subject.is_map or len(subject.rows) < 2 or len(spectra) < 2:
         return [Result("skipped", "height", "one scan: nothing to compare it with")]
-    weights = spectra[0].independent_values.values
-    enough = weights >= limits["values"]
-    if not enough.any():
+    every = np.stack([np.log(one.psd_1d.values) for one in spectra])
+    counts = spectra[0].independent_values.values
+    logs, weights = profiles.pooled(every, counts, limits["values"])
+    if not weights.size:
         return [Result("skipped", "height", "the scans are too short to be compared")]
-    logs = np.stack([np.log(one.psd_1d.values[enough]) for one in spectra])
-    odd, factor = profiles.odd_one_out(logs, weights[enough], limits["factor"], limits["sigma"])
+    odd, factor = profiles.odd_one_out(logs, weights, limits["factor"], limits["sigma"])
     if odd < 0:
         text = f"{len(spectra)} scans agree within a factor {factor:.3g} at all wavenumbers"
         return [Result("pass", "height", text, factor)]
     status = "fail" if factor > limits["fail"] else "suspect"
-    text = f"{subject.names[odd]} has a spectrum up to {factor:.3g} times off the others'"
+    text = f"{subject.profile_names[odd]} has a spectrum up to {factor:.3g} times off the others'"
     if len(spectra) == 2:
         text = f"the two scans differ by up to a factor {factor:.3g} in their spectra"
-    return [Result(status, "height", text, factor, "1", subject.names[odd])]
+    return [Result(status, "height", text, factor, "1", subject.profile_names[odd])]
 
 
 PROFILE_CHECKS = (

@@ -12,6 +12,8 @@ from tribolab.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.psd import psd_1d
 
+_FEWEST = 8  # heights of a profile: fewer have neither form nor roughness
+
 
 class ScanSubject:
     """Scans of one surface, as rows of heights.
@@ -72,14 +74,21 @@ class ScanSubject:
         return array.transpose(*self.scans.height.dims).values
 
     @cached_property
+    def usable(self) -> list[int]:
+        """Numbers of the rows that hold enough heights to be a profile."""
+        present = np.isfinite(self.rows).sum(axis=1)
+        return np.flatnonzero(present >= _FEWEST).tolist()
+
+    @cached_property
+    def profile_names(self) -> list[str]:
+        """Names of the usable rows: of what `filled`, `form` and `spectra` hold."""
+        return [self.names[row] for row in self.usable]
+
+    @cached_property
     def filled(self) -> list[xr.Dataset]:
-        """Each row as a profile without dropouts; rows with too few heights are left out."""
+        """Each usable row as a profile without dropouts."""
         x = self.x - self.x[0]
-        profiles = [
-            xr.Dataset({"height": ("x", row)}, {"x": x})
-            for row in self.rows
-            if np.isfinite(row).sum() >= 2
-        ]
+        profiles = [xr.Dataset({"height": ("x", self.rows[n])}, {"x": x}) for n in self.usable]
         return [fill_dropouts(profile) for profile in profiles]
 
     @cached_property

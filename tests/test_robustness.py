@@ -1,0 +1,359 @@
+"""Damaged files: a dataset or one TribolabError that names the file; and what once went wrong.
+
+The same mutators, on more files and with limits on time and memory, run for thousands of files in
+``tests/benchmarks/fuzz.py``.
+"""
+
+import io
+import struct
+import subprocess
+import sys
+import zipfile
+import zlib
+
+import numpy as np
+import pytest
+import scipy.io
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mutations import mat_inside, mutate
+
+import tribolab as tl
+from tribolab.errors import ReadError, TribolabError
+from tribolab.io import seal
+from tribolab.io.mat5 import read_variables
+from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.io.scan_results import read_results
+from tribolab.io.scans import read_scans
+
+HEAD = "# Surftest profile\nx [mm],z [um]\n"
+REAL = {
+    "bearing_profiles_MIT/NU206-RE-1.txt": read_scans,
+    "cetr_umt2_MIT/HT-2n-6-4 2_001.csv": tl.read,
+    "mitutoyo_sj410_res_MIT/12A11003.TXT": read_results,
+    "nanovea_map_MIT/test1.txt": lambda path: read_scans(path, "nanovea_map"),
+    "pcs_mtm_ehd_MIT/demo_2.txt": tl.read,
+    "pcs_mtm_ehd_MIT/demo_3.txt": tl.read,
+    "stickslip_paper_CeCILL-B/k168Nm_v4300.mat": tl.read,
+    "surfacetopography_MIT/gwyddion-export-german.txt": read_scans,
+    "surfacetopography_MIT/sdf-1.sdf": read_scans,
+    "tdms_force_MIT/TDMSSample.tdms": tl.read,
+}
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=100, suppress_health_check=list(HealthCheck))
+@given(st.sampled_from(sorted(REAL)), st.integers(0, 2**32 - 1))
+def test_a_damaged_file_is_a_dataset_or_our_error(shared_data, tmp_path_factory, name, seed):
+    content, _ = mutate((shared_data / name).read_bytes(), np.random.default_rng(seed))
+    path = tmp_path_factory.mktemp("damaged") / name.split("/")[1]
+    path.write_bytes(content)
+    try:
+        data = REAL[name](path)
+    except TribolabError as error:
+        assert path.name in str(error)
+        assert len(str(error)) < 1500 and "\n" not in str(error)
+    else:
+        assert isinstance(data, xr.Dataset) and len(data) > 0
+        if "time" in data.dims:
+            assert (np.diff(data.time) > 0).all()
+
+
+# ---- MAT
+
+
+def test_own_mat_reader_agrees_with_scipy(shared_data):
+    for path in sorted((shared_data / "stickslip_paper_CeCILL-B").glob("*.mat")):
+        theirs = scipy.io.loadmat(path)
+        for name, numbers in read_variables(path):
+            np.testing.assert_array_equal(numbers, theirs[name], strict=True)
+
+
+@pytest.mark.parametrize("packed", [True, False])
+@pytest.mark.parametrize("kind", ["f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"])
+def test_every_class_of_numbers_comes_back(tmp_path, kind, packed):
+    wanted = np.arange(24, dtype=kind).reshape(2, 3, 4)
+    content = {"some_numbers": wanted, "a": wanted[0, 0, :1], "none": np.zeros((0, 2))}
+    scipy.io.savemat(tmp_path / "a.mat", content, do_compression=packed)
+    found = {v.name: v.numbers for v in read_variables(tmp_path / "a.mat")}
+    np.testing.assert_array_equal(found["some_numbers"], wanted, strict=True)
+    assert found["a"].tolist() == [[0]]
+    assert found["none"].shape == (0, 2)
+
+
+def test_what_is_no_array_of_numbers_is_none(tmp_path):
+    content = {"text": "abc", "struct": {"a": 1.0}, "complex": np.array([1j]), "cell": [1, "b"]}
+    content["cell"] = np.array([1, "b"], dtype=object)
+    scipy.io.savemat(tmp_path / "a.mat", content)
+    assert {v.name: v.numbers for v in read_variables(tmp_path / "a.mat")} == dict.fromkeys(content)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_mat_file_damaged_beneath_its_compression_does_not_crash(shared_data, tmp_path, seed):
+    # such files end scipy's reader, and the program, with a segmentation fault
+    real = (shared_data / "stickslip_paper_CeCILL-B" / "k168Nm_v4300.mat").read_bytes()
+    path = tmp_path / "k168Nm_v4300.mat"
+    path.write_bytes(mat_inside(real, np.random.default_rng(seed)))
+    for reader in (tl.read, read_scans):
+        try:
+            reader(path)
+        except ReadError as error:
+            assert "k168Nm_v4300.mat" in str(error)
+
+
+def test_sizes_that_a_mat_file_claims_are_held_against_what_is_there(tmp_path):
+    def element(kind, data):
+        return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+    inner = element(6, struct.pack("<II", 6, 0)) + element(5, struct.pack("<ii", 1 << 30, 1 << 30))
+    inner += element(1, b"Fnorm") + element(9, struct.pack("<d", 1.0))
+    packed = zlib.compress(element(14, inner))
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+    (tmp_path / "a.mat").write_bytes(head + struct.pack("<II", 15, len(packed)) + packed)
+    with pytest.raises(ReadError, match=r"a\.mat.*'Fnorm' has 1 of 1152921504606846976 numbers"):
+        read_variables(tmp_path / "a.mat")
+
+
+# ---- netCDF
+
+
+@pytest.fixture
+def run_file(tmp_path):
+    time = np.arange(3000) / 100
+    run = xr.Dataset({"friction_force": ("time", np.sin(time))}, {"time": time})
+    return write_netcdf(run, tmp_path / "run.nc", group="run")
+
+
+def test_what_is_written_is_sealed_also_when_groups_are_added(run_file):
+    assert seal.is_sealed(run_file)
+    write_netcdf(xr.Dataset({"a": ("n", [1.0])}), run_file, group="other")
+    assert seal.is_sealed(run_file)
+    assert read_netcdf(run_file, "other").a.item() == 1.0
+    assert read_netcdf(run_file, "run").sizes["time"] == 3000
+    assert run_file.read_bytes().count(b"tribolab sha256") == 1
+
+
+def test_a_file_with_its_seal_is_opened_without_a_trial(run_file, monkeypatch):
+    monkeypatch.setattr(subprocess, "run", None)
+    assert read_netcdf(run_file, "run").sizes["time"] == 3000
+
+
+def test_a_file_of_another_program_is_tried_and_read(tmp_path):
+    data = xr.Dataset({"a": ("time", [1.0, 2.0])}, {"time": [0.0, 1.0]})
+    data.to_netcdf(tmp_path / "a.nc", format="NETCDF3_64BIT")
+    assert read_netcdf(tmp_path / "a.nc").a.values.tolist() == [1.0, 2.0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("ending", "told"),
+    [("import os; os.abort()", "ended by signal 6"), ("while True: pass", "ended by signal 9|24")],
+    ids=["crash", "endless loop"],
+)
+def test_a_crash_of_the_native_library_is_a_read_error_here(run_file, monkeypatch, ending, told):
+    if sys.platform == "win32":
+        pytest.skip("signals and limits are those of Unix")
+    start = seal._TRIAL.split("    def visit")[0]  # limits are set, the file is not yet open
+    monkeypatch.setattr(seal, "_TRIAL", f"{start}    {ending}\nexcept ZeroDivisionError: pass")
+    monkeypatch.setattr(seal, "_SECONDS", 1.0)
+    seal.unseal(run_file)
+    with pytest.raises(ReadError, match=rf"run\.nc: the file is damaged: .*{told}"):
+        read_netcdf(run_file, "run")
+
+
+@pytest.mark.parametrize("place", [200, 1000, 5000, -300])
+def test_one_flipped_byte_breaks_the_seal(run_file, place):
+    content = bytearray(run_file.read_bytes())
+    content[place] ^= 0xFF
+    run_file.write_bytes(content)
+    assert not seal.is_sealed(run_file)
+
+
+# ---- archives
+
+
+def workbook(shared_data, change):
+    source = io.BytesIO((shared_data / "surfacetopography_MIT/mitutoyo_mock.xlsx").read_bytes())
+    out = io.BytesIO()
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, change(name, old.read(name)))
+        change(None, new)
+    return out.getvalue()
+
+
+def test_a_workbook_that_unpacks_to_hundredfold_is_refused_unopened(shared_data, tmp_path):
+    def blow_up(name, data):
+        return data + b" " * (80 << 20) if name == "xl/worksheets/sheet1.xml" else data
+
+    (tmp_path / "bomb.xlsx").write_bytes(workbook(shared_data, blow_up))
+    with pytest.raises(ReadError, match=r"bomb\.xlsx: the file unpacks to \d+ MB, \d+ times"):
+        read_scans(tmp_path / "bomb.xlsx")
+
+
+def test_entities_are_not_unfolded(shared_data, tmp_path):
+    levels = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10))
+    bomb = f"<?xml version='1.0'?><!DOCTYPE x [<!ENTITY e0 'boom'>{levels}]>".encode()
+
+    def change(name, data):
+        if name != "xl/workbook.xml":
+            return data
+        body = data[data.index(b"?>") + 2 :]
+        return bomb + body.replace(b"<sheets>", b"<sheets>&e9;", 1)
+
+    (tmp_path / "bomb.xlsx").write_bytes(workbook(shared_data, change))
+    with pytest.raises(ReadError, match=r"bomb\.xlsx"):
+        read_scans(tmp_path / "bomb.xlsx")
+
+
+def test_a_member_with_a_path_outside_is_written_nowhere(shared_data, tmp_path):
+    def change(name, data):
+        if name is None:
+            data.writestr("../../outside.xml", "x")
+            return None
+        return data
+
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "a.xlsx").write_bytes(workbook(shared_data, change))
+    assert read_scans(tmp_path / "in" / "a.xlsx").sizes["x"] == 960
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["a.xlsx", "in"]
+
+
+# ---- text
+
+
+def test_text_that_is_no_profile_is_refused_at_once(tmp_path):
+    # its reader of columns begins anew at each of the first 200 lines
+    rows = ["1 2 3"] * 40_000
+    rows[20_000] = "1 2"
+    (tmp_path / "a.dat").write_text("\n".join(rows))
+    with pytest.raises(ReadError, match=r"a\.dat: neither a known dialect"):
+        read_scans(tmp_path / "a.dat")
+    (tmp_path / "b.dat").write_text("a " * 100_000 + "\n1 2\n3 4\n")
+    with pytest.raises(ReadError, match=r"b\.dat: line 1 has 200000 characters"):
+        read_scans(tmp_path / "b.dat")
+
+
+def test_a_line_of_blanks_does_not_take_for_ever(shared_data, tmp_path):
+    real = (shared_data / "cetr_umt2_MIT" / "HT-2n-6-4 2_001.csv").read_bytes().splitlines(True)
+    real.insert(60, b"\t" * 250_000 + b"1\r\n")
+    (tmp_path / "a.csv").write_bytes(b"".join(real))
+    with pytest.raises(ReadError, match=r"a\.csv: line "):
+        tl.read(tmp_path / "a.csv")
+
+
+def test_a_quotation_mark_left_open_is_told_in_a_short_message(tmp_path):
+    rows = "".join(f"{n / 1000},1\n" for n in range(2000))
+    (tmp_path / "a.csv").write_text(HEAD + '0.0,1\n"' + rows)
+    with pytest.raises(ReadError, match=r"a\.csv") as error:
+        read_scans(tmp_path / "a.csv")
+    assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("0,1\n0.001,2\n1e308,3\n", "x reaches 1e\\+305 m"),
+        ("0,1\n0.001,2\ninf,3\n", "x does not proceed"),
+    ],
+)
+def test_positions_that_cannot_be_are_refused(tmp_path, rows, told):
+    (tmp_path / "a.csv").write_text(HEAD + rows)
+    with pytest.raises(ReadError, match=f"a.csv.*{told}"):
+        read_scans(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("x", ["1e400", "inf", "1e300", ""])
+def test_a_map_with_a_point_far_off_is_refused(tmp_path, x):
+    (tmp_path / "a.txt").write_text(f"0,0,1\n1,0,1\n0,1,1\n{x},1,1\n")
+    with pytest.raises(
+        ReadError, match=r"a\.txt: (a point has no place|the points do not lie|4 points do not)"
+    ):
+        read_scans(tmp_path / "a.txt", "nanovea_map")
+
+
+@pytest.mark.parametrize("line", ["Ra;3,246;mm/s;;", "Ls;2,5;kg;", "Lc;0,8;;"])
+def test_a_unit_that_cannot_be_names_file_and_line(tmp_path, line):
+    text = f"// Header\nMode;RES\n// Condition-A\n{line}\n// CalcResult\n{line}\n"
+    (tmp_path / "a.TXT").write_text(text)
+    with pytest.raises(ReadError, match=rf"a\.TXT: line \d, '{line[:2]}': unit"):
+        read_results(tmp_path / "a.TXT")
+
+
+def test_uneven_positions_are_not_continued_beyond_their_ends(tmp_path):
+    x = np.linspace(0, 1, 400) ** 2  # mm: dense at the start
+    rows = "".join(f"{a:.6f},{b:.4f}\n" for a, b in zip(x, 1 + 10 * x, strict=True))
+    (tmp_path / "a.csv").write_text(HEAD + rows)
+    scan = read_scans(tmp_path / "a.csv")
+    assert "resampled" in scan.attrs
+    assert scan.attrs["length_m"] == pytest.approx(1e-3, rel=1e-9)
+    # a straight line stays one: nothing flat is added where nothing was measured
+    np.testing.assert_allclose(np.diff(scan.height.values[0]), 10e-6 / 399, rtol=1e-2)
+
+
+# ---- the wrong door
+
+
+def test_a_profile_given_to_read_is_sent_to_read_scans(shared_data, tmp_path):
+    (tmp_path / "a.csv").write_text(HEAD + "0,1\n0.001,2\n")
+    for path in (
+        tmp_path / "a.csv",
+        shared_data / "surfacetopography_MIT" / "dektak-1.csv",
+        shared_data / "bearing_profiles_MIT" / "NU206-RE-1.txt",
+    ):
+        with pytest.raises(ReadError, match="looks like a profile .*: use read_scans") as error:
+            tl.read(path)
+        assert path.name in str(error.value)
+    with pytest.raises(ReadError, match="use read_scans"):
+        tl.read(tmp_path / "a.csv", "surftest_csv")
+    with pytest.raises(ReadError, match="use read_scans"):
+        tl.read(shared_data / "surfacetopography_MIT" / "mitutoyo_mock.xlsx")
+    with pytest.raises(ReadError, match="use read_results"):
+        tl.read(shared_data / "mitutoyo_sj410_res_MIT" / "8A2.TXT")
+
+
+def test_a_run_given_to_read_scans_is_sent_to_read(shared_data):
+    for name in ("cetr_umt2_MIT/HT-2n-6-4 2_001.csv", "tdms_force_MIT/TDMSSample.tdms"):
+        with pytest.raises(ReadError, match="looks like a run .*: use read"):
+            read_scans(shared_data / name)
+
+
+def test_a_mat_file_of_version_7_3_says_how_to_save_it(tmp_path):
+    (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file".ljust(512, b"\0"))
+    with pytest.raises(ReadError, match=r"a\.mat: this is a MAT file of version 7\.3.*-v7"):
+        tl.read(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize(
+    "rows", ["inf,1,31\n0.1,1,31", "0.0,1,31\ninf,1,31\ninf,1,31", "0,1,31\n1e999,1,31"]
+)
+def test_infinite_times_are_refused_with_their_row(tmp_path, rows):
+    head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n")
+    with pytest.raises(ReadError, match=r"a\.csv: time is infinite in row [12]"):
+        tl.read(tmp_path / "a.csv")
+
+
+def test_a_map_that_states_one_size_of_two_is_refused(tmp_path):
+    (tmp_path / "a.txt").write_text(
+        "# Channel: Height\n# Width: 10 µm\n# Value units: m\n1 2 3\n4 5 6\n7 8 9\n"
+    )
+    with pytest.raises(ReadError, match=r"a\.txt: "):
+        read_scans(tmp_path / "a.txt")
+
+
+def test_numbers_run_into_each_other_do_not_take_for_ever(shared_data, tmp_path):
+    rows = (shared_data / "surfacetopography_MIT" / "xy-4.txt").read_text().splitlines()
+    rows[8687] = "-1.7e308" + rows[8687]
+    (tmp_path / "a.txt").write_text("\n".join(rows))
+    with pytest.raises(ReadError, match=r"a\.txt: neither a known dialect"):
+        read_scans(tmp_path / "a.txt", x_unit="mm", height_unit="um")
+
+
+def test_a_tdms_file_cut_short_says_so(shared_data, tmp_path):
+    whole = (shared_data / "tdms_force_MIT" / "TDMSSample.tdms").read_bytes()
+    (tmp_path / "a.tdms").write_bytes(whole[:-30_000])
+    run = tl.read(tmp_path / "a.tdms")
+    assert "ends before" in run.attrs["file_incomplete"]
+    assert "file_incomplete" not in tl.read(shared_data / "tdms_force_MIT/TDMSSample.tdms").attrs
