@@ -37,6 +37,7 @@ _WORSE = 3.0  # the starts may tell a shift that leaves this many times more une
 _ALMOST_NOTHING = 1e-3  # and this,
 _STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
+_POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
 
 
 class Estimate(NamedTuple):
@@ -80,9 +81,9 @@ def estimate_clock_shift(
     no start is seen, the shift is the coarse one, and its uncertainty the shift at which the
     explained sum of squares falls by more than chance allows.
     """
-    good = np.isfinite(force)
+    good = np.abs(force) < _POSSIBLE
     force_time, force = force_time[good], force[good]
-    velocity = np.nan_to_num(velocity)
+    velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
     if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
         return None
     classes = velocity_classes(velocity)

@@ -74,7 +74,7 @@ def read_results(path: str | Path) -> xr.Dataset:
         name, value, unit, condition = cells[:4]
         if not name:
             continue
-        where = f"{file.path}: line {number}, '{name}'"
+        where = f"{file.path}: line {number}, '{name[:40]}'"
         if section == "CalcResult":
             twice = names.count(name) > 1
             name = _NAMES.get(name, name)
@@ -121,4 +121,4 @@ def _number(text: str, where: str) -> float:
     try:
         return float(text.replace(",", "."))
     except ValueError as error:
-        raise ReadError(f"{where}: '{text}' is neither a number nor an error code") from error
+        raise ReadError(f"{where}: '{text[:40]}' is neither a number nor an error code") from error

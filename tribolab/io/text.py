@@ -271,12 +271,13 @@ class _Columns:
             at = self._used
             for chunk in chunks:
                 target = array[at : at + len(chunk)]
-                if signal.scale == 1.0:
-                    target[:] = chunk
-                else:
-                    _scaled(chunk, signal.scale, target)
-                if signal.offset:
-                    target += signal.offset
+                with np.errstate(over="ignore"):  # a damaged number may be beyond all numbers
+                    if signal.scale == 1.0:
+                        target[:] = chunk
+                    else:
+                        _scaled(chunk, signal.scale, target)
+                    if signal.offset:
+                        target += signal.offset
                 at += len(chunk)
         self._used += rows
 
