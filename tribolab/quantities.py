@@ -155,6 +155,14 @@ _ROWS = [
     # comparison
     ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
     ("used", "", "1", "1 where the point was fitted, else 0"),
+    # models of a campaign
+    ("run_level", "", "1", "friction of a run relative to that of its repeats"),
+    (
+        "friction_without_factors",
+        "\\mu",
+        "1",
+        "friction coefficient without friction factors",
+    ),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
