@@ -163,6 +163,13 @@ _ROWS = [
         "1",
         "friction coefficient without friction factors",
     ),
+    # comparison: uncertainty of the model
+    ("friction_coefficient_varied", "\\mu", "1", "friction coefficient of a varied model"),
+    ("largest_change", "", "1", "largest change of friction over the height of the curve"),
+    ("largest_change_speed", "", "m/s", "sliding speed of the largest change"),
+    ("largest_relative_change", "", "1", "largest relative change of friction at one speed"),
+    ("largest_relative_change_speed", "", "m/s", "sliding speed of the largest relative change"),
+    ("shear_stress_change", "", "1", "relative change of the fitted shear stress"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
