@@ -156,6 +156,7 @@ _ROWS = [
     ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
     ("used", "", "1", "1 where the point was fitted, else 0"),
     # models of a campaign
+    ("friction_coefficient_model", "\\mu", "1", "computed friction coefficient"),
     ("run_level", "", "1", "friction of a run relative to that of its repeats"),
     (
         "friction_without_factors",
