@@ -137,7 +137,8 @@ def stribeck_curve(
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
+    with threadpool_limits(1, user_api="blas"):
+        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
@@ -212,10 +213,10 @@ def film_profile(
         ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``. The
         attributes hold the proof of the point and the ``flux`` [m2/s].
     """
-    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
     force = positive(load, "N/m", "load")
     v = float(_speeds(speed, psd).values[0])
     with threadpool_limits(1, user_api="blas"):
+        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
         problem, (solution,) = _solve(system, force, np.array([abs(v)]))
     fields = solution.fields
     side = -1 if v < 0 else 1
