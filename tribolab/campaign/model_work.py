@@ -301,6 +301,7 @@ def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:
             "normal_force_N": float(curve.normal_force),
             "curve": curve.name,
             "repeatability": model.repeatability,
+            "freedom": model.freedom,
             "tribolab_version": __version__,
             "config_sha256": model.config_sha256,
             "history": history_line(f"model of {curve.name}"),
