@@ -42,7 +42,7 @@ class DemoComparison:
 
 
 def write(outcome: Outcome, folder: Path) -> DemoComparison:
-    """Compare, and write ``truth.csv``, ``truth_surfaces.csv``, ``truth_shear_stress.csv``, ``paper.csv``."""
+    """Compare, and write ``truth*.csv`` and ``paper.csv``."""
     from tribolab.studies.comparison import compare_with_paper
 
     paper = compare_with_paper()
