@@ -15,7 +15,7 @@ from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.compare.shear_stress import fit_shear_stress
 from tribolab.compare.spectrum_error import shear_stress_shift
-from tribolab.errors import ConfigError
+from tribolab.errors import AnalysisError, ConfigError
 from tribolab.friction.repeatability import repeatability
 from tribolab.io.netcdf import read_netcdf
 from tribolab.report.model_words import judgement
@@ -32,7 +32,13 @@ SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.jso
 def campaign(tmp_path_factory):
     folder = tmp_path_factory.mktemp("loop") / "campaign"
     rig = Rig(Protocol(speeds=SPEEDS))
-    return simulate_campaign(folder, 5, small=True, surfaces=("Sb-S",), n_scans=3, rig=rig)
+    file = simulate_campaign(folder, 5, small=True, surfaces=("Sb-S",), n_scans=2, rig=rig)
+    # without the dry runs: they have no model
+    text = re.sub(
+        r'\n\[\[run\]\]\nfiles = "[^"]*_dry_.*?(?=\n\[|\Z)', "", file.read_text(), flags=re.S
+    )
+    file.write_text(text, "utf-8")
+    return file
 
 
 @pytest.fixture(scope="module")
@@ -125,24 +131,33 @@ def test_what_is_the_same_is_taken_over_and_what_changed_is_not(campaign, outcom
     assert all(run.reused for run in anew.runs)
 
 
-@pytest.mark.slow
-def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome):
+def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, monkeypatch):
     text = campaign.read_text("utf-8")
-    for name, spoilt, status, reason in (
-        ("radius", re.sub(r"radius = .*\n", "", text), "skipped", "[contact] wants radius"),
-        ("stiff", text.replace("1.4 Pa s", "1e300 Pa s"), "failed", "m/s"),
-    ):
-        file = campaign.with_name(f"{name}.toml")
-        file.write_text(spoilt + '\n[model]\nuncertainty = "none"\n', "utf-8")
-        folder = campaign.parent / name
-        folder.mkdir()
-        made = process(load_campaign(file), folder, previous=outcome.folder)
-        (model,) = made.models
-        assert (model.status, model.data_file) == (status, "")
-        assert reason in model.reason
-        assert all(curve.done for curve in made.curves)
+    file = campaign.with_name("radius.toml")
+    file.write_text(re.sub(r"radius = .*\n", "", text), "utf-8")
+    folder = campaign.parent / "radius"
+    folder.mkdir()
+    made = process(load_campaign(file), folder, previous=outcome.folder)
+    (model,) = made.models
+    assert (model.status, model.reason) == ("skipped", "[contact] wants radius")
+    assert all(curve.done for curve in made.curves)
+
     off, folder = changed(campaign, "\n[model]\ncompute = false\n", "off")
     assert process(off, folder, previous=outcome.folder).models == ()
+
+    def refuse(*given, **more):
+        raise AnalysisError("at 1 m/s: no film was found; take more cells")
+
+    monkeypatch.setattr("tribolab.lubrication.stribeck.stribeck_curve", refuse)
+    other, folder = changed(campaign, "\n[model]\npoints = 9\n", "failing")
+    made = process(other, folder, previous=outcome.folder)
+    (model,) = made.models
+    assert (model.status, model.data_file) == ("failed", "")
+    assert model.reason == "at 1 m/s: no film was found; take more cells"
+    assert all(curve.done for curve in made.curves)
+    write_report(made)
+    (found,) = pd.read_csv(folder / "tables/findings.csv").query("severity == 'fail'").message
+    assert found == f"no model: {model.reason}"
 
 
 def test_speeds_that_are_not_in_order_are_refused_with_the_line(campaign):
@@ -181,7 +196,7 @@ def test_an_error_that_all_points_share_is_in_the_error_bar():
     assert fit.half_interval > 2 * fit.common_error
     alone = fit_shear_stress(*given, curve=bare)
     assert alone.shear_stress == fit.shear_stress
-    assert alone.half_interval < 0.2 * fit.half_interval
+    assert alone.half_interval < alone.shear_stress - 1e6 < fit.half_interval
 
 
 def described(residual, **attrs):
@@ -210,7 +225,7 @@ def test_the_words_follow_the_residuals():
     assert "largest at 1 mm/s" not in good
     bad = judgement(
         described(
-            [0.5, 0.4, 0.01, -0.01, -0.02],
+            [0.2, 0.15, 0.01, -0.01, -0.02],
             chi_square_p_value=1e-9,
             runs_p_value=0.01,
             valid_speed_low_m_s=1e-4,
@@ -220,6 +235,8 @@ def test_the_words_follow_the_residuals():
     assert "part beyond the errors, and not by chance" in bad
     assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
     assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad
-    assert "largest at 1 µm/s, where the measurement lies 0.5 above the model's 1" in bad
+    assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
+    far = judgement(described([0.9, 0.8, -0.01, -0.02], chi_square_p_value=0.0))
+    assert far.startswith("the model does not describe this curve: off by up to 47 %")
     none = judgement(described([0.5] * 4, shear_stress_Pa=-1.0))
     assert "not positive" in none
