@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.labels import speed_text
+from tribolab.plot.labels import number, speed_text
 from tribolab.report.wording import percent
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ def judgement(fit: xr.Dataset) -> str:
         parts.append(f"the two differ by more than {percent(_LARGE)} of the friction at {where}")
     side = "above" if off[worst] > 0 else "below"
     parts.append(
-        f"largest at {speed_text(speed[worst])}, where the measurement lies {abs(off[worst]):.2g} "
-        f"{side} the model's {mu[worst] - off[worst]:.3g}"
+        f"largest at {speed_text(speed[worst])}, where the measurement lies "
+        f"{number(abs(off[worst]), 2)} {side} the model's {number(mu[worst] - off[worst])}"
     )
     return "; ".join(parts)
 
