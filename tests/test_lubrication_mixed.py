@@ -177,7 +177,11 @@ def test_vanishing_roughness_is_smooth():
     ("name", "speed", "finest"), [("Smooth", 1e-5, 5e-4), ("Sb-S", 1e-5, 5e-5), (None, 1e-4, 1e-3)]
 )
 def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
-    """Between first and second order: the front of the cavity sits on a cell."""
+    """Between first and second order: the front of the cavity sits on a cell.
+
+    From 200, 400 and 800 cells the order is 1.3 and 1.7 for the film of Smooth and of no roughness,
+    0.8 for Sb-S, whose film changes by no more than 1e-5.
+    """
     psd = reference_psd(name) if name else None
     films, frictions = [], []
     for cells in (200, 400, 800):
@@ -190,24 +194,29 @@ def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
     assert order > 0.75
 
 
-def test_a_longer_domain_changes_little_where_films_are_thin():
-    """Above 1e-2 m/s the drag in the wide gap counts: 4 % there, 8 % at 1e-1 m/s."""
-    change = []
-    for domain, cells in ((1.0, 400), (2.0, 450)):
-        curve = stribeck_curve(
-            CONTACT,
-            reference_psd("Smooth"),
-            1.4,
-            310.0,
-            0.5e6,
-            [1e-4, 1e-2],
-            domain=domain,
-            cells=cells,
-        )
-        change.append(curve.friction_coefficient.values)
-    relative = np.abs(change[1] / change[0] - 1)
-    assert relative[0] < 1e-3
-    assert 1e-3 < relative[1] < 0.05
+def test_longer_domains_converge_and_matter_only_where_films_are_thick():
+    """Friction to first order in 1/length: the wide gap shears 2 % more at 1e-2, 6 % at 1e-1 m/s.
+
+    The film does to second order and better.
+    """
+    psd, speeds = reference_psd("Smooth"), [1e-4, 1e-2, 1e-1]
+    curves = [
+        stribeck_curve(CONTACT, psd, 1.4, 310.0, 0.5e6, speeds, domain=domain, cells=cells)
+        for domain, cells in ((1.0, 400), (2.0, 450), (4.0, 500))
+    ]
+    mu, film = (
+        np.stack([curve[name].values for curve in curves])
+        for name in ("friction_coefficient", "minimum_separation")
+    )
+    relative = np.abs(mu[1] / mu[0] - 1)
+    assert relative[0] < 1e-4
+    assert 0.01 < relative[1] < 0.03
+    assert 0.04 < relative[2] < 0.07
+    assert np.all(np.abs(film[1] / film[0] - 1) < [5e-4, 1e-3, 0.02])
+    order = np.log2(np.abs(np.diff(mu, axis=0)[0] / np.diff(mu, axis=0)[1]))[1:]
+    assert np.all((order > 0.9) & (order < 1.3))
+    order = np.log2(np.abs(np.diff(film, axis=0)[0] / np.diff(film, axis=0)[1]))[1:]
+    assert np.all(order > 1.8)
 
 
 @pytest.mark.slow
