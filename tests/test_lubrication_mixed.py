@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+import xarray as xr
 from contact_cases import CONTACT, E_STAR, SURFACES, properties, reference_psd
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -75,6 +76,32 @@ def test_no_fluid_pulls_and_the_cavity_opens_towards_the_outlet(name, speed):
     entrained = speed / 2 * (u + factors.rms_roughness * factors.at(u).phi_s)
     assert np.all(np.diff(entrained[cavity]) > 0)
     assert entrained[cavity][0] >= found.attrs["flux"] * (1 - 1e-2)
+
+
+@pytest.mark.parametrize("friction_factors", [True, False])
+@pytest.mark.parametrize(("name", "speed"), CASES[1:])
+def test_friction_is_eq_4_integrated_over_the_printed_profile(name, speed, friction_factors):
+    """In SI, from the profile and the printed factors alone; in the cavity liquid covers u*/u."""
+    found = profile(name, speed)
+    x, u, p = (found[key].values for key in ("x", "separation", "fluid_pressure"))
+    cells = np.gradient(x)
+    phi = flow_factors(reference_psd(name)).dataset(found.separation)
+    one = xr.ones_like(found.separation)
+    shear = phi.shear_stress_factor + phi.shear_stress_correction if friction_factors else one
+    dragged = phi.pressure_stress_factor if friction_factors else one
+    cavity = x >= found.attrs["cavity_start_m"]
+    covered = np.where(cavity, np.minimum(1, 2 * found.attrs["flux"] / speed / u), 1)
+    couette = (shear.values * 1.4 * speed / u * covered * cells).sum() / 310
+    # the flat slides to +x: where the fluid's pressure rises along x it is held back
+    pressure = np.trapezoid(dragged.values * u / 2, p) / 310
+    solid = 0.84e6 * (found.contact_area_ratio.values * cells).sum() / 310
+    curve = stribeck_curve(
+        CONTACT, reference_psd(name), 1.4, 310.0, 0.84e6, speed, friction_factors=friction_factors
+    )
+    parts = {"couette": couette, "pressure": pressure, "solid": solid}
+    for part, value in parts.items():
+        mu = float(curve[f"friction_coefficient_{part}"][0])
+        assert value == pytest.approx(mu, rel=5e-3, abs=1e-3 * sum(parts.values())), part
 
 
 @pytest.mark.parametrize(("name", "speed"), [*CASES, ("Sb-S", 1e-7)])

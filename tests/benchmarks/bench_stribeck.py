@@ -49,14 +49,15 @@ def nine_curves() -> None:
         times.append(time.perf_counter() - start)
         spent.append(time.process_time() - busy)
         print(
-            f"  {name:7}{load:6.0f} N/m {times[-1]:6.2f} s ({spent[-1]:.2f} s busy), {int(curve.iterations.sum()):4} Newton "
-            f"steps, residual {float(curve.residual.max()):.0e}, "
+            f"  {name:7}{load:6.0f} N/m {times[-1]:6.2f} s ({spent[-1]:.2f} s busy), "
+            f"{int(curve.iterations.sum()):4} Newton steps, "
+            f"residual {float(curve.residual.max()):.0e}, "
             f"load {float(np.abs(curve.load_balance).max()):.0e}, "
             f"flux {float(curve.flux_variation.max()):.0e}"
         )
     print(
-        f"  median {statistics.median(times):.2f} s ({statistics.median(spent):.2f} s busy) a curve "
-        f"of {SPEEDS.size} speeds; all nine {sum(times):.1f} s ({sum(spent):.1f} s busy)"
+        f"  median {statistics.median(times):.2f} s ({statistics.median(spent):.2f} s busy) "
+        f"a curve of {SPEEDS.size} speeds; all nine {sum(times):.1f} s ({sum(spent):.1f} s busy)"
     )
 
 
