@@ -155,6 +155,15 @@ _ROWS = [
     # comparison
     ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
     ("used", "", "1", "1 where the point was fitted, else 0"),
+    # models of a campaign
+    ("friction_coefficient_model", "\\mu", "1", "computed friction coefficient"),
+    ("run_level", "", "1", "friction of a run relative to that of its repeats"),
+    (
+        "friction_without_factors",
+        "\\mu",
+        "1",
+        "friction coefficient without friction factors",
+    ),
     # comparison: uncertainty of the model
     ("friction_coefficient_varied", "\\mu", "1", "friction coefficient of a varied model"),
     ("largest_change", "", "1", "largest change of friction over the height of the curve"),
