@@ -81,7 +81,9 @@ def summarise_run(task: RunTask) -> RunSummary:
         "figures": figures,
         "flagged": flagged_spans(run),
     }
-    return RunSummary(task.run.name, plain_value(facts), table, tuple(findings), task.key, packed, fine)
+    return RunSummary(
+        task.run.name, plain_value(facts), table, tuple(findings), task.key, packed, fine
+    )
 
 
 def main_quantity(friction: xr.Dataset) -> str:
@@ -301,7 +303,9 @@ def _traces(
         (task.folder / file).write_text(call, encoding="utf-8")
     except AnalysisError as error:  # recorded, as above
         text = f"no trace to show: {error}"
-        findings.append({"severity": "error", "run": task.run.name, "where": "trace", "message": text})
+        findings.append(
+            {"severity": "error", "run": task.run.name, "where": "trace", "message": text}
+        )
         return "", ""
     return as_text(coarse), file
 

@@ -17,7 +17,7 @@ from tribolab.quantities import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOTION = ("sliding_velocity", "set_speed", "position")
+_MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 _LAST = 2**32 - 1  # a time of the trace, as a share of its length
 _TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _MOST_SPANS = 400
@@ -80,7 +80,7 @@ def trace(
         packed.append(
             {
                 "name": name,
-                "label": known.long_name,
+                "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 **_packed(time[chosen], values[chosen], time),
             }

@@ -79,7 +79,7 @@
       if (log) {
         vertical.splits = (u, i, low, high) => decades(this.data.slowest_m_s, low, high);
         vertical.values = (u, splits) => splits.map(power);
-        vertical.space = 18;
+        vertical.filter = (u, splits) => splits;
       } else {
         vertical.values = (u, splits) => splits.map((v) => (v === null ? "" : plain(v)));
       }
@@ -88,7 +88,7 @@
         legend: { show: false },
         scales: { x: { time: false }, y: log ? { distr: 4, asinh: this.data.slowest_m_s } : {} },
         series: [{}, { stroke: colour.ink, width: 1, points: { show: false }, spanGaps: false }],
-        axes: [{ ...axis, label: last ? "time (s)" : undefined, size: last ? 34 : 22, labelSize: 18, values: (u, splits) => splits.map(plain) }, vertical],
+        axes: [{ ...axis, label: last ? "time (s)" : undefined, size: 30, gap: 3, labelSize: 18, values: (u, splits) => splits.map(plain) }, vertical],
         cursor: {
           sync: { key: this.figure.dataset.key },
           drag: { x: true, y: false, setScale: true },
@@ -107,7 +107,7 @@
       const colour = colours(), { ctx, bbox } = u;
       const at = (t) => Math.min(Math.max(u.valToPos(t, "x", true), bbox.left), bbox.left + bbox.width);
       const fill = (style, from, to, top, height, least = 0) => {
-        const a = at(from), width = Math.max(at(to) - a, least);
+        const a = Math.round(at(from)), width = Math.max(Math.round(at(to)) - a, least);
         if (width <= 0 || to < this.range[0] || from > this.range[1]) return;
         ctx.fillStyle = style;
         ctx.fillRect(a, top, width, height);
@@ -115,8 +115,8 @@
       ctx.save();
       for (const [start, stop, inner, outer, sign] of this.data.segments) {
         const rgb = sign > 0 ? colour.forward : sign < 0 ? colour.backward : colour.unknown;
-        fill(`rgba(${rgb}, 0.10)`, start, stop, bbox.top, bbox.height);
-        fill(`rgba(${rgb}, 0.18)`, inner, outer, bbox.top, bbox.height);
+        fill(`rgba(${rgb}, 0.07)`, start, stop, bbox.top, bbox.height);
+        fill(`rgba(${rgb}, 0.12)`, inner, outer, bbox.top, bbox.height);
       }
       const bar = 5 * devicePixelRatio;
       for (const span of this.data.flags) {
