@@ -192,7 +192,8 @@ def test_contents_lead_to_every_section_and_follow_the_scroll(browser, results):
             "Array.from(document.querySelectorAll('main > section > h2'), h => h.textContent)"
         )
         links = page.run(
-            "Array.from(document.querySelectorAll('nav .contents > ul > li > a'), a => a.textContent)"
+            "Array.from(document.querySelectorAll('nav .contents > ul > li > a'),"
+            "a => a.textContent)"
         )
         assert links == titles and len(titles) >= 6
         for section, title in (("curves", "Stribeck curves"), ("runs", "Runs")):

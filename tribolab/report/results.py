@@ -16,9 +16,9 @@ from tribolab.report.curve_figures import curve_record, draw_curves, plan_figure
 from tribolab.report.document import labels, report_document, write_json
 from tribolab.report.page import PageTrace, write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
-from tribolab.report.traces import trace_points
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
+from tribolab.report.traces import trace_points
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome

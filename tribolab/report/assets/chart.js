@@ -118,15 +118,15 @@
         fill(`rgba(${rgb}, 0.07)`, start, stop, bbox.top, bbox.height);
         fill(`rgba(${rgb}, 0.12)`, inner, outer, bbox.top, bbox.height);
       }
-      const bar = 5 * devicePixelRatio;
+      const bar = 7 * devicePixelRatio;
       for (const span of this.data.flags) {
         if (!this.concerns(span, row)) continue;
         const tone = colour[span.severity];
         ctx.globalAlpha = 0.28;
-        fill(tone, span.start_s, span.stop_s, bbox.top, bbox.height, 2);
+        fill(tone, span.start_s, span.stop_s, bbox.top, bbox.height, 3);
         ctx.globalAlpha = 1;
-        fill(tone, span.start_s, span.stop_s, bbox.top, bar, 2);
-        if (span.severity === "fail") fill(tone, span.start_s, span.stop_s, bbox.top + bbox.height - bar, bar, 2);
+        fill(tone, span.start_s, span.stop_s, bbox.top, bar, 3);
+        if (span.severity === "fail") fill(tone, span.start_s, span.stop_s, bbox.top + bbox.height - bar, bar, 3);
       }
       ctx.restore();
     }
