@@ -77,19 +77,22 @@ def trace(
     for name, values in signals:
         chosen = _chosen(time, values, bounds, points)
         known = quantity(name)
+        # speeds span decades: packed as they are drawn, linear only below the slowest segment
+        below = _slowest(segments) if name in ("sliding_velocity", "set_speed") else None
+        levels = values if below is None else np.arcsinh(values / below)
         packed.append(
             {
                 "name": name,
                 "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
-                **_packed(time[chosen], values[chosen], time),
+                "linear_below": below,
+                **_packed(time[chosen], levels[chosen], time),
             }
         )
     return {
         "length_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
         "complete": all(signal["points"] == time.size for signal in packed),
-        "slowest_m_s": _slowest(segments),
         "signals": packed,
         "segments": _segments(segments, friction, main.name),
         "flags": flagged_spans(run),

@@ -11,6 +11,7 @@
     forward: "190, 200, 210", backward: "230, 159, 0", unknown: "86, 180, 233",
   };
   const HEIGHTS = [260, 150];
+  const PAPER = 640; // fits between the margins of A4 and of Letter
   const charts = new Map(); // by key of the run
   let printing = false;
 
@@ -25,9 +26,10 @@
     const times = new Uint32Array(bytes.buffer, 0, signal.points);
     const levels = new Uint16Array(bytes.buffer, 4 * signal.points, signal.points);
     const step = (signal.high - signal.low) / TOP;
+    const value = signal.linear_below === null ? (level) => level : (level) => signal.linear_below * Math.sinh(level);
     return [
       Array.from(times, (t) => (t / LAST) * length),
-      Array.from(levels, (v) => (v > TOP ? null : signal.low + v * step)),
+      Array.from(levels, (v) => (v > TOP ? null : value(signal.low + v * step))),
     ];
   }
 
@@ -72,21 +74,21 @@
 
     options(signal, row) {
       const colour = colours();
-      const log = /velocity|speed/.test(signal.name) && this.data.slowest_m_s > 0;
+      const log = signal.linear_below !== null;
       const last = row === this.data.signals.length - 1;
       const axis = { stroke: colour.ink, grid: { stroke: colour.grid, width: 1 }, ticks: { stroke: colour.grid, width: 1 }, font: "12px sans-serif", labelFont: "12px sans-serif" };
       const vertical = { ...axis, scale: "y", size: 64, label: signal.label + (signal.unit ? ` (${signal.unit})` : "") };
       if (log) {
-        vertical.splits = (u, i, low, high) => decades(this.data.slowest_m_s, low, high);
+        vertical.splits = (u, i, low, high) => decades(signal.linear_below, low, high);
         vertical.values = (u, splits) => splits.map(power);
         vertical.filter = (u, splits) => splits;
       } else {
         vertical.values = (u, splits) => splits.map((v) => (v === null ? "" : plain(v)));
       }
       return {
-        width: Math.max(280, this.place.clientWidth), height: HEIGHTS[Math.min(row, 1)],
+        width: printing ? PAPER : Math.max(280, this.place.clientWidth), height: HEIGHTS[Math.min(row, 1)],
         legend: { show: false },
-        scales: { x: { time: false }, y: log ? { distr: 4, asinh: this.data.slowest_m_s } : {} },
+        scales: { x: { time: false }, y: log ? { distr: 4, asinh: signal.linear_below } : {} },
         series: [{}, { stroke: colour.ink, width: 1, points: { show: false }, spanGaps: false }],
         axes: [{ ...axis, label: last ? "time (s)" : undefined, size: 30, gap: 3, labelSize: 18, values: (u, splits) => splits.map(plain) }, vertical],
         cursor: {
@@ -276,6 +278,7 @@
     }
 
     resize() {
+      if (printing) return;
       const width = Math.max(280, this.place.clientWidth);
       if (!this.place.clientWidth || width === this.plots[0].width) return;
       this.plots.forEach((plot, row) => plot.setSize({ width, height: HEIGHTS[Math.min(row, 1)] }));
