@@ -225,6 +225,9 @@ def check(
     with _reported(debug):
         import json
 
+        from tribolab.report.quick import plain_arrays_only
+
+        plain_arrays_only()
         from tribolab.report import checks, terminal
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
