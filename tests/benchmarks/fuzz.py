@@ -4,9 +4,10 @@
 
 Case n is damaged copy number n: the seed of everything random in it. Every case runs in a child
 process with a limit of 1 GB above what the imports take, a limit of 5 s, and whatever kills the
-child is counted too. What took too long is tried once more, since a busy machine stands still
-now and then: only what takes too long twice is a violation. A violation is printed with its seed; ``--case n`` runs that one alone, here,
-and shows the traceback. ``--keep FOLDER`` writes the damaged files of violations there.
+child is counted too. What took too long is tried once more, since a busy machine stands still now
+and then: only what takes too long twice is a violation. A violation is printed with its seed;
+``--case n`` runs that one alone, here, and shows the traceback. ``--keep FOLDER`` writes the
+damaged files of violations there.
 """
 
 from __future__ import annotations

@@ -104,7 +104,9 @@ def find_lines(
     """
     if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
         return []
-    from scipy import ndimage  # not before there is a spectrum: it takes a tenth of a second to load
+    from scipy import (
+        ndimage,
+    )  # not before there is a spectrum: it takes a tenth of a second to load
 
     frequency, amplitude = amplitude_spectrum(time, values)
     power = amplitude**2
