@@ -390,7 +390,9 @@ def _show(outcome: Outcome) -> int:
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
     if spoilt or not outcome.segments:
         return UNREADABLE
-    return exit_code({run.quality for run in outcome.runs}, outcome.campaign.qc.fail_on)
+    statuses = {run.quality for run in outcome.runs}
+    statuses.update(*(surface.objections for surface in outcome.surfaces))
+    return exit_code(statuses, outcome.campaign.qc.fail_on)
 
 
 def main() -> None:
