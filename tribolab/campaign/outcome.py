@@ -145,7 +145,7 @@ class SurfaceOutcome:
     @property
     def objections(self) -> set[str]:
         """Every status that the checks gave to the scans, also to those that were left out."""
-        return {finding.severity for finding in self.findings if finding.check}
+        return {f.severity for f in self.findings if f.check and f.severity != "note"}
 
 
 @dataclass(frozen=True)

@@ -127,12 +127,12 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 def _objections(label: str, said: Findings) -> list[Finding]:
     return [
         Finding(
-            row["status"],
+            "note" if row["status"] == "pass" else row["status"],
             f"scan {label}: {row['check']}: {row['message']}. {row['cure']}".strip(". ") + ".",
             row["check"],
         )
         for row in said.rows
-        if row["status"] in ("suspect", *_FAILED)
+        if row["status"] in ("suspect", *_FAILED) or row["noted"]
     ]
 
 

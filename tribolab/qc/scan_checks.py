@@ -121,7 +121,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
         status = "suspect"
     if share > limits["fail"] or span > limits["fail"] * whole:
         status = "fail"
-    return [Result(status, "height", text, share, "1", where, count, flags)]
+    return [Result(status, "height", text, share, "1", where, count, flags, noted=True)]
 
 
 def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:

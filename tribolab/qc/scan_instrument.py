@@ -29,7 +29,7 @@ def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             f"the file's positions look uneven, by up to {unevenness:.2g} steps, as rounding of "
             "their last digit explains: taken as even"
         )
-        return [Result("pass", "x", text, unevenness)]
+        return [Result("pass", "x", text, unevenness, noted=True)]
     text = (
         f"the file's positions deviate from even ones by up to {unevenness:.2g} steps, more than "
         "their rounding: heights were interpolated, which takes short waves away"

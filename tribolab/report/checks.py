@@ -146,20 +146,21 @@ def code_of(checked: Sequence[Checked], fail_on: str) -> int:
 
 
 def findings_table(findings: Findings, everything: bool = False) -> Table:
-    """Return the objections of one run, graver ones first; with `everything` all that was asked."""
+    """Return objections and notes, graver ones first; with `everything` all that was asked."""
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     for row in findings.rows:
         status = row["status"]
-        if not everything and status in ("pass", "skipped"):
+        note = status == "pass" and row["noted"]
+        if not everything and status in ("pass", "skipped") and not note:
             continue
         variable = f"{row['variable']}: " if row["variable"] else ""
         text = escape(f"{variable}{row['message']}")
         if row["cure"]:
             text += f"\n[dim]{escape(row['cure'])}[/dim]"
-        table.add_row(status, row["check"], text, style=_STYLES[status])
+        table.add_row("note" if note else status, row["check"], text, style=_STYLES[status])
     return table
 
 
