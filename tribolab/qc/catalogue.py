@@ -11,9 +11,10 @@ from tribolab.qc.scan_checks import SCAN_CHECKS
 PAGE_FILE = "CHECKS.md"
 _HEAD = """# The checks
 
-What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign file under `[qc.limits]`, as
-text with a unit or as numbers in SI: `limits.spikes.noise = 10`. `skip = ["hum"]` leaves a check out. Each answers
-pass, suspect, fail, skipped (and why) or error (and which). Made from the code; a test keeps the two equal.
+What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign
+file under `[qc]`, as text with a unit or as numbers in SI: `limits.spikes.noise = 10`;
+`skip = ["hum"]` leaves a check out. Each answers pass, suspect, fail, skipped (and why) or error
+(and which). This page is made from the code, and a test keeps the two equal.
 """
 
 
