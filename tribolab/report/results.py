@@ -162,7 +162,7 @@ def _surfaces(outcome: Outcome, findings: list[dict[str, str]]) -> dict[str, Sur
         where = f"surface {surface.name}"
         findings += [
             {"severity": severity, "run": "", "where": where, "message": message}
-            for severity, message in surface.findings
+            for severity, message, _ in surface.findings
         ]
         if not surface.done:
             continue

@@ -216,13 +216,13 @@ def _findings(
 ) -> list[dict[str, str]]:
     found: list[dict[str, str]] = [
         {
-            "severity": row["status"],
+            "severity": "note" if row["status"] == "pass" else row["status"],
             "run": name,
             "where": f"{row['check']} {row['variable']}".strip(),
             "message": f"{row['message']}. {row['cure']}".strip(". ") + ".",
         }
         for row in run.attrs.get("findings", [])
-        if row["status"] not in ("pass", "skipped")
+        if row["status"] not in ("pass", "skipped") or row.get("noted")
     ]
 
     def say(severity: str, where: str, message: str) -> None:

@@ -70,6 +70,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     lines = [line]
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         names = [run.name for run in outcome.runs if run.quality == quality]
+        names += [f"scans of {s.name}" for s in outcome.surfaces if quality in s.objections]
         if names:
             more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
             lines.append(f"checks {what}: {', '.join(names[:_SHOWN])}{more}")
