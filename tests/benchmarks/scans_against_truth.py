@@ -69,7 +69,8 @@ def one_surface(name: str, seeds: int) -> tuple[np.ndarray, np.ndarray]:
         error = np.array(errors[key])
         rms, largest = 100 * np.sqrt((error**2).mean()), 100 * np.abs(error).max()
         print(
-            f"  {key:6} mean {100 * error.mean():+5.1f} %, rms {rms:4.1f} %, largest {largest:4.1f} %;"
+            f"  {key:6} mean {100 * error.mean():+5.1f} %, rms {rms:4.1f} %,"
+            f" largest {largest:4.1f} %;"
             f" within {100 * limit:.0f} % in {(np.abs(error) <= limit).sum()} of {seeds};"
             f" truth in the band in {sum(held[key])}"
         )
