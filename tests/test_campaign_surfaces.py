@@ -31,6 +31,8 @@ from tribolab.report.surface_records import ADHESION, CONTACT, ROUGHNESS, surfac
 from tribolab.report.truth_surfaces import compare_surfaces
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
+from tribolab.surface.self_affine import SelfAffine, rms_roughness
+from tribolab.surface.synthesis import synthesise_map
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 CONTACT_TABLE = {
@@ -249,6 +251,30 @@ def test_a_scan_of_another_length_is_left_out(tmp_path, profiles):
     assert said(surface, "suspect") == [
         "scan raw/sb-r_3.csv is left out: it differs in pitch or length"
     ]
+
+
+def test_several_maps_of_a_surface_are_averaged(tmp_path):
+    rough = SelfAffine(0.8, rolloff=2e5, plateau=1e-23, low=3e4, high=3e6)
+    files = [tmp_path / f"map_{number}.txt" for number in range(4)]
+    for number, file in enumerate(files):
+        points = 64 if number < 3 else 48
+        scan = synthesise_map(rough, points=points, pitch=1e-6, rng=number)
+        y, x = np.meshgrid(1e3 * scan.y, 1e3 * scan.x, indexing="ij")
+        columns = np.stack([x, y, 1e6 * scan.height.values], axis=-1).reshape(-1, 3)
+        np.savetxt(file, columns, fmt="%.6f", delimiter=",")
+    dialect = load_dialect("nanovea_map")
+    outcome = processed(tmp_path, files, instrument=dialect, contact=NOTHING_KNOWN)
+    assert outcome.done
+    assert "scan raw/map_3.txt is left out: it differs in pitch or length" in said(
+        outcome, "suspect"
+    )
+    psd = read_netcdf(tmp_path / outcome.data_file, group="psd")
+    roughness = read_netcdf(tmp_path / outcome.data_file, group="roughness")
+    assert psd.attrs["scans"] == 3
+    assert roughness.attrs["measured_rms_roughness_m"] == pytest.approx(
+        rms_roughness(rough), rel=0.2
+    )
+    assert roughness.Ra.dims == ("scan", "y")
 
 
 def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):

@@ -6,6 +6,8 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tribolab.campaign.outcome import Finding
 from tribolab.errors import AnalysisError, TribolabError
 
@@ -43,17 +45,17 @@ def usable_scans(surface: PlannedSurface) -> tuple[xr.Dataset, list[Finding]]:
             reason = _without_folder(str(error), path)
             findings.append(Finding("fail", f"scan {label} is left out: {reason}"))
             continue
-        shapes[path] = (tuple(scan.sizes.items()), f"{scan.attrs['pitch_m']:.4g}", "y" in scan.dims)
+        extent = tuple(f"{float(np.ptp(scan[dim].values)):.4g}" for dim in scan.height.dims)
+        shapes[path] = (tuple(scan.sizes.items()), extent)
     if not shapes:
         raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
     usual = Counter(shapes.values()).most_common(1)[0][0]
     alike = [path for path, shape in shapes.items() if shape == usual]
-    chosen = alike[:1] if usual[2] else alike  # maps cannot be averaged
     for path, label in zip(surface.files, surface.labels, strict=True):
-        if path in shapes and path not in chosen:
-            why = "one map is used" if path in alike else "it differs in pitch or length"
+        if path in shapes and path not in alike:
+            why = "it differs in pitch or length"
             findings.append(Finding("suspect", f"scan {label} is left out: {why}"))
-    scans = fill_dropouts(read_scans(chosen, surface.instrument))
+    scans = fill_dropouts(read_scans(alike, surface.instrument))
     if filled := scans.attrs["dropouts"]:
         share = 100 * scans.attrs["dropout_share"]
         findings.append(
