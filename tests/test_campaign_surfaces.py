@@ -148,6 +148,14 @@ def test_every_value_lies_between_its_bounds(outcome):
             value, high = column.replace("_low", ""), column.replace("_low", "_high")
             assert (table[column] <= table[value]).all(), column
             assert (table[value] <= table[high]).all(), column
+    file, table = outcome.folder / outcome.surfaces[0].data_file, "tables/adhesion.csv"
+    curve = read_netcdf(file, group="adhesion")
+    low, high = (curve[f"contact_area_ratio_{end}"] for end in ("low", "high"))
+    assert (low <= curve.contact_area_ratio).all() and (curve.contact_area_ratio <= high).all()
+    for row in pd.read_csv(outcome.folder / table).itertuples():  # the curve's band is the table's
+        for found, end in ((low, "low"), (high, "high")):
+            at = found.sel(medium=row.medium).interp(pressure=row.pressure_Pa)
+            assert float(at) == pytest.approx(getattr(row, f"contact_area_ratio_{end}"), rel=0.01)
 
 
 def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_path, profiles):
