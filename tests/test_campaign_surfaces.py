@@ -31,6 +31,8 @@ from tribolab.report.surface_records import ADHESION, CONTACT, ROUGHNESS, surfac
 from tribolab.report.truth_surfaces import compare_surfaces
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
+from tribolab.surface.self_affine import SelfAffine, rms_slope
+from tribolab.surface.synthesis import synthesise_map
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 CONTACT_TABLE = {
@@ -146,6 +148,14 @@ def test_every_value_lies_between_its_bounds(outcome):
             value, high = column.replace("_low", ""), column.replace("_low", "_high")
             assert (table[column] <= table[value]).all(), column
             assert (table[value] <= table[high]).all(), column
+    file, table = outcome.folder / outcome.surfaces[0].data_file, "tables/adhesion.csv"
+    curve = read_netcdf(file, group="adhesion")
+    low, high = (curve[f"contact_area_ratio_{end}"] for end in ("low", "high"))
+    assert (low <= curve.contact_area_ratio).all() and (curve.contact_area_ratio <= high).all()
+    for row in pd.read_csv(outcome.folder / table).itertuples():  # the curve's band is the table's
+        for found, end in ((low, "low"), (high, "high")):
+            at = found.sel(medium=row.medium).interp(pressure=row.pressure_Pa)
+            assert float(at) == pytest.approx(getattr(row, f"contact_area_ratio_{end}"), rel=0.01)
 
 
 def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_path, profiles):
@@ -249,6 +259,27 @@ def test_a_scan_of_another_length_is_left_out(tmp_path, profiles):
     assert said(surface, "suspect") == [
         "scan raw/sb-r_3.csv is left out: it differs in pitch or length"
     ]
+
+
+def test_several_maps_of_a_surface_are_averaged(tmp_path):
+    rough = SelfAffine(0.8, rolloff=2e5, plateau=1e-23, low=3e4, high=3e6)
+    files = [tmp_path / f"map_{number}.txt" for number in range(4)]
+    for number, file in enumerate(files):
+        points = 64 if number < 3 else 48
+        scan = synthesise_map(rough, points=points, pitch=1e-6, rng=number)
+        y, x = np.meshgrid(1e3 * scan.y, 1e3 * scan.x, indexing="ij")
+        columns = np.stack([x, y, 1e6 * scan.height.values], axis=-1).reshape(-1, 3)
+        np.savetxt(file, columns, fmt="%.6f", delimiter=",")
+    outcome = processed(tmp_path, files, instrument="nanovea_map", contact=NOTHING_KNOWN)
+    assert outcome.done
+    left_out = "scan raw/map_3.txt is left out: it differs in pitch or length"
+    assert left_out in said(outcome, "suspect")
+    psd = read_netcdf(tmp_path / outcome.data_file, group="psd")
+    roughness = read_netcdf(tmp_path / outcome.data_file, group="roughness")
+    assert psd.attrs["scans"] == 3
+    seen = roughness.attrs["measured_rms_slope"]  # short waves have most of it
+    assert seen == pytest.approx(rms_slope(rough), rel=0.15)
+    assert roughness.Ra.dims == ("scan", "y")
 
 
 def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):

@@ -13,7 +13,7 @@ from tribolab.surface.form import remove_form
 from tribolab.surface.moments import band, rms_roughness, rms_slope, spectral_moment
 from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.reliability import TIP_SHARE
-from tribolab.surface.synthesis import synthesise_profiles
+from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 PITCH, POINTS = 0.5e-6, 50_001
 
@@ -192,20 +192,36 @@ def test_scans_in_chunks_equal_scans_at_once():
     np.testing.assert_allclose(together.mean_square_height, np.mean(single, 0), rtol=1e-12)
 
 
-def test_a_map_has_the_spectrum_it_was_made_from():
+@pytest.fixture(scope="module")
+def maps():
+    """Four maps that are not periodic, each cut from a larger one."""
     spectrum = self_affine.SelfAffine(0.8, 6e4, 1e-22, 1e3, 1e9)
-    n, pitch = 512, 1e-6
-    k = 2 * np.pi * np.fft.fftfreq(2 * n, pitch)
-    q = np.hypot(k[:, None], k)
-    amplitude = np.sqrt(self_affine.psd_2d(spectrum, q)) * (2 * np.pi) / pitch * 2 * n
-    rng, inside = np.random.default_rng(7), []
-    for _ in range(4):
-        white = np.fft.fft2(rng.standard_normal((2 * n, 2 * n))) / (2 * n)
-        height = np.fft.ifft2(white * amplitude).real[:n, :n] / pitch * pitch
-        axis = pitch * np.arange(n)
-        found = psd_2d(xr.Dataset({"height": (("y", "x"), height)}, {"y": axis, "x": axis}))
+    n, pitch, rng = 512, 1e-6, np.random.default_rng(7)
+    larger = [synthesise_map(spectrum, points=2 * n, pitch=pitch, rng=rng) for _ in range(4)]
+    return spectrum, xr.concat([one.isel(y=slice(n), x=slice(n)) for one in larger], "scan")
+
+
+def test_a_map_has_the_spectrum_it_was_made_from(maps):
+    spectrum, stack = maps
+    inside = []
+    for scan in range(4):
+        found = psd_2d(stack.isel(scan=scan))
         assert found.attrs["parseval_error"] < 1e-10
         use = found.wavenumber.values < 1e6
         truth = self_affine.psd_2d(spectrum, found.wavenumber.values)
         inside.append(covered(found, truth, "psd_2d")[use])
     assert np.mean(np.concatenate(inside)) >= 0.85
+
+
+def test_maps_of_one_surface_are_averaged_and_narrow_the_band(maps):
+    spectrum, stack = maps
+    together, single = psd_2d(stack), [psd_2d(stack.isel(scan=scan)) for scan in range(4)]
+    mean = np.mean([one.psd_2d for one in single], axis=0)
+    np.testing.assert_allclose(together.psd_2d, mean, rtol=1e-12)
+    np.testing.assert_allclose(together.independent_values, 4 * single[0].independent_values)
+    assert together.attrs["scans"] == 4 and together.attrs["parseval_error"] < 1e-10
+    widths = [np.log(one.psd_2d_high / one.psd_2d_low).values for one in (together, single[0])]
+    assert (widths[0] < 0.6 * widths[1]).all()
+    truth = self_affine.psd_2d(spectrum, together.wavenumber.values)
+    use = together.wavenumber.values < 1e6
+    assert covered(together, truth, "psd_2d")[use].mean() >= 0.85

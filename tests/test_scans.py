@@ -228,3 +228,30 @@ def test_a_map_with_a_hole_is_refused(tmp_path):
     path.write_text("0,0,1\n1,0,1\n0,1,1\n")
     with pytest.raises(ReadError, match="do not fill"):
         read_scans(path, instrument="nanovea_map")
+
+
+def write_map(path, size=(16, 20), step=0.001, seed=1):
+    y, x = np.mgrid[: size[0], : size[1]] * step
+    z = np.random.default_rng(seed).normal(size=size)
+    rows = zip(x.ravel(), y.ravel(), z.ravel(), strict=True)
+    path.write_text("".join(f"{a:.4f},{b:.4f},{c:.4f}\n" for a, b, c in rows))
+    return z
+
+
+def test_maps_alike_are_stacked(tmp_path):
+    heights = [write_map(tmp_path / f"map_{n}.txt", seed=n) for n in (1, 2, 3)]
+    scans = read_scans(tmp_path / "map_*.txt", instrument="nanovea_map")
+    assert scans.height.dims == ("scan", "y", "x")
+    assert scans.file.values.tolist() == ["map_1.txt", "map_2.txt", "map_3.txt"]
+    np.testing.assert_allclose(scans.height, 1e-6 * np.array(heights), atol=1e-10)
+
+
+def test_maps_that_differ_are_not_stacked(tmp_path):
+    files = [tmp_path / name for name in ("a.txt", "b.txt", "c.txt")]
+    write_map(files[0])
+    write_map(files[1], size=(18, 20))
+    write_map(files[2], step=0.002)
+    for other, words in ((1, "18 points of 1 um.*16 points of 1 um"), (2, "of 2 um.*of 1 um")):
+        with pytest.raises(ReadError, match=words):
+            read_scans([files[0], files[other]], instrument="nanovea_map")
+    assert len(read_scans(files, instrument="nanovea_map", stack=False)) == 3

@@ -185,17 +185,21 @@ def _adhesion(
 
     Zero pressure is the limit of vanishing load, in which gamma_eff(1) tells of a pull-off force.
     """
+    from scipy.interpolate import PchipInterpolator
+
     from tribolab.contact.adhesion import adhesion
     from tribolab.contact.hertz import jkr_half_width
 
     at_loads = np.array([]) if loads is None else loads.pressure.values
     pressures = np.concatenate([[0.0], at_loads, grid])
+    # a band is smooth, so a third of the grid tells it
+    bounding = np.concatenate([[0.0], at_loads, grid[::3]])
     spectra = _bounds(psd)
     curves, points = [], []
     for medium in surface.media:
         found = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
         curve = found.isel(pressure=slice(1 + at_loads.size, None))
-        curves.append(curve[["contact_area_ratio", "area_enhancement"]])
+        curve = curve[["contact_area_ratio", "area_enhancement"]]
         rest, under_load = found.isel(pressure=0), found.isel(pressure=slice(1, 1 + at_loads.size))
         point = under_load[
             [
@@ -214,14 +218,17 @@ def _adhesion(
         point["macroscopic_work_of_adhesion"] = macroscopic
         point["pull_off"] = np.int8(macroscopic > 0)
         for ending, work in (("_low", medium.low), ("_high", medium.high)):
-            bound = adhesion(pressures[: 1 + at_loads.size], spectra[ending], modulus, max(work, 0))
+            bound = adhesion(bounding, spectra[ending], modulus, max(work, 0))
+            areas = bound.contact_area_ratio.values
+            through = PchipInterpolator(np.log(grid[::3]), np.log(areas[1 + at_loads.size :]))
+            outer = np.minimum if ending == "_low" else np.maximum
+            edge = outer(np.exp(through(np.log(grid))), curve.contact_area_ratio.values)
+            curve[f"contact_area_ratio{ending}"] = ("pressure", edge)
             point[f"work_of_adhesion{ending}"] = work
-            point[f"contact_area_ratio{ending}"] = (
-                "load",
-                bound.contact_area_ratio.values[1:],
-            )
+            point[f"contact_area_ratio{ending}"] = ("load", areas[1 : 1 + at_loads.size])
             at_rest = float(bound.effective_work_of_adhesion[0, 0])
             point[f"macroscopic_work_of_adhesion{ending}"] = at_rest
+        curves.append(curve)
         if loads is not None and contact is not None:
             point = point.assign_coords(load=loads["load"]).drop_vars("pressure", errors="ignore")
             half = jkr_half_width(loads["load"].values, contact, macroscopic)

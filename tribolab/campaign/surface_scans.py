@@ -74,21 +74,18 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
     sound = [path for path in scans if found[path].status not in _FAILED] or list(scans)
     usual = Counter(shapes[path] for path in sound).most_common(1)[0][0]
     alike = [path for path in sound if shapes[path] == usual]
-    chosen = alike[:1] if usual[2] else alike  # maps cannot be averaged
     for path in scans:
-        if path in chosen:
+        if path in alike:
             continue
         why, severity = "it differs in pitch or length", "suspect"
-        if path in alike:
-            why = "one map is used"
-        elif path not in sound:  # the failure itself is a finding already
+        if path not in sound:  # the failure itself is a finding already
             why, severity = "its checks failed", "note"
         findings.append(Finding(severity, f"scan {label[path]} is left out: {why}"))
-    quality = max((found[path].status for path in chosen), key=STATUSES.index)
+    quality = max((found[path].status for path in alike), key=STATUSES.index)
     if quality in _FAILED:
         text = "no scan passed its checks, so all that follows from them is marked"
         findings.append(Finding("note", text))
-    together = stacked(chosen, [scans[path] for path in chosen])
+    together = stacked(alike, [scans[path] for path in alike])
     filled = fill_dropouts(together)
     if number := filled.attrs["dropouts"]:
         share = 100 * filled.attrs["dropout_share"]
@@ -96,7 +93,7 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         findings.append(Finding("note", text))
     rows = [{"scan": label[path]} | row for path, said in found.items() for row in said.rows]
     checks = [{key: row[key] for key in _ROW} for row in rows]
-    flagged = [found[path].flagged for path in chosen]
+    flagged = [found[path].flagged for path in alike]
     return CheckedScans(filled, _with_flags(together, flagged), findings, quality, checks)
 
 
@@ -121,7 +118,9 @@ def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding
 
 
 def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
-    return tuple(scan.sizes.items()), f"{scan.attrs['pitch_m']:.4g}", "y" in scan.dims
+    """Points and extent along each direction."""
+    extent = tuple(f"{float(np.ptp(scan[dim].values)):.4g}" for dim in scan.height.dims)
+    return tuple(scan.sizes.items()), extent
 
 
 def _objections(label: str, said: Findings) -> list[Finding]:

@@ -52,7 +52,8 @@ def read_scans(
     -------
     xarray.Dataset or list of xarray.Dataset
         Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
-        names as ``file`` (scan). One map: ``height`` [m] (y, x). Missing heights are NaN.
+        names as ``file`` (scan). One map: ``height`` [m] (y, x), several: (scan, y, x). Missing
+        heights are NaN.
         Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
         ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
         has them. Attributes that differ between stacked scans are joined by ``"; "``.
@@ -196,28 +197,35 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
         If they differ in pitch or length, or one of several is a map.
     """
     maps = [file for file, scan in zip(files, scans, strict=True) if "y" in scan.dims]
-    if maps and len(scans) > 1:
+    if maps and len(maps) < len(scans):
         raise ReadError(
-            f"{maps[0]}: a map cannot be stacked with other scans; read them with stack=False"
+            f"{maps[0]}: a map cannot be stacked with profiles; read them with stack=False"
         )
-    if maps:
-        return stamp(scans[0])
     first = scans[0]
+    if maps and len(scans) == 1:
+        return stamp(first)
+    dims = tuple(str(dim) for dim in first.height.dims)
     for file, scan in zip(files[1:], scans[1:], strict=True):
-        points, pitch = first.sizes["x"], first.attrs["pitch_m"]
-        drift = abs(scan.attrs["pitch_m"] - pitch) * points
-        if scan.sizes["x"] != points or drift > 0.5 * pitch:
+        for dim in dims:
+            points, length = first.sizes[dim], float(np.ptp(first[dim].values))
+            drift = abs(float(np.ptp(scan[dim].values)) - length) if points > 1 else 0.0
+            if scan.sizes[dim] == points and drift <= 0.5 * length / max(points - 1, 1):
+                continue
+            found, usual = (
+                1e6 * float(np.ptp(one[dim].values)) / max(one.sizes[dim] - 1, 1)
+                for one in (scan, first)
+            )
             raise ReadError(
-                f"{file}: {scan.sizes['x']} points of {scan.attrs['pitch_m'] * 1e6:.6g} um, but "
-                f"{files[0].name} has {points} points of {pitch * 1e6:.6g} um; scans of different "
+                f"{file}: {scan.sizes[dim]} points of {found:.6g} um, but "
+                f"{files[0].name} has {points} points of {usual:.6g} um; scans of different "
                 "pitch or length are read with stack=False"
             )
     height = np.stack([scan.height.values for scan in scans])
     data = xr.Dataset(
-        {"height": (("scan", "x"), height)},
+        {"height": (("scan", *dims), height)},
         {
             "scan": np.arange(len(scans)),
-            "x": first.x.values,
+            **{dim: first[dim].values for dim in dims},
             "file": ("scan", [file.name for file in files]),
         },
     )

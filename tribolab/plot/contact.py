@@ -81,7 +81,8 @@ def adhesive_area(
     contacts
         As for `contact_area`.
     adhesions
-        ``contact_area_ratio`` (medium, pressure) by the surface's name.
+        ``contact_area_ratio`` (medium, pressure), with ``_low`` and ``_high`` where known, by the
+        surface's name.
     loads, surfaces, title
         As for `contact_area`.
 
@@ -101,9 +102,14 @@ def adhesive_area(
                 columns = {column("pressure"): p, "contact_area_ratio": area}
                 figure.keep("contact area", f"{name}, no adhesion", **columns)
             for medium in found.medium.values.tolist():
-                p, area = found.pressure.values, found.contact_area_ratio.sel(medium=medium).values
-                axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
+                one, p = found.sel(medium=medium), found.pressure.values
+                area = one.contact_area_ratio.values
                 columns = {column("pressure"): p, "contact_area_ratio": area}
+                if "contact_area_ratio_low" in one:
+                    low, high = (one[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
+                    band(axes, p, low, high, chosen[name])
+                    columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
+                axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
                 figure.keep("contact area", f"{name}, {medium}", **columns)
         name_surfaces(axes, chosen)
         name_style(axes, "no adhesion", linestyle=":")

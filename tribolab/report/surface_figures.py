@@ -200,7 +200,8 @@ _KINDS = {
     "adhesive_area": _Kind(
         "adhesion",
         "Contact area with adhesion",
-        "Dotted: without adhesion; dashed: dry. Grey: mean Hertz pressures of the loads.",
+        "Dotted: without adhesion; dashed: dry. Shaded: what the bands of spectrum and work of "
+        "adhesion allow. Grey: mean Hertz pressures of the loads.",
         _adhesive_area,
     ),
     "gaps": _Kind(

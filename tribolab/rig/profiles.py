@@ -87,6 +87,7 @@ def scans(
         surface=known.name,
         origin=xu2026.STAND_IN,
         radius_m=radius,
+        tip_radius_m=tool.tip_radius,
         rms_roughness_m=known.rms_roughness,
         rms_slope=known.rms_slope,
         variance_in_band_m2=rough.attrs["variance_in_band_m2"],

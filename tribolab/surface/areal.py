@@ -17,12 +17,12 @@ _FEWEST = 16
 def psd_2d_of_map(
     scan: xr.Dataset, *, form: str = "auto", bins_per_decade: float = 12
 ) -> xr.Dataset:
-    """Radially averaged power spectrum of a map of heights.
+    """Radially averaged power spectrum of a map of heights, or of several alike.
 
     Parameters
     ----------
     scan
-        ``height`` [m] (y, x), evenly spaced, without dropouts.
+        ``height`` [m] (y, x) or (scan, y, x), evenly spaced, without dropouts.
     form
         What to take away first: ``"auto"`` (a polynomial of second order unless form was removed
         before), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
@@ -33,7 +33,8 @@ def psd_2d_of_map(
     -------
     xarray.Dataset
         As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
-        that along x, and both it and the mean hide what a lay of the surface does.
+        that along x, and both it and the mean hide what a lay of the surface does. Of several
+        maps the spectra are averaged.
 
     Raises
     ------
@@ -50,20 +51,25 @@ def psd_2d_of_map(
     if form == "auto":
         form = "none" if "form_removed" in scan.attrs else "polynomial"
     scan = remove_form(scan, "mean" if form == "none" else form)
-    height = scan.height.transpose("y", "x").values
-    if min(height.shape) < _FEWEST:
-        raise AnalysisError(f"psd_2d: a map of {height.shape} points is too small for a spectrum")
+    height = scan.height.transpose(..., "y", "x").values
+    size = height.shape[-2:]
+    height = height.reshape(-1, *size)
+    if min(size) < _FEWEST:
+        raise AnalysisError(f"psd_2d: a map of {size} points is too small for a spectrum")
     if not np.isfinite(height).all():
         raise AnalysisError("psd_2d: the map holds NaN; fill the dropouts with fill_dropouts()")
-    if not np.ptp(height) > 0:
+    if not np.ptp(height, axis=(1, 2)).all():
         raise AnalysisError("psd_2d: all heights are equal, there is no roughness to transform")
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
-    tapered = height * np.outer(window(height.shape[0]), window(height.shape[1]))
-    power = np.abs(np.fft.fft2(tapered)) ** 2
-    scale = steps[0] * steps[1] / (4 * np.pi**2 * height.size)
-    ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(height.shape, steps, strict=True))
+    taper = np.outer(window(size[0]), window(size[1]))
+    power, whole = np.zeros(size), 0.0
+    for one in height:  # one transform at a time: maps are large
+        power += np.abs(np.fft.fft2(one * taper)) ** 2 / len(height)
+        whole += float(np.mean((one * taper) ** 2)) / len(height)
+    scale = steps[0] * steps[1] / (4 * np.pi**2 * taper.size)
+    ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
-    spacing = max(2 * np.pi / (n * d) for n, d in zip(height.shape, steps, strict=True))
+    spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
     bins = log_bins(int(min(np.pi / d for d in steps) / spacing), 3, bins_per_decade, 1)
     edges = bins.edges * spacing
     index = np.digitize(q.ravel(), edges) - 1
@@ -73,12 +79,11 @@ def psd_2d_of_map(
     mean = np.bincount(index, power.ravel()[inside], bins.starts.size) * scale / lines
     node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
-    independent = np.maximum(0.5 * lines / correlated, 1.0)
+    independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
     low, high = confidence_band(mean, independent)
     known = np.arange(node.size) > 0  # the first annulus is what form and window take
-    cell = (2 * np.pi) ** 2 / (height.size * steps[0] * steps[1])
+    cell = (2 * np.pi) ** 2 / (taper.size * steps[0] * steps[1])
     along_x, along_y = (power * kx**2).sum(), (power * ky[:, None] ** 2).sum()
-    whole = float(np.mean(tapered**2))
     data = xr.Dataset(
         {
             "psd_2d": ("wavenumber", mean[known]),
@@ -92,7 +97,7 @@ def psd_2d_of_map(
     attrs = {
         **scan.attrs,
         "convention": "<h^2> = 2 pi int q C dq",
-        "scans": 1,
+        "scans": len(height),
         "mean_square_height_m2": whole,
         "anisotropy": float(np.sqrt(along_y / along_x)),
         "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),

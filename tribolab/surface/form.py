@@ -70,8 +70,8 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     Parameters
     ----------
     scans
-        Profiles: ``height`` [m] (..., x). Maps: ``height`` (y, x), from which ``"tilt"`` takes a
-        plane and ``"polynomial"`` a polynomial of both coordinates.
+        Profiles: ``height`` [m] (..., x). Maps: ``height`` (..., y, x), from which ``"tilt"``
+        takes a plane and ``"polynomial"`` a polynomial of both coordinates.
     form
         ``"mean"``, ``"tilt"``, ``"circle"`` (which takes tilt too: a tilted circle is a circle)
         or ``"polynomial"``.
@@ -215,7 +215,7 @@ def _circle(
 
 
 def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
-    height = scans.height.transpose("y", "x")
+    height = scans.height.transpose(..., "y", "x")
     x, y = ((c - c.mean()) / max(np.ptp(c) / 2, 1e-300) for c in (scans.x.values, scans.y.values))
     vander = np.polynomial.legendre.legvander
     terms = [
@@ -223,8 +223,9 @@ def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
         for i in range(order + 1)
         for j in range(order + 1 - i)
     ]
-    basis, row = np.stack(terms, axis=-1), height.values.reshape(1, -1)
-    flat = row - _least_squares(row, basis) @ basis.T
-    history = _with(scans, f"removed a polynomial of order {order} from the map")
+    basis, rows = np.stack(terms, axis=-1), height.values.reshape(-1, y.size * x.size)
+    flat = rows - _least_squares(rows, basis) @ basis.T
+    which = "the map" if len(rows) == 1 else f"{len(rows)} maps"
+    history = _with(scans, f"removed a polynomial of order {order} from {which}")
     result = scans.assign(height=height.copy(data=flat.reshape(height.shape)))
     return result.assign_attrs(history=history)

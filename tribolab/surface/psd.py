@@ -148,7 +148,7 @@ def psd_2d(
     Parameters
     ----------
     scans
-        Profiles, a map (y, x), or the 1D spectrum that `psd_1d` gave.
+        Profiles, a map (y, x), maps (scan, y, x), or the 1D spectrum that `psd_1d` gave.
     form, bins_per_decade, tip_radius
         As for `psd_1d`; from a map a polynomial of second order is taken.
 

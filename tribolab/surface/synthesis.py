@@ -1,4 +1,4 @@
-"""Random Gaussian profiles with a given isotropic spectrum."""
+"""Random Gaussian profiles and maps with a given isotropic spectrum."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
-from tribolab.surface.self_affine import SelfAffine, psd_1d, rms_roughness
+from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_roughness
 
 
 def synthesise_profiles(
@@ -76,5 +76,68 @@ def synthesise_profiles(
         lowest_wavenumber_1_m=float(k[0]),
         highest_wavenumber_1_m=float(k[-1]),
         variance_in_band_m2=float(variance.sum()),
+        variance_of_spectrum_m2=rms_roughness(spectrum) ** 2,
+    )
+
+
+def synthesise_map(
+    spectrum: SelfAffine,
+    *,
+    points: int,
+    pitch: float,
+    rng: np.random.Generator | int | None = None,
+) -> xr.Dataset:
+    """Draw a square map of a random Gaussian surface with the given isotropic spectrum.
+
+    Parameters
+    ----------
+    spectrum
+        The surface.
+    points, pitch
+        Number of points along each side, and their distance [m].
+    rng
+        Generator or seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (y, x), with zero mean, periodic over ``points * pitch`` along both axes.
+        The attributes are those of `synthesise_profiles`.
+
+    Raises
+    ------
+    AnalysisError
+        If there are fewer than four points or the pitch is not positive.
+
+    Notes
+    -----
+    White noise, filtered by ``(2 pi / pitch) sqrt(C(q))``. Only the waves that fit the square
+    are there, on a lattice with the step ``2 pi / (points * pitch)``.
+
+    Examples
+    --------
+    >>> rough = SelfAffine(hurst=0.8, rolloff=5e4, plateau=1e-22, low=6e3, high=7e5)
+    >>> surface = synthesise_map(rough, points=256, pitch=1e-6, rng=1)
+    >>> surface.height.dims, surface.height.shape
+    (('y', 'x'), (256, 256))
+    """
+    if points < 4 or pitch <= 0:
+        raise AnalysisError("synthesise_map: at least 4 points and a positive pitch")
+    rng = np.random.default_rng(rng)
+    k = 2 * np.pi * np.fft.fftfreq(points, pitch)
+    q = np.hypot(k[:, None], np.abs(k[: points // 2 + 1]))
+    c = psd_2d(spectrum, q)
+    step = 2 * np.pi / (points * pitch)
+    white = np.fft.rfft2(rng.standard_normal((points, points)))
+    height = np.fft.irfft2(white * (2 * np.pi / pitch) * np.sqrt(c), s=(points, points))
+    twice = np.ones(q.shape[1])  # how often a column stands for itself and its mirror image
+    twice[1 : (points + 1) // 2] = 2
+    x = pitch * np.arange(points, dtype=float)
+    inside = q[c > 0]
+    return stamp(
+        xr.Dataset({"height": (("y", "x"), height)}, {"y": x, "x": x}),
+        lowest_wavenumber_1_m=float(inside.min(initial=np.inf)),
+        highest_wavenumber_1_m=float(inside.max(initial=0.0)),
+        variance_in_band_m2=float((c * twice).sum() * step**2),
         variance_of_spectrum_m2=rms_roughness(spectrum) ** 2,
     )
