@@ -26,6 +26,7 @@ _PUBLIC = {
     "find_segments": "tribolab.friction.segments",
     "friction_coefficient": "tribolab.friction.coefficient",
     "half_loops": "tribolab.friction.coefficient",
+    "stick_slip": "tribolab.friction.stick_slip",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
     "read_scans": "tribolab.io.scans",
@@ -67,6 +68,7 @@ __all__ = [
     "find_segments",
     "friction_coefficient",
     "half_loops",
+    "stick_slip",
     "measured_stribeck_curve",
     "check",
     "read_scans",
@@ -115,6 +117,7 @@ if TYPE_CHECKING:
     from tribolab.errors import TribolabError
     from tribolab.friction.coefficient import friction_coefficient, half_loops
     from tribolab.friction.segments import find_segments
+    from tribolab.friction.stick_slip import stick_slip
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read

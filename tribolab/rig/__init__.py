@@ -6,6 +6,7 @@ from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stic
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import SimulatedRun, simulate_run
+from tribolab.rig.traces import simulate_trace
 from tribolab.rig.truth import Truth, read_truth
 
 __all__ = [
@@ -29,5 +30,6 @@ __all__ = [
     "scans",
     "simulate_campaign",
     "simulate_run",
+    "simulate_trace",
     "stick_slip",
 ]

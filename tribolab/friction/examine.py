@@ -1,0 +1,80 @@
+"""One record seen whole: oscillation, events and form at the scale of its own period."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.events import Events, find_events, without_spikes
+from tribolab.friction.noise import noise_level, quantisation_step
+from tribolab.friction.oscillation import Oscillation, oscillation
+from tribolab.friction.spectra import Record, coarse, make_record
+from tribolab.friction.waveform import Waveform, describe_waveform
+
+PER_PERIOD = 48  # samples in a period that events are sought in: more is averaged
+MOST = 1 << 19  # samples that events are sought in: tens of thousands of periods
+STEPS = 1.5  # quantisation steps
+
+
+class Limits(NamedTuple):
+    """What an event has to exceed, and what is looked at; see `stick_slip`."""
+
+    hysteresis: float = 0.4
+    noise_levels: float = 4.0
+    fewest_samples: int = 16
+
+
+DEFAULT = Limits()
+
+
+class Examined(NamedTuple):
+    """What a record holds; numbers carry the signal's unit."""
+
+    oscillation: Oscillation
+    events: Events
+    waveform: Waveform
+    hysteresis: float
+    sample_noise: float
+    spike_share: float
+    force: bool = False
+
+
+def examine(
+    time: np.ndarray, values: np.ndarray, limits: Limits = DEFAULT, *, force: bool = False
+) -> Examined | str:
+    """Look at one record; text where there is nothing to see, saying why.
+
+    Parameters
+    ----------
+    time, values
+        [s], friction positive in the sense of resistance (time).
+    limits
+        What counts.
+    force
+        Whether the values are a force [N]; for the record.
+    """
+    record = make_record(time, values)
+    n = record.values.size
+    if n < max(limits.fewest_samples, 4):
+        return f"{n} samples are too few"
+    if np.ptp(record.values) <= 1e-12 * abs(record.values[0]):
+        return "the signal is constant"
+    noise, spikes = noise_level(record.values[: 1 << 17]), 0
+    if n <= 2 * MOST:
+        kept, spikes = without_spikes(record.values, noise)
+        record = record._replace(values=kept)
+    found = oscillation(record)
+    if found is None:
+        return "too short for a spectrum"
+    size = max(1, int(1 / (found.frequency * PER_PERIOD * record.spacing)))
+    part = Record(record.time[: MOST * size], record.values[: MOST * size], *record[2:])
+    view = coarse(part, size)
+    step = quantisation_step(record.values)
+    hysteresis = max(
+        limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
+    )
+    events = find_events(view.time, view.values, hysteresis)
+    lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
+    form = describe_waveform(view.values, lag, events)
+    return Examined(found, events, form, hysteresis, noise, spikes / n, force)
