@@ -25,7 +25,8 @@ _OF_NOISE = (
     "mains_frequency",
     "mains_amplitude",
 )
-_ALIKE = 0.2  # a scatter of periods above which cycles may have been missed or split
+_DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
+_ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
 _AGREE = 0.15  # drops and spectrum agree on the period to this
 
 
@@ -67,10 +68,13 @@ class Row(NamedTuple):
 
 
 def class_of(found: Examined | str) -> str:
-    """Return the most probable class of waveform."""
+    """Return the class of waveform: smooth sliding unless that is improbable."""
     if isinstance(found, str):
         return NOT_EVALUATED
-    return CLASSES[int(np.argmax(_probability(found)))]
+    probability = _probability(found)
+    if probability[0] > _DOUBT:
+        return CLASSES[0]
+    return CLASSES[1 + int(np.argmax(probability[1:]))]
 
 
 def _probability(found: Examined) -> np.ndarray:
@@ -99,7 +103,10 @@ def _row(e: Examined, speed: float, load: float) -> Row:
     frequency, error = o.frequency, o.frequency_error
     # drops tell the period better than the spectrum does, where periods are alike and the two agree
     alike = period.size > 1 and w.period_scatter < _ALIKE
-    if alike and abs(1 / (period.mean() * frequency) - 1) < _AGREE:
+    if period.size and class_of(e) == CLASSES[3]:  # no line in the spectrum to speak of
+        frequency = 1 / float(period.mean())
+        error = frequency * w.period_scatter / np.sqrt(period.size)
+    elif alike and abs(1 / (period.mean() * frequency) - 1) < _AGREE:
         frequency = 1 / float(period.mean())
         error = frequency * w.period_scatter / np.sqrt(period.size)
     slope = np.nan

@@ -59,7 +59,7 @@ def stick_slip(
     run: xr.Dataset,
     segments: xr.Dataset,
     *,
-    hysteresis: float = 0.4,
+    hysteresis: float = 0.5,
     noise_levels: float = 4.0,
     fewest_samples: int = 16,
 ) -> xr.Dataset:

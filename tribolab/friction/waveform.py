@@ -93,17 +93,17 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([5.20, -6.11, 0.67, 0.24])
+INTERCEPT = np.array([5.22, -6.00, 0.67, 0.11])
 COEFFICIENTS = {
-    "prominence": np.array([-0.36, -0.14, 0.44, 0.05]),
-    "significance": np.array([-0.21, 0.68, 0.26, -0.74]),
-    "strength": np.array([-1.57, -1.64, 2.01, 1.20]),
-    "share": np.array([-3.04, 0.82, 1.75, 0.47]),
-    "harmonics": np.array([0.42, 1.47, -2.49, 0.60]),
-    "asymmetry": np.array([-9.90, 17.74, -9.88, 2.04]),
-    "reversal": np.array([-0.48, -0.09, -0.02, 0.59]),
-    "skewness": np.array([1.26, -1.43, 0.74, -0.57]),
-    "scatter": np.array([1.94, 0.71, -2.73, 0.08]),
+    "prominence": np.array([-0.37, -0.14, 0.44, 0.07]),
+    "significance": np.array([-0.20, 0.68, 0.27, -0.75]),
+    "strength": np.array([-1.56, -1.68, 2.01, 1.22]),
+    "share": np.array([-3.08, 0.91, 1.69, 0.47]),
+    "harmonics": np.array([0.48, 1.39, -2.49, 0.62]),
+    "asymmetry": np.array([-9.83, 17.32, -9.57, 2.08]),
+    "reversal": np.array([-0.46, -0.10, -0.03, 0.59]),
+    "skewness": np.array([1.31, -1.46, 0.75, -0.59]),
+    "scatter": np.array([1.79, 0.72, -2.74, 0.23]),
 }
 
 
