@@ -77,6 +77,11 @@ def class_of(found: Examined | str) -> str:
     return CLASSES[1 + int(np.argmax(probability[1:]))]
 
 
+def most_probable(found: Examined) -> str:
+    """Return the class of highest probability, whether or not it is claimed."""
+    return CLASSES[int(np.argmax(_probability(found)))]
+
+
 def _probability(found: Examined) -> np.ndarray:
     return class_probabilities(features(found.waveform, found.oscillation))
 

@@ -16,6 +16,7 @@ from tribolab.friction.slip_table import (
     class_of,
     class_table,
     event_list,
+    most_probable,
     oscillates,
     spectra,
     table,
@@ -227,8 +228,11 @@ def _remark(found: Examined | str, cut: bool) -> str:
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
     if oscillates(found) and found.waveform.events < 3:
         words.append("fewer than three whole cycles")
-    if oscillates(found) and found.oscillation.share < 0.5:
+    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
         words.append("noise and spikes hold more of the fluctuation than the oscillation")
+    likely = most_probable(found)
+    if likely != class_of(found):
+        words.append(f"not decided: {likely} is more probable, but smooth sliding not improbable")
     return "; ".join(words)
 
 
