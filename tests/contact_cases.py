@@ -1,6 +1,8 @@
 """What the contact tests share: the reference surfaces, the published numbers, one elastic body."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -8,8 +10,9 @@ import xarray as xr
 from hypothesis import settings
 
 from tribolab.contact.geometry import LineContact
+from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026
-from tribolab.surface.moments import rms_slope
+from tribolab.surface.moments import rms_roughness, rms_slope
 from tribolab.surface.self_affine import psd_2d
 
 # Same cases on every run, and no clock: the machine that runs the tests may be busy.
@@ -44,3 +47,37 @@ def target(shared: Path, quantity: str, surface: str, condition: str = "") -> fl
     rows = rows[rows["condition"].str.contains(condition, regex=False)]
     assert len(rows) == 1, f"{quantity}, {surface}, {condition}: {len(rows)} rows"
     return float(rows["published"].iloc[0])
+
+
+class RandomContact(NamedTuple):
+    """A lubricated contact anywhere in the range that the solver is made for."""
+
+    name: str
+    modulus: float  # E [Pa]
+    viscosity: float  # [Pa s]
+    load: float  # [N/m]
+    roughness: float  # h_rms [m]
+
+    def curve(self, speeds: int = 33, cells: int = 400) -> xr.Dataset:
+        """Over eight decades of speed; the surface is one of the paper's, stretched all ways."""
+        psd = reference_psd(self.name)
+        factor = self.roughness / rms_roughness(psd)
+        psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
+        return stribeck_curve(
+            LineContact(0.07, 0.1, self.modulus, 0.5),
+            psd,
+            self.viscosity,
+            self.load,
+            1e6,
+            np.geomspace(1e-9, 1e-1, speeds),
+            cells=cells,
+        )
+
+
+def random_contacts(number: int, seed: int) -> Iterator[RandomContact]:
+    """Draw contacts, evenly in the logarithms of all quantities."""
+    rng = np.random.default_rng(seed)
+    ranges = [(1e5, 1e9), (1e-3, 100), (310 / 30, 310 * 30), (1e-8, 50e-6)]
+    for _ in range(number):
+        values = [float(np.exp(rng.uniform(*np.log(ends)))) for ends in ranges]
+        yield RandomContact(SURFACES[rng.integers(3)], *values)

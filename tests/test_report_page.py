@@ -85,7 +85,7 @@ def hostile(tmp_path_factory):
 class Reader(HTMLParser):
     """Collects the elements of a page, and checks that they are closed in order."""
 
-    VOID = {"meta", "link", "img", "br", "input", "hr"}
+    VOID = {"meta", "link", "img", "br", "input", "hr", "wbr"}
 
     def __init__(self, text):
         super().__init__()
@@ -176,7 +176,7 @@ def test_nothing_in_a_name_runs(browser, hostile, tmp_path):
     )
     # without the policy too: escaping alone has to do
     assert answer(browser(with_probe(hostile, tmp_path, script), "--dump-dom")[0]) == [
-        2,
+        page_of(hostile).count("<script>") + 1,
         0,
         HOSTILE[0],
     ]

@@ -10,16 +10,18 @@ from hypothesis import strategies as st
 
 from tribolab.errors import AnalysisError, ReadError
 from tribolab.studies import xu2026
-from tribolab.studies.comparison import (
+from tribolab.studies.comparison import compare_with_paper
+from tribolab.studies.published import Published, find_published, read_published
+from tribolab.studies.verdict import (
     DIFFERS,
     INCONSISTENT,
+    MEASURED,
     REPRODUCED,
     Computed,
+    Measured,
     Own,
-    compare_with_paper,
     judge,
 )
-from tribolab.studies.published import Published, find_published, read_published
 
 
 @pytest.fixture(scope="module")
@@ -79,17 +81,36 @@ def test_what_is_no_number_is_refused(tmp_path):
         find_published(xu2026.published, "rms_slope", "Sb-X")
 
 
-def test_sections_of_flow_and_fits_are_left_out(compared):
-    left_out = {row.quantity for row in xu2026.published} - set(compared.quantity)
-    assert left_out == {
-        "effective_shear_stress_ratio",
-        "shear_stress",
-        "corrected_shear_stress",
-        "corrected_shear_stress_ratio",
-        "boundary_onset_speed",
-        "percolation_separation",
-    }
-    assert len(compared) == sum(row.quantity not in left_out for row in xu2026.published)
+def test_every_number_has_its_row(compared, shared):
+    targets = pd.read_csv(shared / "targets.csv")
+    columns = ["quantity", "surface", "condition"]
+    assert compared[columns].values.tolist() == targets[columns].values.tolist()
+    assert (compared.note.str.len() + compared.computed.str.len() > 0).all()
+    with pytest.raises(AnalysisError, match="did you mean 'rms_slope'"):
+        compare_with_paper([printed("1", quantity="rms_slopes")])
+
+
+def test_only_what_was_measured_is_not_computed(compared):
+    empty = compared[compared.computed == ""]
+    assert set(empty.quantity) == {"shear_stress", "effective_shear_stress_ratio"}
+    assert set(empty.status) == {MEASURED, INCONSISTENT}
+    assert empty.relative_difference.isna().all()
+    assert empty.note.str.contains("not public").all()
+
+
+def test_lubrication_gives_what_the_paper_prints(compared):
+    for quantity in ("percolation_separation", "boundary_onset_speed", "corrected_shear_stress"):
+        [row] = rows(compared, quantity).itertuples()
+        assert row.status == REPRODUCED, row
+    assert "0.079 to 0.12" in rows(compared, "percolation_separation").iloc[0].note
+
+
+def test_the_shear_stress_that_its_own_ratio_excludes_is_found(compared):
+    stresses = rows(compared, "shear_stress")
+    wrong = stresses[stresses.status == INCONSISTENT]
+    assert wrong[["surface", "condition"]].values.tolist() == [["Sb-R", "2110 N/m"]]
+    assert "2.01 to 2.12, not 1.75 to 1.95" in wrong.note.iloc[0]
+    assert "at 2110 N/m" in rows(compared, "corrected_shear_stress_ratio").note.iloc[0]
 
 
 @pytest.mark.parametrize(
@@ -133,6 +154,8 @@ def test_misprints_are_found_by_computing(compared):
         "half_width_with_adhesion",
         "separation_decay_alpha",
         "dry_over_glycerol_area",
+        "shear_stress",  # 0.98 MPa
+        "corrected_shear_stress_ratio",
     }
     assert list(wrong[wrong.quantity == "nominal_pressure"].published) == ["0.072 MPa"]
     width = rows(compared, "half_width_with_adhesion").iloc[0]
@@ -168,6 +191,16 @@ def test_other_numbers_of_the_paper_outweigh_agreement():
     assert judge(number, computed).status == REPRODUCED
     assert judge(number, computed, Own(0.49, 0.60, "fits")).status == REPRODUCED
     assert judge(number, computed, Own(0.55, 0.60, "it is not")).status == INCONSISTENT
+
+
+def test_ranges_are_judged_as_ranges():
+    number = printed("1.75 to 1.95")
+    assert number.ends == (1.75, 1.95)
+    assert judge(number, Computed(1.99, 0.0, low=1.9, high=2.1)).status == REPRODUCED
+    assert judge(number, Computed(2.2, 0.0, low=2.1, high=2.3)).status == DIFFERS
+    assert judge(number, Computed(1.8, 0.0), Own(1.94, 2.1, "")).status == REPRODUCED
+    assert judge(number, Computed(1.8, 0.0), Own(2.0, 2.1, "not so")).status == INCONSISTENT
+    assert judge(number, Measured("seen")) == (MEASURED, "seen")
 
 
 def test_bounds_are_judged_as_bounds():

@@ -50,6 +50,7 @@ _PUBLIC = {
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "fit_shear_stress": "tribolab.compare.shear_stress",
+    "model_uncertainty": "tribolab.compare.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
     "load_campaign": "tribolab.campaign.config",
@@ -92,6 +93,7 @@ __all__ = [
     "work_of_adhesion_spread",
     "stribeck_curve",
     "fit_shear_stress",
+    "model_uncertainty",
     "viscoelastic_friction",
     "read_modulus",
     "load_campaign",
@@ -105,6 +107,7 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.campaign.config import load_campaign
+    from tribolab.compare.model_uncertainty import model_uncertainty
     from tribolab.compare.shear_stress import fit_shear_stress
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty

@@ -206,6 +206,22 @@ _ROWS = [
     ("force_psd_background", "S_0", "N2/Hz", "noise beneath the power spectrum"),
     ("force_psd_significant", "S_p", "N2/Hz", "power that noise exceeds once in a thousand"),
     ("force_distance_psd", "S_x", "N2 m", "power spectrum over the sliding distance"),
+    # models of a campaign
+    ("friction_coefficient_model", "\\mu", "1", "computed friction coefficient"),
+    ("run_level", "", "1", "friction of a run relative to that of its repeats"),
+    (
+        "friction_without_factors",
+        "\\mu",
+        "1",
+        "friction coefficient without friction factors",
+    ),
+    # comparison: uncertainty of the model
+    ("friction_coefficient_varied", "\\mu", "1", "friction coefficient of a varied model"),
+    ("largest_change", "", "1", "largest change of friction over the height of the curve"),
+    ("largest_change_speed", "", "m/s", "sliding speed of the largest change"),
+    ("largest_relative_change", "", "1", "largest relative change of friction at one speed"),
+    ("largest_relative_change_speed", "", "m/s", "sliding speed of the largest relative change"),
+    ("shear_stress_change", "", "1", "relative change of the fitted shear stress"),
 ]
 
 QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}

@@ -183,6 +183,37 @@ class RunEntry(Table):
     """Overrides of [segments] for these runs."""
 
 
+class Model(Table):
+    """How the model Stribeck curves beside the measured ones are computed."""
+
+    compute: bool = True
+    """Whether they are computed."""
+    slowest: _positive_si("m/s", "1 nm/s") = 1e-9
+    """Lowest sliding speed."""
+    fastest: _positive_si("m/s", "10 cm/s") = 0.1
+    """Highest sliding speed."""
+    points: Annotated[int, Field(ge=5, le=200)] = 33
+    """Number of speeds, evenly over their logarithm."""
+    rough_body: Literal["stationary", "moving"] = "stationary"
+    """Which body is the rough one: it sets the sign of the shear flow factor."""
+    friction_factors: bool = True
+    """Whether the fluid's friction takes the friction factors of the roughness."""
+    fit_speeds: tuple[_positive_si("m/s", "1 um/s"), _positive_si("m/s", "1 cm/s")] | None = None
+    """Between which speeds the shear stress is fitted; by default all that were measured."""
+    uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
+    """For which loads of a surface the model's own uncertainty is computed."""
+
+    @model_validator(mode="after")
+    def _ends_are_in_order(self) -> Self:
+        for low, high, what in (
+            (self.slowest, self.fastest, "slowest and fastest"),
+            (*(self.fit_speeds or (0.0, 1.0)), "fit_speeds"),
+        ):
+            if not low < high:
+                raise ValueError(f"{what}: {low:g} m/s is not below {high:g} m/s")
+        return self
+
+
 class Qc(Table):
     """When a finding makes the whole run count as failed."""
 
@@ -217,6 +248,7 @@ class Campaign(Table):
     segments: Segments = Segments()
     friction: Friction = Friction()
     roughness: Roughness = Roughness()
+    model: Model = Model()
     surface: tuple[Surface, ...] = ()
     run: Annotated[tuple[RunEntry, ...], Field(min_length=1)]
     qc: Qc = Qc()

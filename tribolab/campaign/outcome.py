@@ -133,6 +133,42 @@ class SurfaceOutcome:
 
 
 @dataclass(frozen=True)
+class ModelOutcome:
+    """The model of one measured curve, with the shear stress that was fitted to it.
+
+    Parameters
+    ----------
+    name
+        That of the data file: ``model_`` and the curve's name.
+    curve, surface, medium, normal_force
+        The measured curve that it belongs to, as in its `CurveOutcome`.
+    parts
+        Names of the groups in the data file.
+    status, reason, error, data_file, reused, seconds
+        As for a run; "skipped" if the campaign file knows too little for a model.
+    """
+
+    name: str
+    curve: str
+    surface: str
+    medium: str
+    normal_force: float | None
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    parts: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a model."""
+        return self.status == "done"
+
+
+@dataclass(frozen=True)
 class Outcome:
     """Everything that a campaign came to.
 
@@ -149,6 +185,8 @@ class Outcome:
         that could not be read has the sha256 "".
     surfaces
         One record for each surface of the campaign file.
+    models
+        One record for each measured curve with a fluid, in the order of the curves.
     """
 
     campaign: Campaign
@@ -157,6 +195,7 @@ class Outcome:
     curves: tuple[CurveOutcome, ...]
     sources: tuple[tuple[str, str, int], ...]
     surfaces: tuple[SurfaceOutcome, ...] = ()
+    models: tuple[ModelOutcome, ...] = ()
 
     @property
     def failed(self) -> tuple[RunOutcome, ...]:

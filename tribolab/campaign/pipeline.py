@@ -1,4 +1,4 @@
-"""A whole campaign: runs and surfaces in workers, repeats combined into measured curves."""
+"""A whole campaign: runs, surfaces and models in workers, repeats combined into curves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.executor import WorkerDied, completed
-from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.campaign.model_plan import plan_models
+from tribolab.campaign.model_work import ModelTask, failed_model, known_model, process_model
+from tribolab.campaign.outcome import CurveOutcome, ModelOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
 from tribolab.campaign.surface_plan import plan_surfaces
@@ -41,6 +43,7 @@ from tribolab.provenance import sha256_of_file
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
+    from tribolab.campaign.outcome import SurfaceOutcome
 
 Progress = Callable[[str, int, int], None]
 
@@ -53,9 +56,9 @@ def process(
     previous: Path | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Process every run and surface of a campaign and combine the repeats.
+    """Process every run and surface, combine the repeats, and compute models beside them.
 
-    A run or a surface that fails is recorded with the reason; the others are done. Data files of
+    What fails is recorded with the reason; the rest is done. Data files of
     `previous` are taken over where raw files (by sha256), settings and version are the same.
 
     Parameters
@@ -74,7 +77,7 @@ def process(
     Returns
     -------
     Outcome
-        With one record per run, curve and surface.
+        With one record per run, curve, surface and model.
 
     Raises
     ------
@@ -102,6 +105,8 @@ def process(
     outcomes = tuple(record.outcome for record in ordered)
     surfaces = _surfaces(campaign, outcomes, staging, previous, executor, tell)
     curves = _curves(outcomes, staging, executor, tell)
+    found = [record.outcome for record in surfaces]
+    models = _models(campaign, curves, found, staging, previous, executor, tell)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
         part.unlink()
     return Outcome(
@@ -110,7 +115,8 @@ def process(
         runs=outcomes,
         curves=curves,
         sources=_unique(source for record in (*ordered, *surfaces) for source in record.sources),
-        surfaces=tuple(record.outcome for record in surfaces),
+        surfaces=tuple(found),
+        models=models,
     )
 
 
@@ -282,6 +288,40 @@ def _surfaces(
             records[task.surface.name] = future.result()
         tell("surfaces", len(records), len(planned))
     return tuple(records[surface.name] for surface in planned)
+
+
+def _models(
+    campaign: Campaign,
+    curves: Iterable[CurveOutcome],
+    surfaces: Iterable[SurfaceOutcome],
+    staging: Path,
+    previous: Path | None,
+    executor: Executor | None,
+    tell: Progress,
+) -> tuple[ModelOutcome, ...]:
+    """Compute the models beside the measured curves, or take them over."""
+    planned = plan_models(campaign, curves, surfaces, staging)
+    done: dict[str, ModelOutcome] = {}
+    for model in planned:
+        known = previous and known_model(previous / model.data_file, model)
+        if known:
+            try:
+                _link(previous / model.data_file, staging / model.data_file)
+            except FileNotFoundError:  # replaced by another process meanwhile: done anew
+                continue
+            done[model.name] = known
+    left = [ModelTask(model, staging) for model in planned if model.name not in done]
+    left.sort(key=lambda task: not task.model.uncertain)  # what takes longest begins first
+    for task, future in completed(executor, process_model, left):
+        error = future.exception()
+        if isinstance(error, OutputError):
+            raise error
+        if error is not None:  # the worker could not even say what went wrong
+            done[task.model.name] = failed_model(task.model, *explain(error))
+        else:
+            done[task.model.name] = future.result()
+        tell("models", len(done), len(planned))
+    return tuple(done[model.name] for model in planned)
 
 
 def _curve_name(surface: str, medium: str, load: float | None, alone: str) -> str:

@@ -20,6 +20,7 @@ from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.errors import OutputError, TribolabError
 from tribolab.provenance import sha256_of_file
+from tribolab.quantities import stamp
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,12 +118,15 @@ def process_curve(task: CurveTask) -> None:
     TribolabError
         If the runs make no curve.
     """
+    from tribolab.friction.repeatability import run_levels
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf
 
     with NETCDF:
         frictions = [read_netcdf(task.folder / name, group="friction") for name in task.data_files]
     curve = measured_stribeck_curve(frictions)
+    if len(frictions) > 1:
+        curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
     curve.attrs.update(_labels(task.curve), runs="; ".join(task.curve.run_names))
     write_data({None: curve}, task.folder / task.curve.data_file)
 

@@ -14,7 +14,7 @@ from scipy.special import comb
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, nearest
-from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.quantities import stamp
 from tribolab.units import positive, to_si
 
@@ -47,6 +47,11 @@ class ShearStressFit:
     valid_speed_range
         Ends [m/s] of the widest range of speeds that one sigma_f describes (chi-square's
         probability above 0.01 when fitted alone); NaN if none of four speeds or more does.
+    common_error
+        The part [Pa] of the standard error that all points have in common, such as the level of
+        the runs; not in `shear_stress_error`.
+    common_freedom
+        Degrees of freedom from which that part is known.
     area_enhancement, area_enhancement_error
         Real contact area with adhesion over that without [1], as given.
     curve
@@ -67,6 +72,8 @@ class ShearStressFit:
     birge_ratio: float
     runs_p_value: float
     valid_speed_range: tuple[float, float]
+    common_error: float
+    common_freedom: float
     area_enhancement: float
     area_enhancement_error: float
     error_from: str
@@ -75,15 +82,31 @@ class ShearStressFit:
     covariance: np.ndarray = field(repr=False)
 
     @property
+    def total_error(self) -> float:
+        """Standard error [Pa]: what the points scatter, inflated, with what they have in common."""
+        return float(np.hypot(self.shear_stress_error_inflated, self.common_error))
+
+    @property
+    def half_interval(self) -> float:
+        """Half the 95 % interval of sigma_f [Pa], with Student's t where errors are estimated.
+
+        The degrees of freedom of the sum are those of Welch and Satterthwaite.
+        """
+        parts = np.array([self.shear_stress_error_inflated, self.common_error]) ** 4
+        freedom = np.array([self.degrees_of_freedom, max(self.common_freedom, 1.0)])
+        total = self.total_error
+        return float(stats.t.ppf(0.975, total**4 / np.sum(parts / freedom)) * total)
+
+    @property
     def corrected_shear_stress(self) -> float:
         """Shear stress [Pa] in the area that adhesion makes: sigma_f / area_enhancement."""
         return self.shear_stress / self.area_enhancement
 
     @property
     def corrected_shear_stress_error(self) -> float:
-        """Standard error [Pa] of `corrected_shear_stress`, inflated by the Birge ratio."""
+        """Standard error [Pa] of `corrected_shear_stress`, from `total_error` and the area's."""
         return abs(self.corrected_shear_stress) * np.hypot(
-            self.shear_stress_error_inflated / self.shear_stress,
+            self.total_error / self.shear_stress,
             self.area_enhancement_error / self.area_enhancement,
         )
 
@@ -98,6 +121,9 @@ def fit_shear_stress(
     area_enhancement: float = 1.0,
     area_enhancement_error: float = 0.0,
     free: Sequence[str] = (),
+    common_error: float = 0.0,
+    common_freedom: float = np.inf,
+    curve: xr.Dataset | None = None,
     **model: Any,
 ) -> ShearStressFit:
     """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
@@ -115,6 +141,13 @@ def fit_shear_stress(
         Real contact area with adhesion over that without [1], and its standard error.
     free
         More parameters to fit: ``"viscosity"``, ``"youngs_modulus"``; their given values start.
+    common_error, common_freedom
+        Relative standard error [1] that all measured points share, such as the repeatability of
+        a run's level over the square root of the number of runs, and the degrees of freedom
+        behind it.
+    curve
+        The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
+        speeds (and others), with ``"0 Pa"``.
     **model
         Further arguments of `stribeck_curve`, such as ``rough_body``.
 
@@ -133,6 +166,8 @@ def fit_shear_stress(
     regression: ``sum w a (mu - mu_fluid) / sum w a^2``, ``error = 1/sqrt(sum w a^2)`` with w the
     points' 1/error^2. A point whose error is unknown or 0 gets the median of the others; if none
     is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
+    An error that all points share cannot be averaged away. It does not move the estimate; it moves
+    sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
     The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the inflation is
     Birge's [2]_.
 
@@ -164,6 +199,8 @@ def fit_shear_stress(
     speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
 
     def computed(extra: np.ndarray) -> xr.Dataset:
+        if curve is not None and not free:
+            return curve.sel(sliding_speed=speed)
         given = dict(zip(free, np.exp(extra), strict=True))
         body = replace(contact, youngs_modulus=given.get("youngs_modulus", contact.youngs_modulus))
         stress = "0 Pa"
@@ -171,8 +208,8 @@ def fit_shear_stress(
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
     best = _profiled(computed, start, mu[used], error[used], used) if free else start
-    curve = computed(best)
-    fluid, area = _parts(curve)
+    found = computed(best)
+    fluid, area = _parts(found)
     if not np.any(area[used] > 0):
         raise AnalysisError(
             "fit_shear_stress: at none of these speeds do the bodies touch; take lower speeds"
@@ -184,13 +221,12 @@ def fit_shear_stress(
         error = np.full_like(error, np.sqrt(np.sum(residual[used] ** 2) / freedom))
     chi_square = float(np.sum((residual[used] / error[used]) ** 2))
     birge = float(np.sqrt(chi_square / freedom))
-    jacobian = _jacobian(computed, best, stress, area, used)
-    covariance = _covariance(jacobian / error[used, None], stress, np.exp(best))
+    jacobian = _jacobian(computed, best, stress, area, used) / error[used, None]
+    covariance = _covariance(jacobian, np.exp(best))
+    level = ((fluid + stress * area) / error)[used]
+    shared = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
     spread = float(np.sqrt(covariance[0, 0]))
-    solid = stress * curve["friction_per_shear_stress"]
-    curve = curve.assign(
-        friction_coefficient_solid=solid,
-        friction_coefficient=curve["friction_coefficient"] + solid,
+    found = with_shear_stress(found, stress).assign(
         friction_coefficient_residual=("sliding_speed", residual),
         used=("sliding_speed", used.astype(int)),
     )
@@ -203,11 +239,13 @@ def fit_shear_stress(
         chi_square_p_value=float(stats.chi2.sf(chi_square, freedom)),
         birge_ratio=birge,
         runs_p_value=runs_p_value(residual[used]),
+        common_error=shared,
+        common_freedom=float(common_freedom),
         valid_speed_range=_valid_range(speed, mu, fluid, area, error, used),
         area_enhancement=enhancement,
         area_enhancement_error=float(area_enhancement_error),
         error_from=source,
-        curve=stamp(curve, shear_stress_Pa=stress),
+        curve=stamp(found),
         parameters={"shear_stress": stress, **dict(zip(free, np.exp(best).tolist(), strict=True))},
         covariance=covariance,
     )
@@ -318,7 +356,7 @@ def _jacobian(computed, best: np.ndarray, stress: float, area, used) -> np.ndarr
     return np.stack(columns, axis=1)
 
 
-def _covariance(weighted: np.ndarray, stress: float, extra: np.ndarray) -> np.ndarray:
+def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
     """Inverse of the normal matrix in SI; columns are scaled so that it is well conditioned."""
     size = np.linalg.norm(weighted, axis=0)
     inverse = np.linalg.pinv(weighted / size)

@@ -105,7 +105,8 @@ def stribeck_curve(
     -------
     xarray.Dataset
         Over ``sliding_speed`` (and ``load``): ``friction_coefficient`` and its parts
-        ``_couette``, ``_pressure`` and ``_solid``; ``friction_per_shear_stress`` [1/Pa], which
+        ``_couette``, ``_pressure`` and ``_solid``; ``friction_without_factors``, the coefficient
+        that `friction_factors` False gives; ``friction_per_shear_stress`` [1/Pa], which
         times sigma_f is the solid part; ``minimum_separation``, ``central_separation`` [m];
         ``contact_area_ratio`` [1], real area over that of the Hertz contact, 2 a L;
         ``solid_load_share`` [1]; and the proof of every point: ``residual``, ``load_balance``,
@@ -136,7 +137,8 @@ def stribeck_curve(
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
+    with threadpool_limits(1, user_api="blas"):
+        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
@@ -152,17 +154,16 @@ def stribeck_curve(
     data = xr.Dataset(parts, {"sliding_speed": speeds.values, "load": np.atleast_1d(loads.values)})
     if loads.ndim == 0:
         data = data.isel(load=0)
-    solid = stress * data["friction_per_shear_stress"]
-    data = data.assign(
-        friction_coefficient_solid=solid,
-        friction_coefficient=solid
-        + data["friction_coefficient_couette"]
-        + data["friction_coefficient_pressure"],
+    data = with_shear_stress(
+        data.assign(
+            friction_coefficient=data["friction_coefficient_couette"]
+            + data["friction_coefficient_pressure"]
+        ),
+        stress,
     )
     return stamp(
         data,
         viscosity_Pa_s=system.viscosity,
-        shear_stress_Pa=stress,
         youngs_modulus_Pa=contact.youngs_modulus,
         poisson_ratio=contact.poisson_ratio,
         radius_m=contact.radius,
@@ -173,6 +174,16 @@ def stribeck_curve(
         domain=float(domain),
         references=REFERENCE,
     )
+
+
+def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
+    """Add a shear stress sigma_f [Pa] to a curve of `stribeck_curve` that has none."""
+    solid = shear_stress * curve["friction_per_shear_stress"]
+    added = {
+        name: curve[name] + solid for name in ("friction_coefficient", "friction_without_factors")
+    }
+    curve = curve.assign(friction_coefficient_solid=solid, **added)
+    return stamp(curve, shear_stress_Pa=shear_stress)
 
 
 def film_profile(
@@ -202,10 +213,10 @@ def film_profile(
         ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``. The
         attributes hold the proof of the point and the ``flux`` [m2/s].
     """
-    system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
     force = positive(load, "N/m", "load")
     v = float(_speeds(speed, psd).values[0])
     with threadpool_limits(1, user_api="blas"):
+        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
         problem, (solution,) = _solve(system, force, np.array([abs(v)]))
     fields = solution.fields
     side = -1 if v < 0 else 1
@@ -334,10 +345,12 @@ def _curve(
     contact_length = _area(system, solid * problem.pressure) @ problem.mesh.width
     parts = [fluid_friction(problem, solution, friction_factors) for solution in solutions]
     middle = int(np.argmin(np.abs(problem.mesh.x)))
+    plain = [sum(fluid_friction(problem, solution, False)) for solution in solutions]
     real_length = contact_length * problem.half_width
     table = {
         "friction_coefficient_couette": np.array([part[0] for part in parts]),
         "friction_coefficient_pressure": np.array([part[1] for part in parts]),
+        "friction_without_factors": np.array(plain),
         "friction_per_shear_stress": real_length / force,
         "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
         "minimum_separation": film.min(axis=1) * problem.gap,

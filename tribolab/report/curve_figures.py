@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.plot.labels import force_text
 from tribolab.report.document import labels
+from tribolab.report.figure_files import save_figure
 from tribolab.report.tables import curve_table
 from tribolab.report.wording import many, plain_value, span, speeds
 
@@ -103,8 +104,6 @@ def draw_curves(task: CurveFigure) -> dict[str, str]:
 
     with _ALONE:
         data = [read_curve(task.folder, curve) for curve in task.curves]
-        figure = plot.stribeck(data, surfaces=task.surfaces, title=task.title)
-        plot.save(figure, task.folder / task.file)
     values = [v for curve in data for v in curve["friction_coefficient"].values.tolist()]
     speed = [v for curve in data for v in curve["sliding_speed"].values.tolist()]
     count = many(len(data), "measured curve")
@@ -112,4 +111,7 @@ def draw_curves(task: CurveFigure) -> dict[str, str]:
         f"Friction coefficient over sliding speed, {task.title}: {count} at {speeds(speed)}, "
         f"µ from {span(values)}."
     )
-    return {"file": task.file, "kind": task.kind, "caption": f"{task.title}. {_BARS}", "alt": alt}
+    caption = f"{task.title}. {_BARS}"
+    with _ALONE:
+        figure = plot.stribeck(data, surfaces=task.surfaces, title=task.title)
+        return save_figure(figure, task.folder, task.file, caption, alt) | {"kind": task.kind}

@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribolab.provenance import sha256_of_file
+from tribolab.report.judgement import THRESHOLDS
 from tribolab.report.wording import SYMBOLS, UNITS, many, plain_value, span
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
     from tribolab.report.run_summary import RunSummary
 
-SCHEMA_VERSION = "1.1"
+SCHEMA_VERSION = "1.2"
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -61,6 +62,7 @@ def report_document(
         "runs": runs,
         "curves": list(curves),
         "figures": list(figures),
+        "thresholds": THRESHOLDS,
         "findings": list(findings),
         "sources": [
             {"file": file, "sha256": checksum, "bytes": size}
@@ -108,7 +110,9 @@ _EMPTY: dict[str, Any] = {
     "value_min": None,
     "value_max": None,
     "relative_scatter": None,
+    "relative_drift": None,
     "unsteady_segments": 0,
+    "stick_slip": None,
     "sliding_speed_min_m_s": None,
     "sliding_speed_max_m_s": None,
     "offset": "",

@@ -1,4 +1,7 @@
-"""The report as one HTML file that opens offline and asks nothing of the network."""
+"""The report as one HTML file that opens offline and asks nothing of the network.
+
+What the page has is listed in `tribolab.report.sections`, which also says how to add a section.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,14 @@ import jinja2
 from markupsafe import Markup
 
 from tribolab.plot.labels import aligned, force_text, number, speed_text
-from tribolab.report import wording
+from tribolab.report import judgement, wording
+from tribolab.report.sections import shown_sections
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
+_STYLES = ("report.css",)
+_SCRIPTS = ("report.js", "table.js")
 
 
 def write_page(document: dict[str, Any], folder: Path) -> Path:
@@ -44,6 +50,30 @@ def render(document: dict[str, Any], folder: Path) -> str:
         HTML. Text from files is escaped, and a content security policy forbids every script but
         the page's own and every request.
     """
+    environment = _environment(folder)
+    style = "".join(asset(name) for name in _STYLES)
+    scripts = [asset(name) for name in _SCRIPTS]
+    hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
+    surfaces = document.get("surfaces", [])
+    context = document | {
+        "beside": {},
+        "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
+        "left_out": left_out(document["runs"]),
+        "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
+    }
+    return environment.get_template("report.html.j2").render(
+        context,
+        style=style,
+        scripts=scripts,
+        sections=shown_sections(context),
+        policy=(
+            "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
+            f"style-src '{fingerprint(style)}'; script-src {hashes}"
+        ),
+    )
+
+
+def _environment(folder: Path) -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tribolab.report"),
         autoescape=True,
@@ -63,26 +93,21 @@ def render(document: dict[str, Any], folder: Path) -> str:
         "percent": wording.percent,
         "many": wording.many,
         "size": wording.size,
+        "breakable": breakable,
+        "is_bad": judgement.is_bad,
+        "status_word": judgement.status_word,
+        "why": judgement.why,
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }
     environment.globals |= {
         "with_error": wording.with_error,
         "span": wording.span,
         "speeds": wording.speeds,
+        "judge": judgement.judge,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }
-    style, script = asset("report.css"), asset("report.js")
-    return environment.get_template("report.html.j2").render(
-        document,
-        style=style,
-        script=script,
-        policy=(
-            "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
-            f"style-src '{fingerprint(style)}'; script-src '{fingerprint(script)}'"
-        ),
-        left_out=left_out(document["runs"]),
-    )
+    return environment
 
 
 def asset(name: str) -> str:
@@ -104,6 +129,11 @@ def data_address(svg: str) -> Markup:
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
     # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
     return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
+
+
+def breakable(name: str) -> Markup:
+    """Return a name that a narrow column may break after ``_`` or ``-``, else as it is."""
+    return Markup("<wbr>").join(re.findall(r"[^_-]+[_-]*|[_-]+", name))
 
 
 def left_out(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:

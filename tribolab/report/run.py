@@ -113,7 +113,8 @@ def _fingerprint(outcome: Outcome) -> str:
 
 def _all_reused(outcome: Outcome) -> bool:
     surfaces = [surface for surface in outcome.surfaces if surface.files]
-    return all(part.reused for part in (*outcome.runs, *surfaces))
+    models = [model for model in outcome.models if model.status != "skipped"]
+    return all(part.reused for part in (*outcome.runs, *surfaces, *models))
 
 
 def _is_complete(place: Path, fingerprint: str) -> bool:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.report.figure_files import save_figure
+from tribolab.report.judgement import SURE
 from tribolab.report.tables import friction_table
 from tribolab.report.wording import SYMBOLS, UNITS, duration, many, plain_value, span, speeds
 
@@ -117,9 +119,28 @@ def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
         "value_min": value[finite].min() if finite.any() else None,
         "value_max": value[finite].max() if finite.any() else None,
         "relative_scatter": float(np.median(scatter)) if scatter.size else None,
+        "relative_drift": _drift(friction, value),
         "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
         "highlights": _highlights(speed, value, std, _values(friction, f"{name}_sem", value.size)),
     }
+
+
+def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:
+    """Return the largest significant change along a segment, of the run's typical friction.
+
+    Measured as the check on steadiness does: at high speed in a liquid hardly any friction is
+    left to divide by.
+    """
+    size = friction.sizes["segment"]
+    change = _values(friction, "trend_change", size)
+    if "force_trend" in friction and "trend_change" not in friction:
+        lasted = _values(friction, "trimmed_stop", size) - _values(friction, "trimmed_start", size)
+        change = _values(friction, "force_trend", size) * lasted
+    typical = np.abs(value[np.isfinite(value)])
+    if not np.isfinite(change).any() or not (typical > 0).any():
+        return None
+    sure = _values(friction, "trend_p_value", size) < SURE
+    return float(np.nanmax(np.abs(change[sure]), initial=0.0) / typical.mean())
 
 
 def _values(data: xr.Dataset, name: str, size: int) -> np.ndarray:
@@ -231,16 +252,16 @@ def _figures(
         drawn += [("half_loop", lambda: plot.half_loop(friction, title=name), _HALF_LOOP)]
     for kind, draw, caption in drawn:
         file = f"figures/{Path(task.run.data_file).stem}_{kind}.svg"
+        alt = f"Run {name}: {_words(friction)} {caption}"
         try:
-            plot.save(draw(), task.folder / file)
+            saved = save_figure(draw(), task.folder, file, caption, alt)
         except Exception as error:  # recorded: a figure that fails must not cost the report
             text = f"could not be drawn: {type(error).__name__}: {' '.join(str(error).split())}"
             findings.append(
                 {"severity": "error", "run": name, "where": f"figure {kind}", "message": text}
             )
             continue
-        alt = f"{_words(friction)} {caption}"
-        made.append({"file": file, "kind": kind, "caption": caption, "alt": f"Run {name}: {alt}"})
+        made.append(saved | {"kind": kind})
     return made
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.plot.labels import force_text
+from tribolab.report.figure_files import save_figure
 from tribolab.report.wording import many
 
 if TYPE_CHECKING:
@@ -67,21 +68,14 @@ def plan_surface_figures(surfaces: Sequence[SurfaceOutcome], folder: Path) -> li
 
 def draw_surfaces(task: SurfaceFigure) -> dict[str, str]:
     """Draw one figure into the results and return its record."""
-    from tribolab import plot
-
     kind = _KINDS[task.kind]
     with _ALONE:
         data = _read(task, kind.group)
-        plot.save(kind.draw(task, data), task.folder / task.file)
-    caption = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
-    shown = ", ".join(data)
-    alt = f"{kind.title} of {many(len(data), 'surface')} ({shown}). {caption}"
-    return {
-        "file": task.file,
-        "kind": task.kind,
-        "caption": f"{kind.title}. {caption}".strip(),
-        "alt": alt.strip(),
-    }
+        note = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
+        caption = f"{kind.title}. {note}".strip()
+        alt = f"{kind.title} of {many(len(data), 'surface')} ({', '.join(data)}). {note}".strip()
+        figure = kind.draw(task, data)
+        return save_figure(figure, task.folder, task.file, caption, alt) | {"kind": task.kind}
 
 
 def _read(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:

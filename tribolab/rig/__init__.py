@@ -3,6 +3,7 @@
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.faults import FAULTS, Fault, inject
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
+from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import SimulatedRun, simulate_run
@@ -17,6 +18,7 @@ __all__ = [
     "Fault",
     "ForceCell",
     "Loggers",
+    "MixedLaw",
     "Protocol",
     "Rig",
     "Scatter",

@@ -17,12 +17,14 @@ import numpy as np
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import known_fault
 from tribolab.rig.files import force_file, motion_file, scan_file
+from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
 from tribolab.studies import xu2026
 
 _FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
+Law = Callable[[np.ndarray], np.ndarray]
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 
 
@@ -45,6 +47,7 @@ class _Job:
     scans: int
     date: dt.datetime
     faults: tuple[str, ...] = ()
+    law: Law | None = None
 
 
 def simulate_campaign(
@@ -202,8 +205,14 @@ def _run_all(
             if progress:
                 progress("simulate", done, len(work))
 
+    conditions = list(dict.fromkeys(job.condition for job in work if job.number))
+
+    def with_laws(laws: Iterable[Law]) -> list[_Job]:
+        known = dict(zip(conditions, laws, strict=True))
+        return [replace(job, law=known.get(job.condition)) for job in work]
+
     if jobs <= 1:
-        collect(map(_do, work))
+        collect(map(_do, with_laws(map(_law, conditions))))
     else:
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
@@ -211,8 +220,13 @@ def _run_all(
         # spawn: a forked child would inherit locks of the parent's threads
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-            collect(pool.map(_do, work))
+            # laws first: repeats share one, wherever each of them is simulated
+            collect(pool.map(_do, with_laws(pool.map(_law, conditions))))
     return facts
+
+
+def _law(condition: _Condition) -> Law:
+    return friction_law(condition.surface, condition.medium, condition.normal_force)
 
 
 def _do(job: _Job) -> tuple[str, dict[str, Any]]:
@@ -233,6 +247,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
         job.number,
         seed=_generator(job.seed, name),
         rig=job.rig,
+        law=job.law,
         faults=job.faults,
     )
     raw = job.folder / "raw/friction"

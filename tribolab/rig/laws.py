@@ -1,4 +1,4 @@
-"""How the virtual rig's friction depends on speed: simple stated laws, of the paper's magnitude."""
+"""How the virtual rig's friction depends on speed: the model where it holds, else stated laws."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError, nearest
+from tribolab.rig.mixed_law import MixedLaw, mixed_law
 from tribolab.studies import xu2026
 
 MEDIA = ("glycerol", "dry")
@@ -32,7 +33,7 @@ class DryLaw:
 
 @dataclass(frozen=True)
 class StribeckLaw:
-    """Boundary plateau, mixed transition, hydrodynamic rise.
+    """Boundary plateau, transition, hydrodynamic rise: Smooth, which the model does not describe.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def _film_thickness(speed: float, normal_force: float) -> float:
     return 3.05 * s.radius * entrainment**0.6 * (normal_force / s.length / stiffness) ** -0.2
 
 
-def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw:
+def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | StribeckLaw | MixedLaw:
     """Friction coefficient against speed for a surface of Xu et al. at a load.
 
     Parameters
@@ -114,17 +115,16 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
 
     Returns
     -------
-    DryLaw or StribeckLaw
+    DryLaw, StribeckLaw or MixedLaw
         A function of speed [m/s]. Anything that can be called so can take its place in
         `simulate_run`.
 
     Notes
     -----
-    Boundary level of the rough surfaces: ``sigma_f A/(A0 p)`` with the paper's fitted shear
-    stress and A/A0 of Eqs. (6) and (7), which needs the rms slope only. Smooth slides by
-    instabilities: its level takes the paper's adhesive area and area-corrected stress (Sec. 7).
-    The solid part fades as the soft-EHL film grows through h_rms; on Smooth, as the paper
-    reports and its theory does not give, it holds to about 10 um/s, where forced wetting sets in.
+    In glycerol the rough surfaces follow the mixed-lubrication model with the paper's fitted shear
+    stress, see `mixed_law`. Smooth slides by instabilities, so its level takes the paper's
+    adhesive area and area-corrected stress (Sec. 7); as the paper reports and its theory does not
+    give, it holds to about 10 um/s, where forced wetting sets in, and then soft EHL drags.
 
     Examples
     --------
@@ -141,16 +141,13 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     if medium == "dry":
         level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference
         return DryLaw(level)
-    forces, stresses = zip(*known.shear_stress, strict=True)
-    stress = float(np.interp(normal_force, forces, stresses))
+    if known.name != "Smooth":
+        return mixed_law(known.name, float(normal_force))
+    ((_, stress),) = known.shear_stress
     drag = s.viscosity * 1e-2 * 2 * s.half_width(normal_force)
     drag /= _film_thickness(1e-2, normal_force) * normal_force / s.length
-    if known.name == "Smooth":
-        boundary = stress * known.area_ratio / reference  # 0.224 times 0.5 is 0.876 times 0.127
-        return StribeckLaw(boundary, transition_speed=3e-5, exponent=1.5, drag=drag)
-    area = math.erf(math.sqrt(2) * pressure / (s.effective_modulus * known.rms_slope))
-    transition = 1e-2 * (known.rms_roughness / _film_thickness(1e-2, normal_force)) ** (1 / 0.6)
-    return StribeckLaw(stress * area / pressure, transition, exponent=0.6, drag=drag)
+    boundary = stress * known.area_ratio / reference  # 0.224 times 0.5 is 0.876 times 0.127
+    return StribeckLaw(boundary, transition_speed=3e-5, exponent=1.5, drag=drag)
 
 
 def stick_slip(surface: str, medium: str) -> StickSlip:

@@ -1,25 +1,18 @@
-"""The paper's numbers beside computed ones: which are reproduced, which contradict themselves.
-
-No verdict is written down here. A printed number is called inconsistent only if a power of ten or
-a reciprocal leads from it to the computed one, if other numbers of the paper exclude it, or if the
-paper's own inputs fix it in closed form and it is something else.
-"""
+"""The paper's numbers beside computed ones: which are reproduced, which contradict themselves."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import pandas as pd
 
-from tribolab.studies import xu2026
-from tribolab.studies.published import Published, find_published
+from tribolab.errors import AnalysisError, nearest
+from tribolab.studies import comparison_contact, comparison_lubrication, xu2026
+from tribolab.studies.published import Published
 from tribolab.studies.theory import Theory
+from tribolab.studies.verdict import Computed, Measured, Own, judge
 
-REPRODUCED = "reproduced"
-DIFFERS = "differs"
-INCONSISTENT = "published value inconsistent"
 COLUMNS = [
     "quantity",
     "surface",
@@ -32,47 +25,36 @@ COLUMNS = [
     "note",
 ]
 
-
-class Computed(NamedTuple):
-    """What the theory gives for a published number."""
-
-    value: float  # SI
-    tolerance: float  # relative
-    note: str = ""
-    exact: bool = False  # a closed form of numbers that the paper prints
-    low: float = math.nan  # where one printed number stands for several, their range
-    high: float = math.nan
-
-
-class Own(NamedTuple):
-    """What other numbers of the paper say of a published one."""
-
-    low: float
-    high: float
-    words: str
-
-
-class Verdict(NamedTuple):
-    """Status of a published number, and why."""
-
-    status: str
-    note: str
+_COMPUTE: dict[str, Callable[[Published, Theory], Computed | Measured]] = {
+    **comparison_contact.COMPUTE,
+    **comparison_lubrication.COMPUTE,
+}
+_OWN: dict[str, Callable[[Published], Own | None]] = {
+    **comparison_contact.OWN,
+    **comparison_lubrication.OWN,
+}
 
 
 def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataFrame:
-    """Compute what the paper prints of surfaces, contact and adhesion, and compare.
+    """Compute what the paper prints, and compare.
 
     Parameters
     ----------
     rows
-        Published numbers; those of flow, friction factors and fits are left out.
+        Published numbers.
 
     Returns
     -------
     pandas.DataFrame
         A row per published number: quantity, surface, condition, published (text with unit),
         computed (in the same unit), relative_difference, tolerance, status (reproduced | differs
-        | published value inconsistent) and a note.
+        | published value inconsistent | measured, not computed) and a note. What cannot be
+        computed has none of the three numbers.
+
+    Raises
+    ------
+    AnalysisError
+        If it is not known how to compute a quantity.
 
     Notes
     -----
@@ -82,25 +64,18 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     theory = Theory()
     found = []
     for row in rows:
-        compute = _COMPUTE.get(row.quantity)
-        if compute is None:
-            continue
-        computed = compute(row, theory)
+        if row.quantity not in _COMPUTE:
+            hint = nearest(row.quantity, _COMPUTE)
+            raise AnalysisError(f"published {row.quantity}: no way to compute it is known{hint}")
+        computed = _COMPUTE[row.quantity](row, theory)
         own = _OWN[row.quantity](row) if row.quantity in _OWN else None
         verdict = judge(row, computed, own)
-        percent = 0.01 if "%" in row.text else 1.0
-        unit = "" if row.unit == "1" else f" {row.unit}"
         found.append(
             {
                 "quantity": row.quantity,
                 "surface": row.surface,
                 "condition": row.condition,
-                "published": row.text + unit,
-                "computed": f"{computed.value / row.factor / percent:.4g}"
-                + (" %" if percent < 1 else "")
-                + unit,
-                "relative_difference": computed.value / row.si - 1 if row.si else math.nan,
-                "tolerance": computed.tolerance,
+                **_numbers(row, computed),
                 "status": verdict.status,
                 "note": verdict.note,
             }
@@ -108,212 +83,21 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     return pd.DataFrame(found, columns=COLUMNS)
 
 
-def judge(row: Published, computed: Computed, own: Own | None = None) -> Verdict:
-    """Judge a published number by the computed one and by other numbers of the same paper.
-
-    Parameters
-    ----------
-    row
-        The published number.
-    computed
-        What the theory gives.
-    own
-        What follows from other numbers of the paper, if anything does.
-
-    Examples
-    --------
-    >>> width = Published("half_width", "Smooth", "", "37", "mm", "", "", "")
-    >>> judge(width, Computed(3.716e-3, 0.005)).note
-    'the printed number is 10 times the computed one'
-    """
-    reasons = []
-    if own and (own.high < row.si - row.last_digit or own.low > row.si + row.last_digit):
-        reasons.append(own.words)
-    agrees = _agrees(row, computed)
-    if not agrees and not row.relation.startswith((">", "at most", "below")):
-        if power := _power_of_ten(row, computed):
-            reasons.append(f"the printed number is {power} the computed one")
-        elif _close(row, 1 / computed.value, computed.tolerance):
-            reasons.append(
-                f"the printed number is the reciprocal: 1/{computed.value:.3g} = "
-                f"{1 / computed.value:.3g}"
-            )
-        elif computed.exact:
-            reasons.append("the paper's own inputs give the computed number in closed form")
-    status = INCONSISTENT if reasons else REPRODUCED if agrees else DIFFERS
-    return Verdict(status, "; ".join([*reasons, computed.note] if computed.note else reasons))
-
-
-def _agrees(row: Published, computed: Computed) -> bool:
-    if row.relation == ">":
-        return computed.value > row.si
-    if row.relation in ("at most", "below"):
-        return computed.value <= row.si * (1 + computed.tolerance)
-    low = computed.value if math.isnan(computed.low) else computed.low
-    high = computed.value if math.isnan(computed.high) else computed.high
-    half = row.last_digit / 2
-    overlaps = low <= row.si + half and high >= row.si - half
-    return overlaps or _close(row, computed.value, computed.tolerance)
-
-
-def _close(row: Published, value: float, tolerance: float) -> bool:
-    """Whether a value agrees with the printed one, within its tolerance or its last digit."""
-    return abs(value - row.si) <= max(tolerance * abs(row.si), row.last_digit / 2)
-
-
-def _power_of_ten(row: Published, computed: Computed) -> str:
-    for factor, words in ((10, "10 times"), (0.1, "a tenth of"), (1e3, "1000 times")):
-        if computed.value and _close(row, factor * computed.value, computed.tolerance):
-            return words
-    return ""
-
-
-def _nominal_pressure(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.pressure(row), 0.005, "mean Hertz pressure F/(2aL)", exact=True)
-
-
-def _hertz_max_pressure(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.hertz_max_pressure(row), 0.005, exact=True)
-
-
-def _hertz_width(row: Published, theory: Theory) -> Computed:
-    return Computed(2 * theory.hertz_half_width(row), 0.005, exact=True)
-
-
-def _half_width(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.hertz_half_width(row), 0.005, "Eq. (16)", exact=True)
-
-
-def _adhesive_half_width(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.jkr_half_width(row), 0.005, "Eq. (15)", exact=True)
-
-
-def _rms_roughness(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.roughness(row.surface), 0.005, _BY_CONSTRUCTION)
-
-
-def _rms_slope(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.slope(row.surface), 0.005, _BY_CONSTRUCTION)
-
-
-_BY_CONSTRUCTION = "by construction: the stand-in spectrum was made to have it"
-
-
-def _area(row: Published, theory: Theory) -> Computed:
-    at = f"at {theory.pressure(row) / 1e6:.4g} MPa"
-    if medium := theory.medium(row):
-        return Computed(theory.adhesive_area(row, medium), 0.03, f"{at}, stand-in spectrum")
-    return Computed(theory.area(row), 0.01, f"{at}, stand-in spectrum")
-
-
-def _work(row: Published, theory: Theory) -> Computed:
-    low, high = theory.work_bounds(row.condition)
-    note = f"{1e3 * low:.3g} to {1e3 * high:.3g} mJ/m2 inside the bounds of the surface energies"
-    return Computed(theory.work(row.condition), 0.01, note)
-
-
-def _macroscopic(row: Published, theory: Theory) -> Computed:
-    works = {medium: theory.macroscopic_work(row.surface, medium) for medium in theory.media}
-    note = ", ".join(f"{medium} {1e3 * value:.3g} mJ/m2" for medium, value in works.items())
-    value = min(works.values()) if row.relation == ">" else max(works.values())
-    return Computed(value, 0.0, f"as the load vanishes: {note}")
-
-
-def _enhancement(row: Published, theory: Theory) -> Computed:
-    medium = "dry" if row.condition.startswith("dry") else "glycerol"
-    if "loads" not in row.condition:
-        return Computed(theory.enhancement(row.surface, medium)[0], 0.03)
-    every = theory.enhancement(row.surface, medium)
-    note = f"{max(every):.3g} at the lowest load to {min(every):.3g} at the highest"
-    mean = sum(every) / len(every)
-    return Computed(mean, 0.03, note, low=min(every), high=max(every))
-
-
-def _viscoelastic(row: Published, theory: Theory) -> Computed:
-    by_surface = theory.viscoelastic_friction()
-    note = ", ".join(f"{name} {value:.2g}" for name, value in by_surface.items())
-    note = f"stand-in modulus, up to 1 cm/s: {note}; in complete contact the glassy end decides"
-    return Computed(max(by_surface.values()), 1.0, note)
-
-
-def _line_pressure(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.line(row)[0], 0.015, "dry rough line contact, stand-in spectrum")
-
-
-def _line_width(row: Published, theory: Theory) -> Computed:
-    note = "between the points where pressure is 1e-3 of its maximum (inferred)"
-    return Computed(theory.line(row)[1], 0.025, note)
-
-
-def _alpha(row: Published, theory: Theory) -> Computed:
-    every = [theory.separation_decay(name) for name in xu2026.surfaces]
-    note = f"h_rms/u0 of the asymptote of u(p): {min(every):.3g} to {max(every):.3g}"
-    return Computed(sum(every) / len(every), 0.05, note)
-
-
-def _excess(row: Published, theory: Theory) -> Computed:
-    dry, wet = (theory.adhesive_area(row, medium) for medium in ("dry", "glycerol"))
-    return Computed(dry / wet - 1, 0.1, "computed: the dry over the wet area, less 1")
-
-
-_COMPUTE: dict[str, Callable[[Published, Theory], Computed]] = {
-    "nominal_pressure": _nominal_pressure,
-    "hertz_max_pressure": _hertz_max_pressure,
-    "hertz_contact_width": _hertz_width,
-    "half_width_no_adhesion": _half_width,
-    "half_width_with_adhesion": _adhesive_half_width,
-    "rms_roughness": _rms_roughness,
-    "rms_slope": _rms_slope,
-    "contact_area_ratio": _area,
-    "work_of_adhesion": _work,
-    "macroscopic_work_of_adhesion": _macroscopic,
-    "area_enhancement": _enhancement,
-    "viscoelastic_friction": _viscoelastic,
-    "contact_max_pressure": _line_pressure,
-    "contact_width": _line_width,
-    "separation_decay_alpha": _alpha,
-    "dry_over_glycerol_area": _excess,
-}
-
-
-def _own_excess(row: Published) -> Own:
-    low, high, words = _area_ratio(row.surface, "adhesion dry", "adhesion in glycerol")
-    return Own(
-        low - 1, high - 1, f"{words}, so {100 * (low - 1):.1f} to {100 * (high - 1):.1f} % more"
-    )
-
-
-def _own_enhancement(row: Published) -> Own | None:
-    if "loads" in row.condition:
-        return None
-    with_adhesion = "adhesion dry" if row.condition.startswith("dry") else "adhesion in glycerol"
-    return Own(*_area_ratio(row.surface, with_adhesion, "no adhesion"))
-
-
-def _own_half_width(row: Published) -> Own:
-    width = find_published(xu2026.published, "hertz_contact_width", "smooth limit", "310 N/m")
-    low, high = (width.si + sign * width.last_digit for sign in (-1, 1))
-    half = f"{width.si / 2 / row.factor:.3g} {row.unit}"
-    return Own(
-        low / 2, high / 2, f"half of the paper's own width {width.text} {width.unit} is {half}"
-    )
-
-
-def _area_ratio(surface: str, above: str, below: str) -> tuple[float, float, str]:
-    """Ratio of two published areas, as far as their last digits leave it open."""
-    p = "0.042 MPa; "
-    first, second = (
-        find_published(xu2026.published, "contact_area_ratio", surface, p + which)
-        for which in (above, below)
-    )
-    low = (first.si - first.last_digit) / (second.si + second.last_digit)
-    high = (first.si + first.last_digit) / (second.si - second.last_digit)
-    words = f"the paper's own areas give {first.text}/{second.text} = {first.si / second.si:.3g}"
-    return low, high, words
-
-
-_OWN: dict[str, Callable[[Published], Own | None]] = {
-    "dry_over_glycerol_area": _own_excess,
-    "area_enhancement": _own_enhancement,
-    "half_width_no_adhesion": _own_half_width,
-}
+def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | float]:
+    """Give published and computed number in the printed unit, and how far apart they are."""
+    percent = 0.01 if "%" in row.text else 1.0
+    unit = "" if row.unit == "1" else f" {row.unit}"
+    if isinstance(computed, Measured):
+        value, difference, tolerance = "", math.nan, math.nan
+    else:
+        value = (
+            f"{computed.value / row.factor / percent:.4g}" + (" %" if percent < 1 else "") + unit
+        )
+        difference = computed.value / row.si - 1 if row.si else math.nan
+        tolerance = computed.tolerance
+    return {
+        "published": row.text + unit,
+        "computed": value,
+        "relative_difference": difference,
+        "tolerance": tolerance,
+    }

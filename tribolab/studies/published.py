@@ -70,8 +70,13 @@ class Published:
     @property
     def si(self) -> float:
         """The number in SI; of a range its middle."""
-        found = [float(match[0]) for match in _NUMBER.finditer(self.text)]
-        return sum(found) / len(found) * self._scale
+        return sum(self.ends) / 2
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of a range in SI; of a single number twice the same."""
+        found = [float(match[0]) * self._scale for match in _NUMBER.finditer(self.text)]
+        return min(found), max(found)
 
     @property
     def last_digit(self) -> float:

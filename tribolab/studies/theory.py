@@ -19,6 +19,8 @@ from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
 from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import flow_factors
+from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN
 from tribolab.studies import xu2026
@@ -32,7 +34,7 @@ _OTHER_PRESSURE = 1e5  # Pa, Sec. 7
 
 
 class Theory:
-    """The reference system computed: Hertz, JKR, Persson contact, adhesion, rubber.
+    """The reference system computed: Hertz, JKR, Persson contact, adhesion, rubber, lubrication.
 
     A row of published numbers says by its surface and its condition which number is meant.
     """
@@ -46,6 +48,7 @@ class Theory:
         self._pressures = np.append(hertz_mean_pressure(loads, self._contact), _OTHER_PRESSURE)
         self._adhesive = functools.cache(self._adhesion)
         self._lines = functools.cache(self._line)
+        self._slow = functools.cache(self._boundary)
 
     def load(self, row: Published) -> float:
         """Load [N/m] of a condition; a published pressure stands for the load that makes it."""
@@ -142,6 +145,22 @@ class Theory:
         table = separation_table(xu2026.psd(surface), self._modulus)
         return table.rms_roughness / table.decay_length
 
+    def flow_stops(self, level: float) -> list[float]:
+        """Mean separation over h_rms of each surface where phi_p falls below a level."""
+        found = []
+        for name in xu2026.surfaces:
+            factors = flow_factors(xu2026.psd(name))
+            closed, height = factors.percolation_separation, factors.rms_roughness
+            u = closed + height * np.geomspace(1e-4, 1.0, 2000)
+            above = u[factors.at(u).phi_p > level]
+            found.append(float(above[0] if level > 0 else closed) / height)
+        return found
+
+    def boundary_onset(self, row: Published, share: float) -> float:
+        """Speed [m/s] at which friction has fallen to a share of that of the dry contact."""
+        speed, friction = self._slow(row.surface, self.load(row))
+        return float(np.exp(np.interp(-share, -friction, np.log(speed))))
+
     def _published_work(self, medium: str) -> float:
         """Return the rounded work of adhesion that the paper goes on with [J/m2]."""
         return next(
@@ -158,3 +177,12 @@ class Theory:
     def _line(self, surface: str, load: float) -> tuple[float, float]:
         found = rough_line_contact(load, self._contact, xu2026.psd(surface))
         return float(found.max_pressure), float(found.contact_width)
+
+    def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
+        """Low speeds [m/s] and friction there over that of the dry contact."""
+        speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
+        stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
+        eta = xu2026.system.viscosity
+        found = stribeck_curve(self._contact, xu2026.psd(surface), eta, load, stress, speed)
+        friction = found.friction_coefficient.values
+        return speed[1:], friction[1:] / friction[0]

@@ -1,0 +1,109 @@
+"""How often the interval of a fitted shear stress holds the truth, over many seeds of the rig.
+
+Nothing is taken shorter: each seed simulates a campaign on disk (Sb-S and Sb-R at four loads in
+glycerol and one dry, two repeats, three scans), and the campaign's own pipeline reads the files,
+finds segments, makes curves and spectra, computes the models and fits. Each of the eight fits is
+made a second time with the true spectrum. Run from the project's root::
+
+    python tests/benchmarks/shear_stress_coverage.py [seeds] [first seed]
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.compare.shear_stress import fit_shear_stress
+from tribolab.compare.spectrum_error import shear_stress_shift
+from tribolab.io.netcdf import read_netcdf
+from tribolab.rig import simulate_campaign
+from tribolab.studies import xu2026
+
+SURFACES = ("Sb-S", "Sb-R")
+
+
+def one_campaign(seed: int) -> list[dict[str, float | str]]:
+    """Fits of one simulated campaign beside the truth."""
+    rows = []
+    with tempfile.TemporaryDirectory() as place:
+        file = simulate_campaign(Path(place) / "rig", seed=seed, surfaces=SURFACES)
+        folder = Path(place) / "results"
+        folder.mkdir()
+        outcome = process(load_campaign(file), folder)
+        leading = {
+            model.surface: read_netcdf(folder / model.data_file, "uncertainty")
+            for model in outcome.models
+            if "uncertainty" in model.parts
+        }
+        for model in outcome.models:
+            root, fit = (read_netcdf(folder / model.data_file, group) for group in (None, "fit"))
+            curve = read_netcdf(folder / f"data/{model.curve}.nc")
+            mine = fit_shear_stress(
+                curve,
+                xu2026.contact,
+                xu2026.psd(model.surface),
+                xu2026.system.viscosity,
+                xu2026.contact.load(model.normal_force),
+                common_error=root.attrs["repeatability"] / np.sqrt(2),
+                common_freedom=root.attrs["freedom"],
+            )
+            true = dict(xu2026.surface(model.surface).shear_stress)[model.normal_force]
+            scanned = fit.attrs["shear_stress_Pa"]
+            half = fit.attrs["shear_stress_half_interval_Pa"]
+            low, high = shear_stress_shift(leading[model.surface])
+            low, high = np.hypot(half, low * scanned), np.hypot(half, high * scanned)
+            rows.append(
+                {
+                    "seed": seed,
+                    "surface": model.surface,
+                    "load": model.normal_force,
+                    "off_true_spectrum": mine.shear_stress / true - 1,
+                    "pull_true_spectrum": (mine.shear_stress - true) / mine.half_interval,
+                    "half_interval": mine.half_interval / true,
+                    "off_scans": scanned / true - 1,
+                    "pull_scans_statistical": (scanned - true) / half,
+                    "pull_scans": (scanned - true) / (low if scanned > true else high),
+                }
+            )
+    return rows
+
+
+def report(table: pd.DataFrame) -> None:
+    """Print what share of the intervals holds the truth, and how far the fits lie off."""
+    held = {name: (table[name].abs() <= 1) for name in table if name.startswith("pull")}
+    for name, inside in held.items():
+        seeds = inside.groupby(table["seed"]).sum()
+        print(
+            f"  {name:24} {inside.sum()} of {inside.size} intervals hold the truth "
+            f"({100 * inside.mean():.1f} %); at least 7 of 8 in {(seeds >= 7).sum()} of "
+            f"{seeds.size} seeds, fewest {seeds.min()}"
+        )
+    for name in ("off_true_spectrum", "off_scans"):
+        off = table[name]
+        print(
+            f"  {name:24} mean {100 * off.mean():+.2f} %, standard deviation "
+            f"{100 * off.std():.2f} %, largest {100 * off.abs().max():.2f} %"
+        )
+    print(
+        f"  half a 95 % interval with the true spectrum: {100 * table.half_interval.mean():.2f} %"
+    )
+
+
+if __name__ == "__main__":
+    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    rows: list[dict[str, float | str]] = []
+    for seed in range(first, first + seeds):
+        began = time.monotonic()
+        rows += one_campaign(seed)
+        mine = pd.DataFrame(rows).query("seed == @seed")
+        print(f"seed {seed}, {time.monotonic() - began:.0f} s", flush=True)
+        print(mine.drop(columns="seed").round(4).to_string(index=False), flush=True)
+    report(pd.DataFrame(rows))

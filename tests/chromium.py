@@ -1,0 +1,203 @@
+"""A headless Chromium that tests drive as a person would: open, click, type, look."""
+
+import base64
+import contextlib
+import itertools
+import json
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import websocket
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+BROWSER = next((found for name in NAMES if (found := shutil.which(name))), "")
+OPTIONS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--hide-scrollbars",
+    "--remote-debugging-port=0",
+    "--remote-allow-origins=*",
+]
+
+
+@contextlib.contextmanager
+def chromium(profile):
+    """Start a browser of its own, and end it."""
+    command = [BROWSER, *OPTIONS, f"--user-data-dir={profile}", "about:blank"]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield Browser(Path(profile))
+    finally:
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+class Browser:
+    """One browser; `page` opens an address in a tab of its own."""
+
+    def __init__(self, profile):
+        self._port = _port(profile / "DevToolsActivePort")
+        self._devtools = _Devtools(f"ws://127.0.0.1:{self._port[0]}{self._port[1]}")
+
+    @contextlib.contextmanager
+    def page(self, address, width=1400, height=900, dark=False):
+        """Open an address; afterwards the tab is closed."""
+        target = self._devtools.call("Target.createTarget", url="about:blank")["targetId"]
+        tab = _Devtools(f"ws://127.0.0.1:{self._port[0]}/devtools/page/{target}")
+        try:
+            page = Page(tab, width, height, dark)
+            page.go(address)
+            yield page
+        finally:
+            tab.close()
+            self._devtools.call("Target.closeTarget", targetId=target)
+
+
+class Page:
+    """A tab: what it logged and asked for, and how to act in it."""
+
+    def __init__(self, tab, width, height, dark):
+        self._tab = tab
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            tab.call(f"{domain}.enable")
+        tab.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+        scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+        tab.call("Emulation.setEmulatedMedia", features=scheme)
+
+    def go(self, address):
+        """Open an address and wait until it has loaded."""
+        url = address if "://" in str(address) else Path(address).as_uri()
+        self._tab.call("Page.navigate", url=url)
+        self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
+
+    def run(self, script):
+        """Return the value of an expression, awaited if it is a promise."""
+        found = self._tab.call(
+            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
+        )
+        if "exceptionDetails" in found:
+            raise AssertionError(found["exceptionDetails"]["exception"].get("description", script))
+        return found["result"].get("value")
+
+    def wait(self, condition, seconds=30):
+        """Wait until an expression is true."""
+        end = time.monotonic() + seconds
+        while not self.run(condition):
+            assert time.monotonic() < end, f"in {seconds} s it did not come true: {condition}"
+            time.sleep(0.02)
+
+    def click(self, selector):
+        """Bring an element into view and click on its middle, as a mouse does."""
+        x, y = self.run(
+            f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
+            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
+            "const b = e.getClientRects()[0]; return [b.x + b.width / 2, b.y + b.height / 2] })()"
+        )
+        self.mouse([(x, y)])
+
+    def mouse(self, points):
+        """Press at the first point, move over the others, release at the last."""
+        button = {"button": "left", "clickCount": 1}
+        for kind, (x, y), more in (
+            ("mouseMoved", points[0], {}),
+            ("mousePressed", points[0], button),
+            *(("mouseMoved", point, {"button": "left", "buttons": 1}) for point in points[1:]),
+            ("mouseReleased", points[-1], button),
+        ):
+            self._tab.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def key(self, name, text=""):
+        """Press a key: a character, or the name of a key such as ArrowRight."""
+        for kind in ("keyDown", "keyUp"):
+            more = {"text": text} if text and kind == "keyDown" else {}
+            self._tab.call("Input.dispatchKeyEvent", type=kind, key=name, **more)
+
+    def type(self, text):
+        """Type into what has the focus."""
+        self._tab.call("Input.insertText", text=text)
+
+    def screenshot(self, path, whole=False):
+        """Save what is seen, or the whole page, as PNG."""
+        answer = self._tab.call("Page.captureScreenshot", captureBeyondViewport=whole)
+        Path(path).write_bytes(base64.b64decode(answer["data"]))
+
+    def pdf(self, path):
+        """Print to PDF."""
+        answer = self._tab.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)
+        Path(path).write_bytes(base64.b64decode(answer["data"]))
+
+    @property
+    def console(self):
+        """What was said on the console: errors, warnings, what the policy stopped."""
+        self.run("0")  # everything before this answer has been reported
+        said = []
+        for event in self._tab.events:
+            if event["method"] == "Runtime.exceptionThrown":
+                said.append(event["params"]["exceptionDetails"]["text"])
+            elif event["method"] == "Runtime.consoleAPICalled":
+                said.append(str(event["params"]["args"]))
+            elif event["method"] == "Log.entryAdded":
+                said.append(event["params"]["entry"]["text"])
+        return said
+
+    @property
+    def requests(self):
+        """The addresses that were asked for, data addresses aside."""
+        self.run("0")
+        urls = [
+            event["params"]["request"]["url"]
+            for event in self._tab.events
+            if event["method"] == "Network.requestWillBeSent"
+        ]
+        return [url for url in urls if not url.startswith("data:")]
+
+
+class _Devtools:
+    """The browser's own protocol over one socket."""
+
+    def __init__(self, address):
+        self._socket = websocket.create_connection(address, timeout=60)
+        self._number = itertools.count(1)
+        self.events = []
+
+    def call(self, method, **parameters):
+        number = next(self._number)
+        self._socket.send(json.dumps({"id": number, "method": method, "params": parameters}))
+        while True:
+            message = json.loads(self._socket.recv())
+            if message.get("id") == number:
+                assert "error" not in message, f"{method}: {message['error']}"
+                return message["result"]
+            if "method" in message:
+                self.events.append(message)
+
+    def close(self):
+        self._socket.close()
+
+
+def _port(file, seconds=60):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if file.is_file() and len(lines := file.read_text().split()) == 2:
+            return lines
+        time.sleep(0.05)
+    raise AssertionError(f"the browser did not start in {seconds} s")

@@ -1,0 +1,162 @@
+"""The band on a model curve: each end is a model of its own, and the whole is what is said."""
+
+import numpy as np
+import pytest
+from contact_cases import CONTACT, reference_psd
+
+from tribolab.compare.model_uncertainty import model_uncertainty
+from tribolab.errors import AnalysisError
+from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.surface.extrapolation import extrapolate
+from tribolab.surface.moments import band
+
+SPEEDS = np.array([1e-9, 1e-5, 1e-4, 1e-3, 1e-1])
+GIVEN = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.84e6, "speed": SPEEDS}
+WIDTH = 1.21  # of the made band
+
+
+def measured_psd():
+    """Sb-S as if measured from 1e3 to 1e6 1/m with an even band, and extrapolated."""
+    seen = band(reference_psd("Sb-S", points=60), 1e3, 1e6)
+    seen["psd_2d_low"], seen["psd_2d_high"] = seen.psd_2d / WIDTH, seen.psd_2d * WIDTH
+    return extrapolate(seen, q_low=423.0)
+
+
+@pytest.fixture(scope="module")
+def spread():
+    return model_uncertainty(CONTACT, measured_psd(), shear_stress_error="0.01 MPa", **GIVEN)
+
+
+def test_the_band_holds_the_curve_and_every_variation(spread):
+    low, high = spread.friction_coefficient_low, spread.friction_coefficient_high
+    assert (low <= spread.friction_coefficient).all()
+    assert (spread.friction_coefficient <= high).all()
+    assert (low > 0).all()
+    each = spread.friction_coefficient_varied
+    assert (each.max(["variation", "range_end"]) <= high * (1 + 1e-12)).all()
+    assert (each.min(["variation", "range_end"]) >= low * (1 - 1e-12)).all()
+    # independent unknowns do not all err at once
+    together = np.log(each / spread.friction_coefficient).max("range_end").clip(0).sum("variation")
+    assert (np.log(high / spread.friction_coefficient) < together).all()
+
+
+def test_everything_on_the_list_is_varied(spread):
+    assert spread.variation.values.tolist() == [
+        "spectrum band",
+        "spectrum at long waves",
+        "Hurst exponent",
+        "spectrum at short waves",
+        "percolation threshold",
+        "cut-off of <1/u>",
+        "elastic-energy factor",
+        "rough body",
+        "friction factors",
+        "domain",
+        "shear stress",
+    ]
+    assert spread.attrs["not_varied"] == ""
+    assert spread.friction_coefficient_high.attrs["units"] == "1"
+    assert spread.largest_change_speed.attrs["units"] == "m/s"
+    ends = spread.variation_low.str.len() + spread.variation_high.str.len()
+    assert (ends > 0).all()
+
+
+def test_a_spectrum_times_a_number_moves_the_plateau_by_its_root(spread):
+    """In boundary lubrication mu = sigma_f A/F, and A goes as one over the rms slope."""
+    one = spread.sel(variation="spectrum band")
+    plateau = one.friction_coefficient_varied.isel(sliding_speed=0) / one.friction_coefficient[0]
+    np.testing.assert_allclose(plateau, [WIDTH**0.5, WIDTH**-0.5], rtol=4e-3)
+    # a sigma_f fitted to the same measured curve moves the other way, less as transitions move too
+    assert WIDTH**-0.5 - 1 < one.shear_stress_change_low < -0.05
+    assert 0.05 < one.shear_stress_change_high < WIDTH**0.5 - 1
+
+
+@pytest.mark.parametrize(
+    ("name", "end", "change"),
+    [
+        ("rough body", "high", {"rough_body": "moving"}),
+        ("friction factors", "low", {"friction_factors": False}),
+        ("domain", "high", {"domain": 2.0}),
+    ],
+)
+def test_an_end_is_the_curve_of_that_model(spread, name, end, change):
+    given = {key: GIVEN[key] for key in ("viscosity", "load", "shear_stress", "speed")}
+    direct = stribeck_curve(CONTACT, measured_psd(), **given, **change)
+    found = spread.friction_coefficient_varied.sel(variation=name, range_end=end)
+    np.testing.assert_allclose(found, direct.friction_coefficient, rtol=3e-3)
+    other = {"low": "high", "high": "low"}[end]
+    missing = spread.friction_coefficient_varied.sel(variation=name, range_end=other)
+    assert bool(missing.isnull().all()) == (name != "domain")
+
+
+def test_each_unknown_moves_the_curve_where_it_must(spread):
+    where = spread.largest_change_speed.to_series()
+    assert where["spectrum band"] == 1e-9
+    assert where["shear stress"] == 1e-9
+    assert where["domain"] == 1e-1  # drag in the wide gap
+    assert 1e-5 <= where["percolation threshold"] <= 1e-3  # where the fluid takes over
+    # 1.96 standard errors of 1.2 % each
+    change = float(spread.largest_change.sel(variation="shear stress"))
+    assert change == pytest.approx(1.96 * 0.01 / 0.84, rel=1e-3)
+
+
+def test_a_fitted_shear_stress_takes_up_what_scales_the_area():
+    psd = measured_psd()[["psd_2d"]]
+    given = GIVEN | {"speed": [1e-9, 1e-8]}
+    fixed, fitted = (
+        model_uncertainty(CONTACT, psd, **given, measured_to=1e6, refit=refit)
+        for refit in (False, True)
+    )
+    widths = [
+        float(np.log(one.friction_coefficient_high / one.friction_coefficient_low)[0])
+        for one in (fixed, fitted)
+    ]
+    assert widths[0] > 0.2
+    assert widths[1] < 1e-3
+    # on the plateau sigma_f and area change places
+    ratio = fixed.friction_coefficient_varied.isel(sliding_speed=0) / fixed.friction_coefficient[0]
+    for end in ("low", "high"):
+        change = fixed[f"shear_stress_change_{end}"].values
+        np.testing.assert_allclose(1 + change, 1 / ratio.sel(range_end=end), rtol=1e-3)
+    assert "psd_2d_low" in fixed.attrs["not_varied"]
+    assert "shear_stress_error" in fixed.attrs["not_varied"]
+
+
+def test_smooth_surfaces_have_the_domain_alone():
+    spread = model_uncertainty(CONTACT, None, **GIVEN | {"speed": [1e-2, 1e-1]})
+    assert spread.variation.values.tolist() == ["domain"]
+    given = {**GIVEN, "speed": [1e-2, 1e-1]}
+    ratios = [
+        stribeck_curve(CONTACT, None, **given, domain=domain, cells=200).friction_coefficient
+        for domain in (0.5, 1.0, 2.0)
+    ]
+    for edge, of in (("low", ratios[0]), ("high", ratios[2])):
+        np.testing.assert_allclose(
+            spread[f"friction_coefficient_{edge}"] / spread.friction_coefficient,
+            of / ratios[1],
+            rtol=1e-9,
+        )
+
+
+def test_the_result_survives_a_file(spread, tmp_path):
+    write_netcdf(spread, tmp_path / "band.nc")
+    back = read_netcdf(tmp_path / "band.nc")
+    np.testing.assert_array_equal(back.friction_coefficient_low, spread.friction_coefficient_low)
+    assert back.variation_high.values.tolist() == spread.variation_high.values.tolist()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"speed": [0.0, 1e-4]}, "above zero"),
+        ({"measured_to": 1e12}, "outside the spectrum"),
+        ({"load": 0.0}, "load"),
+        ({"shear_stress_error": "-1 Pa"}, "shear_stress_error"),
+        ({"shear_stress": -1.0}, "shear_stress"),
+    ],
+)
+def test_what_has_no_band_is_refused(change, words):
+    given = {**GIVEN, "speed": [1e-4], **change}
+    with pytest.raises(AnalysisError, match=words):
+        model_uncertainty(CONTACT, reference_psd("Sb-S"), **given)

@@ -1,0 +1,192 @@
+"""Which measured curves get a model, and all that is needed to compute it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.campaign.work import NETCDF
+from tribolab.errors import ReadError
+from tribolab.provenance import sha256_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.outcome import CurveOutcome, SurfaceOutcome
+
+_DIGITS = 2  # of a repeatability: one more run must not make every model new
+
+
+@dataclass(frozen=True)
+class PlannedModel:
+    """The model of one measured curve: all that a worker needs to know.
+
+    Parameters
+    ----------
+    curve
+        The measured curve; its data file has the points.
+    surface_file
+        Data file of the surface, with its spectrum.
+    contact
+        The table [contact].
+    viscosity
+        [Pa s]
+    settings
+        The table [model].
+    leading
+        Whether it is the surface's model at its lowest load, which shows profiles and factors.
+    uncertain
+        Whether the model's own uncertainty is computed.
+    repeatability, freedom
+        Relative standard deviation of a run's friction level, and its degrees of freedom.
+    missing
+        What the campaign knows too little of; "" if a model can be computed.
+    config_sha256
+        Checksum of all that shapes the result, the data included.
+    """
+
+    curve: CurveOutcome
+    surface_file: str
+    contact: dict[str, Any]
+    viscosity: float
+    settings: dict[str, Any]
+    leading: bool
+    uncertain: bool
+    repeatability: float
+    freedom: int
+    missing: str = ""
+    config_sha256: str = field(default="", compare=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the model and of its data file."""
+        return "model_" + self.curve.name.removeprefix("curve_")
+
+    @property
+    def data_file(self) -> str:
+        """Path of the data file relative to the results folder."""
+        return f"data/{self.name}.nc"
+
+
+def plan_models(
+    campaign: Campaign,
+    curves: Iterable[CurveOutcome],
+    surfaces: Iterable[SurfaceOutcome],
+    folder: Path,
+) -> tuple[PlannedModel, ...]:
+    """Collect the measured curves in a fluid, and what is known of their contacts.
+
+    Parameters
+    ----------
+    campaign
+        From `load_campaign`.
+    curves, surfaces
+        What they came to; their data files lie in `folder`.
+    folder
+        Folder of the results.
+    """
+    done = [curve for curve in curves if curve.done]
+    if not campaign.model.compute:
+        return ()
+    wet = [
+        (curve, viscosity)
+        for curve in done
+        if curve.medium in campaign.medium
+        and (viscosity := campaign.medium[curve.medium].viscosity) is not None
+    ]
+    if not wet:
+        return ()
+    spread, freedom = _repeatability(done, folder)
+    known = {surface.name: surface for surface in surfaces}
+    contact = campaign.contact.model_dump(exclude={"modulus_file"})
+    settings = campaign.model.model_dump(exclude={"compute", "uncertainty"})
+    planned, led = [], set()
+    for curve, viscosity in sorted(wet, key=lambda pair: pair[0].normal_force or np.inf):
+        surface = known.get(curve.surface)
+        missing = _missing(curve, contact, surface)
+        first = not missing and (curve.surface, curve.medium) not in led
+        if first:
+            led.add((curve.surface, curve.medium))
+        one = PlannedModel(
+            curve=curve,
+            surface_file=surface.data_file if surface else "",
+            contact=contact,
+            viscosity=viscosity,
+            settings=settings,
+            leading=first,
+            uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),
+            repeatability=spread,
+            freedom=freedom,
+            missing=missing,
+        )
+        planned.append(_sealed(one, folder))
+    order = {curve.name: number for number, curve in enumerate(done)}
+    return tuple(sorted(planned, key=lambda one: order[one.curve.name]))
+
+
+def _missing(curve: CurveOutcome, contact: dict[str, Any], surface: SurfaceOutcome | None) -> str:
+    unknown = [name for name, value in contact.items() if value is None]
+    if unknown:
+        return f"[contact] wants {', '.join(unknown)}"
+    if curve.normal_force is None or not curve.normal_force > 0:
+        return "no normal force is known"
+    if surface is None or not surface.done:
+        return f"there is no spectrum of {curve.surface or 'a surface that is not named'}"
+    return ""
+
+
+def _repeatability(curves: Sequence[CurveOutcome], folder: Path) -> tuple[float, int]:
+    """Pool the run levels of all curves that were repeated."""
+    from tribolab.friction.repeatability import repeatability
+
+    levels = [read(folder / curve.data_file).get("run_level") for curve in curves]
+    spread, freedom = repeatability([level.values for level in levels if level is not None])
+    return float(f"{spread:.{_DIGITS}g}"), freedom
+
+
+def read(path: Path, group: str | None = None) -> xr.Dataset:
+    """Open a data file of this campaign."""
+    from tribolab.io.netcdf import read_netcdf
+
+    with NETCDF:
+        return read_netcdf(path, group=group)
+
+
+def optional(path: Path, group: str) -> xr.Dataset | None:
+    """Open a group that a data file may lack."""
+    try:
+        return read(path, group)
+    except ReadError:
+        return None
+
+
+def _sealed(model: PlannedModel, folder: Path) -> PlannedModel:
+    """Add the checksum; without data there is nothing to take over."""
+    from dataclasses import replace
+
+    if model.missing:
+        return model
+    data = [
+        read(folder / model.curve.data_file),
+        read(folder / model.surface_file, "psd"),
+        optional(folder / model.surface_file, "adhesion_loads"),
+    ]
+    facts = asdict(model) | {"data": [_digest(one) for one in data if one is not None]}
+    return replace(model, config_sha256=sha256_of(facts))
+
+
+def _digest(data: xr.Dataset) -> str:
+    """Checksum of a dataset's names and values; when it was made does not matter."""
+    digest = hashlib.sha256()
+    for name in sorted(map(str, data.variables)):
+        digest.update(name.encode())
+        values = np.asarray(data[name])
+        text = values.dtype.kind in "OUS"
+        digest.update(str(values.tolist()).encode() if text else values.tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,311 @@
+"""The model of one measured curve, as a worker process computes it."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.campaign.model_plan import PlannedModel, optional, read
+from tribolab.campaign.outcome import Finding, ModelOutcome
+from tribolab.campaign.work import explain, write_data
+from tribolab.errors import AnalysisError, OutputError
+from tribolab.provenance import CONVENTIONS, history_line
+from tribolab.quantities import stamp
+
+if TYPE_CHECKING:
+    from tribolab.compare.shear_stress import ShearStressFit
+    from tribolab.contact.geometry import LineContact
+
+RECORD = "model_record"
+_PROFILES = 5
+_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are shown
+_95 = 1.959963984540054
+
+
+@dataclass(frozen=True)
+class ModelTask:
+    """A model to compute, and the folder of the results."""
+
+    model: PlannedModel
+    folder: Path
+
+
+def process_model(task: ModelTask) -> ModelOutcome:
+    """Compute the curve, fit the shear stress, vary what is not known; write the data file.
+
+    What goes wrong with the model is in the outcome.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written.
+    """
+    began = time.monotonic()
+    model = task.model
+    if model.missing:
+        return failed_model(model, model.missing, status="skipped")
+    try:
+        groups, findings = analyse(model, task.folder)
+        record = {"findings": findings, "parts": list(groups)}
+        write_data({None: _root(model, record)} | groups, task.folder / model.data_file)
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one model that fails must not stop the others
+        reason, name = explain(error)
+        return failed_model(model, reason, name, time.monotonic() - began)
+    return _done(model, tuple(groups), findings, seconds=time.monotonic() - began)
+
+
+def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
+    """Return the groups of a model's data file, and the findings.
+
+    ``curve``: the model over the campaign's speeds; ``fit``: at the measured speeds, beside the
+    points, with the fitted shear stress among the attributes; ``profiles`` and ``factors`` of the
+    leading model of a surface; ``uncertainty`` where it is asked for.
+
+    Raises
+    ------
+    TribolabError
+        If the curve cannot be computed.
+    """
+    from tribolab.contact.geometry import LineContact
+    from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
+
+    measured = read(folder / model.curve.data_file)
+    psd = read(folder / model.surface_file, "psd")
+    contact = LineContact(**model.contact)
+    load = contact.load(model.curve.normal_force)
+    settings = model.settings
+    body = {"rough_body": settings["rough_body"], "friction_factors": settings["friction_factors"]}
+    grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
+    points = measured["sliding_speed"].values
+    speeds = np.union1d(grid, points[points > 0])
+    computed = stribeck_curve(contact, psd, model.viscosity, load, 0.0, speeds, **body)
+    groups, findings = {"curve": computed.sel(sliding_speed=grid)}, []
+
+    def attempt(what: str, name: str, compute: Any) -> None:
+        try:
+            groups[name] = compute()
+        except AnalysisError as error:  # recorded: the curve stands without it
+            findings.append(Finding("suspect", f"{what}: {explain(error)[0]}"))
+
+    try:
+        fit = _fit(model, measured, contact, psd, load, computed, folder)
+    except AnalysisError as error:  # recorded, as above
+        findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
+        fit = None
+    else:
+        groups["curve"] = with_shear_stress(groups["curve"], fit.shear_stress)
+        groups["fit"] = _beside(fit, measured)
+    if model.leading:
+        attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
+        attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
+    if model.uncertain and fit is not None:
+        given = {"viscosity": model.viscosity, "load": load, **body}
+        attempt(
+            "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
+        )
+    return groups, findings
+
+
+def _fit(
+    model: PlannedModel,
+    measured: xr.Dataset,
+    contact: LineContact,
+    psd: xr.Dataset,
+    load: float,
+    computed: xr.Dataset,
+    folder: Path,
+) -> ShearStressFit:
+    from tribolab.compare.shear_stress import fit_shear_stress
+
+    enhancement, error = _enhancement(model, folder)
+    runs = float(np.median(measured["runs"].values))
+    return fit_shear_stress(
+        measured,
+        contact,
+        psd,
+        model.viscosity,
+        load,
+        speed_range=model.settings["fit_speeds"],
+        area_enhancement=enhancement,
+        area_enhancement_error=error,
+        common_error=model.repeatability / np.sqrt(runs),
+        common_freedom=model.freedom,
+        curve=computed,
+    )
+
+
+def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float]:
+    """Area with adhesion over that without, at the load; its error from the bounds."""
+    path = folder / model.surface_file
+    found, loads = optional(path, "adhesion_loads"), optional(path, "loads")
+    if found is None or model.curve.medium not in found.medium.values:
+        return 1.0, 0.0
+    place = {"normal_force": model.curve.normal_force}
+    at = int(np.argmin(np.abs(found["normal_force"].values.ravel() - place["normal_force"])))
+    mine = found.sel(medium=model.curve.medium).isel(load=at)
+    ends = (
+        float(mine[f"contact_area_ratio{end}"] / loads[f"contact_area_ratio{end}"][at])
+        for end in ("_low", "_high")
+    )
+    low, high = sorted(ends)
+    return float(mine["area_enhancement"]), (high - low) / (2 * _95)
+
+
+def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
+    """Model and points at the measured speeds; the fit among the attributes."""
+    curve = fit.curve
+    points = measured.sel(sliding_speed=curve["sliding_speed"])
+    low, high = fit.valid_speed_range
+    data = curve.rename(friction_coefficient="friction_coefficient_model").assign(
+        {
+            f"friction_coefficient{end}": points[f"friction_coefficient{end}"]
+            for end in ("", "_std", "_sem")
+        }
+    )
+    return stamp(
+        data,
+        shear_stress_Pa=fit.shear_stress,
+        shear_stress_error_Pa=fit.shear_stress_error,
+        shear_stress_error_inflated_Pa=fit.shear_stress_error_inflated,
+        shear_stress_common_error_Pa=fit.common_error,
+        shear_stress_total_error_Pa=fit.total_error,
+        shear_stress_half_interval_Pa=fit.half_interval,
+        chi_square=fit.chi_square,
+        degrees_of_freedom=fit.degrees_of_freedom,
+        chi_square_p_value=fit.chi_square_p_value,
+        birge_ratio=fit.birge_ratio,
+        runs_p_value=fit.runs_p_value,
+        valid_speed_low_m_s=low,
+        valid_speed_high_m_s=high,
+        area_enhancement=fit.area_enhancement,
+        area_enhancement_error=fit.area_enhancement_error,
+        corrected_shear_stress_Pa=fit.corrected_shear_stress,
+        corrected_shear_stress_error_Pa=float(fit.corrected_shear_stress_error),
+        error_from=fit.error_from,
+    )
+
+
+def _profiles(
+    model: PlannedModel, points: np.ndarray, contact: LineContact, psd: xr.Dataset, load: float
+) -> xr.Dataset:
+    """Profiles at a few speeds from the slowest to the fastest that was measured."""
+    from tribolab.lubrication.stribeck import film_profile
+
+    moving = points[points > 0]
+    found = [
+        film_profile(contact, psd, model.viscosity, load, v, model.settings["rough_body"])
+        .reset_index("x")
+        .reset_coords("x")
+        .rename_dims(x="point")
+        for v in np.geomspace(moving.min(), moving.max(), _PROFILES)
+    ]
+    return stamp(xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts"))
+
+
+def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
+    from tribolab.lubrication.factors import flow_factors
+
+    factors = flow_factors(psd, rough_body)
+    return factors.dataset(_SEPARATIONS * factors.rms_roughness)
+
+
+def _uncertain(
+    contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: dict[str, Any]
+) -> xr.Dataset:
+    from tribolab.compare.model_uncertainty import model_uncertainty
+
+    return model_uncertainty(
+        contact,
+        psd,
+        shear_stress=fit.shear_stress,
+        shear_stress_error=fit.total_error,
+        **given,
+    )
+
+
+def failed_model(
+    model: PlannedModel, reason: str, error: str = "", seconds: float = 0.0, status: str = "failed"
+) -> ModelOutcome:
+    """Return the outcome of a model that has no results."""
+    severity = "note" if status == "skipped" else "fail"
+    curve = model.curve
+    return ModelOutcome(
+        name=model.name,
+        curve=curve.name,
+        surface=curve.surface,
+        medium=curve.medium,
+        normal_force=curve.normal_force,
+        status=status,
+        reason=reason,
+        error=error,
+        seconds=seconds,
+        findings=(Finding(severity, f"no model: {reason}"),),
+    )
+
+
+def _done(
+    model: PlannedModel, parts: tuple[str, ...], findings: list[Finding], **facts: Any
+) -> ModelOutcome:
+    curve = model.curve
+    return ModelOutcome(
+        name=model.name,
+        curve=curve.name,
+        surface=curve.surface,
+        medium=curve.medium,
+        normal_force=curve.normal_force,
+        status="done",
+        data_file=model.data_file,
+        parts=parts,
+        findings=tuple(findings),
+        **facts,
+    )
+
+
+def known_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
+    """Return the outcome of earlier results, if data, settings and version are the same."""
+    import netCDF4
+
+    from tribolab import __version__
+
+    if model.missing or not path.is_file():
+        return None
+    try:
+        with netCDF4.Dataset(path) as file:
+            attrs, groups = file.__dict__, tuple(file.groups)
+        record = json.loads(attrs[RECORD])
+        findings = [Finding(*finding) for finding in record["findings"]]
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
+        return None
+    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
+    if same != (model.config_sha256, __version__) or groups != tuple(record["parts"]):
+        return None
+    return _done(model, groups, findings, reused=True)
+
+
+def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:
+    from tribolab import __version__
+
+    curve = model.curve
+    return xr.Dataset(
+        attrs={
+            "surface": curve.surface,
+            "medium": curve.medium,
+            "normal_force_N": float(curve.normal_force),
+            "curve": curve.name,
+            "repeatability": model.repeatability,
+            "freedom": model.freedom,
+            "tribolab_version": __version__,
+            "config_sha256": model.config_sha256,
+            "history": history_line(f"model of {curve.name}"),
+            "Conventions": CONVENTIONS,
+            RECORD: json.dumps(record, ensure_ascii=False),
+        }
+    )

@@ -1,0 +1,93 @@
+"""Friction of the rough surfaces in glycerol: the mixed-lubrication model as the rig's truth."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+
+from tribolab.errors import AnalysisError
+from tribolab.studies import xu2026
+
+# The set speeds themselves, so that the truth there is the model's and not an interpolation's.
+_SPEEDS = tuple(sorted({1e-9, 1e-8, 1e-7, *xu2026.SPEEDS, 3e-2, 1e-1}))
+
+
+@dataclass(frozen=True)
+class MixedLaw:
+    """Friction coefficient of the mixed-lubrication model with a known shear stress.
+
+    Parameters
+    ----------
+    surface
+        Name of the surface, whose stand-in spectrum the model takes.
+    normal_force
+        [N]
+    shear_stress
+        sigma_f [Pa] in the real contact area.
+    speeds, friction
+        The model's curve: speeds [m/s] and friction coefficients, PCHIP over ln v between them.
+    """
+
+    surface: str
+    normal_force: float
+    shear_stress: float
+    speeds: tuple[float, ...]
+    friction: tuple[float, ...]
+
+    def __call__(self, speed: ArrayLike) -> np.ndarray:
+        """Friction coefficient at sliding speeds [m/s]; under the lowest the boundary limit.
+
+        Raises
+        ------
+        AnalysisError
+            If a speed is above the highest.
+        """
+        v = np.asarray(speed, dtype=float)
+        low, high = self.speeds[0], self.speeds[-1]
+        if np.any(v > high * (1 + 1e-9)):
+            raise AnalysisError(
+                f"the rig's friction law of {self.surface} ends at {high:g} m/s; got {v.max():g} "
+                "m/s: take slower strokes, or give simulate_run a law of your own"
+            )
+        curve = PchipInterpolator(np.log(self.speeds), self.friction)
+        return curve(np.log(np.clip(v, low, high)))
+
+
+@functools.cache
+def mixed_law(surface: str, normal_force: float) -> MixedLaw:
+    """Return the law of a rough surface in glycerol with the paper's shear stress at that load.
+
+    Between the paper's loads sigma_f is interpolated, beyond them it is that of the nearest.
+
+    Parameters
+    ----------
+    surface
+        ``"Sb-S"`` or ``"Sb-R"``.
+    normal_force
+        [N]
+
+    Notes
+    -----
+    `tribolab.stribeck_curve` with the system and the stand-in spectrum of `studies.xu2026`: exact
+    at the paper's 13 speeds, with a few on either side. Computed once in a process.
+
+    Examples
+    --------
+    >>> law = mixed_law("Sb-S", 31.0)
+    >>> law.shear_stress, round(float(law(1e-6)), 2)
+    (840000.0, 1.38)
+    """
+    from tribolab.lubrication.stribeck import stribeck_curve
+
+    known = xu2026.surface(surface)
+    forces, stresses = zip(*known.shear_stress, strict=True)
+    stress = float(np.interp(normal_force, forces, stresses))
+    contact, eta = xu2026.contact, xu2026.system.viscosity
+    load = contact.load(normal_force)
+    curve = stribeck_curve(contact, xu2026.psd(known.name), eta, load, stress, _SPEEDS)
+    friction = tuple(curve["friction_coefficient"].values.tolist())
+    return MixedLaw(known.name, float(normal_force), stress, _SPEEDS, friction)
