@@ -169,6 +169,7 @@ _ROWS = [
     ("derivative_skewness", "", "1", "skewness of the derivative of friction"),
     ("period_scatter", "", "1", "relative standard deviation of the recurrence times"),
     ("drop_scatter", "", "1", "relative standard deviation of the drops"),
+    ("segments_oscillating", "", "1", "number of segments with stick-slip"),
     ("events", "", "1", "number of whole cycles of stick and slip"),
     ("stick_duration", "t_stick", "s", "duration of a stick"),
     ("slip_duration", "t_slip", "s", "duration of a slip"),
