@@ -13,10 +13,12 @@ from tribolab.plot.curves import half_loop, stribeck
 from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
+from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
 from tribolab.plot.style import figure_data, paper_style, save, svg
 from tribolab.plot.surfaces import modulus, spectra, viscoelastic
 
 __all__ = [
+    "Trace",
     "adhesive_area",
     "contact_area",
     "effective_work",
@@ -28,10 +30,14 @@ __all__ = [
     "modulus",
     "paper_style",
     "save",
+    "slip_events",
+    "slip_spectra",
+    "slip_traces",
     "spectra",
     "strokes",
     "stribeck",
     "svg",
     "trace",
     "viscoelastic",
+    "waveform_map",
 ]
