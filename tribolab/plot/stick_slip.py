@@ -1,4 +1,4 @@
-"""Figures of stick-slip: traces stacked over distance, spectra, events, and the map of waveforms."""
+"""Figures of stick-slip: stacked traces, spectra, events, and the map of waveforms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _LOOK = {
 class Trace(NamedTuple):
     """One stroke to draw: what to call it, its run, segments and friction, number of the segment.
 
-    `surface` chooses the colour; `dry` draws it dashed in the legend's word only.
+    `surface` chooses the colour.
     """
 
     label: str
@@ -85,26 +85,26 @@ def slip_traces(
     end = longest or min(max(ends), 1.5 * min(ends))
     chosen = colours([trace.surface for trace in traces], surfaces)
     heights = [np.ptp(y[x <= end]) for _, x, y in drawn]
-    step = (1 + _GAP) * max(heights)
+    gap = _GAP * max(heights)
     rank: dict[str, int] = {}
     with paper_style():
-        figure = new_figure(DOUBLE_MM, 22.0 + 17.0 * len(drawn))
+        figure = new_figure(DOUBLE_MM, 25.0 + 13.0 * len(drawn))
         axes = figure.add_subplot()
         margins(figure, 15, 42, 11, 4)
         base = None
-        for trace, x, y in drawn:
+        for (trace, x, y), height in zip(drawn, heights, strict=True):
             part = x <= end
             low = float(y[part].min())
-            base = low if base is None else base + step
+            base = low if base is None else base
             shift = base - low
+            base += max(height, 0.6 * gap) + gap  # room for two lines of text
             count = sum(t.surface == trace.surface for t in traces)
             place = rank[trace.surface] = rank.get(trace.surface, -1) + 1
             colour = shade(chosen[trace.surface], place, count)
             short = envelope(x[part] * 1e6, y[part] + shift, _COLUMNS)
             axes.plot(*short, color=colour, linewidth=0.8)
-            words = plain(trace.label) + (
-                f"\nshifted by {shift:+.2f}" if abs(shift) > 0.005 else ""
-            )
+            words = plain(trace.label)
+            words += f"\nshifted by {shift:+.2f}" if abs(shift) > 0.005 else ""
             axes.annotate(
                 words,
                 (1.01, short[1][-min(20, short[1].size) :].mean()),
@@ -158,7 +158,7 @@ def slip_spectra(slips: Mapping[str, tuple[xr.Dataset, int]]) -> PaperFigure:
     """
     if not slips:
         raise AnalysisError("there is no spectrum to draw")
-    across = min(len(slips), 3)
+    across = 2 if len(slips) == 4 else min(len(slips), 3)
     down = -(-len(slips) // across)
     with paper_style():
         figure = new_figure(DOUBLE_MM, 12.0 + 58.0 * down)
@@ -329,6 +329,5 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
 
 
 def _drops(curve: xr.Dataset) -> np.ndarray:
-    return (
-        curve["drop"].values if "drop" in curve else np.full(curve.sizes["sliding_speed"], np.nan)
-    )
+    nothing = np.full(curve.sizes["sliding_speed"], np.nan)
+    return curve["drop"].values if "drop" in curve else nothing

@@ -41,6 +41,9 @@ SECTIONS = (
     Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
     Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
     Section("curves", "Stribeck curves", "sections/curves.html.j2", "figures"),
+    Section(
+        "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
+    ),
     Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
     Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
     Section("provenance", "Where it comes from", "sections/provenance.html.j2"),
