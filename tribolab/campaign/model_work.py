@@ -205,7 +205,7 @@ def _profiles(
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")
-        for v in np.geomspace(moving.min(), moving.max(), _PROFILES)
+        for v in (float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES))
     ]
     return stamp(xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts"))
 

@@ -76,7 +76,8 @@ def model_uncertainty(
 
     Notes
     -----
-    Each range is what a careful reader would not be surprised by, roughly 95 %. Deviations of
+    Each range is what a careful reader would not be surprised by, roughly 95 %; that of percolation
+    is wider than numerics of isotropic surfaces [2]_ leave it. Deviations of
     ln mu are combined in quadrature, those that raise mu at a speed for the upper edge and those
     that lower it for the lower one: the unknowns are independent of each other, so their sum
     would overstate the band; many are one-sided or bend the curve differently at both ends, so
@@ -91,7 +92,8 @@ def model_uncertainty(
     .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
        Stribeck curve in hydrophobic soft contacts" (2026).
     .. [2] A. Wang, M. H. Müser, "Percolation and Reynolds flow in elastic contacts of isotropic and
-       anisotropic, randomly rough surfaces", Tribol. Lett. 69, 1 (2021), arXiv:2010.13470.
+       anisotropic, randomly rough surfaces", Tribol. Lett. 69, 1 (2021).
+       doi:10.1007/s11249-020-01378-7
 
     Examples
     --------

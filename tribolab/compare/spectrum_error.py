@@ -1,4 +1,4 @@
-"""What an uncertain spectrum does to a fitted shear stress: an error that no repeat makes smaller."""
+"""What an uncertain spectrum does to a fitted shear stress: repeats do not help."""
 
 from __future__ import annotations
 

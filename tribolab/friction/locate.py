@@ -19,6 +19,7 @@ MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers ar
 FEW_BLOCKS = 512  # in a second look
 PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
 KEPT = ("constant", "at rest")
+MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
 class Piece(NamedTuple):
@@ -160,7 +161,7 @@ def _kind(
     mean: float, change: float, error: float, change_error: float, rest_speed: float, drift: float
 ) -> str:
     sure = abs(change) - 3 * change_error
-    if abs(mean) <= max(rest_speed, 4 * error):
+    if abs(mean) <= max(rest_speed, MOVING * error):
         return "ramp" if sure > 2 * rest_speed else "at rest"
     return "ramp" if sure > drift * abs(mean) else "constant"
 

@@ -17,10 +17,10 @@ from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
 
-BLOCK = 2 << 20  # bytes: few enough that memory is used again before it is given back
+BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
 _WORKERS = 2
 _DEPTH = 4  # blocks in work or waiting, so that no worker is idle while one is stored
-_ONE_PIECE = 1 << 19  # arrow's own block: its intermediate results stay in the cache
+_ONE_PIECE = 1 << 20  # arrow's own block: its intermediate results stay in the cache
 _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA", "--"]
 
 

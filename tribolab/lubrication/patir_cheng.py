@@ -40,7 +40,8 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
     References
     ----------
     .. [1] N. Patir, H. S. Cheng, J. Lubr. Technol. 100, 12 (1978). doi:10.1115/1.3453103
-    .. [2] N. Patir, H. S. Cheng, J. Lubr. Technol. 101, 220 (1979). doi:10.1115/1.3453329
+    .. [2] N. Patir, H. S. Cheng, "Application of Average Flow Model to Lubrication Between Rough
+       Sliding Surfaces", J. Lubr. Technol. 101, 220 (1979).
 
     Examples
     --------

@@ -344,7 +344,7 @@ def _curve(
     solid = np.stack([solution.fields.contact for solution in solutions])
     contact_length = _area(system, solid * problem.pressure) @ problem.mesh.width
     parts = [fluid_friction(problem, solution, friction_factors) for solution in solutions]
-    middle = int(np.argmin(np.abs(problem.mesh.x)))
+    central = np.array([np.interp(0.0, problem.mesh.x, one) for one in film])
     plain = [sum(fluid_friction(problem, solution, False)) for solution in solutions]
     real_length = contact_length * problem.half_width
     table = {
@@ -354,7 +354,7 @@ def _curve(
         "friction_per_shear_stress": real_length / force,
         "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
         "minimum_separation": film.min(axis=1) * problem.gap,
-        "central_separation": film[:, middle] * problem.gap,
+        "central_separation": central * problem.gap,
         "solid_load_share": solid @ problem.mesh.width / problem.load,
         "residual": np.array([solution.residual for solution in solutions]),
         "load_balance": np.array([solution.load_balance for solution in solutions]),

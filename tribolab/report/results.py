@@ -13,6 +13,8 @@ from tribolab.campaign.executor import completed
 from tribolab.report import sliding, surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
+from tribolab.report.model_figures import draw_model
+from tribolab.report.model_part import write_models
 from tribolab.report.page import write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
 from tribolab.report.sliding_figures import draw_sliding
@@ -65,6 +67,8 @@ def write_report(
     done = [surface for surface in outcome.surfaces if surface.name in rows]
     tasks = plan_surface_figures(done, folder)
     drawn = _drawn(draw_surfaces, tasks, "surfaces' figures", executor, tell, findings)
+    models, tasks = write_models(outcome, findings)
+    model_figures = _drawn(draw_model, tasks, "models' figures", executor, tell, findings)
 
     modes, slip_figures, slip_rows = _sliding(outcome, readable, rows, findings)
     ordered = tables.findings_table(findings)
@@ -79,6 +83,7 @@ def write_report(
     document["surfaces"] = [surface_record(one, rows.get(one.name)) for one in outcome.surfaces]
     document["surface_figures"] = drawn
     document["sliding_mode"], document["sliding_figures"] = modes, slip_figures
+    document |= {"models": models, "model_figures": model_figures}
     write_json(document, folder / "report.json")
     write_page(document, folder)
     tell("page", 1, 1)

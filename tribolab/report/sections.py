@@ -42,6 +42,9 @@ SECTIONS = (
     Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
     Section("curves", "Stribeck curves", "sections/curves.html.j2", "figures"),
     Section(
+        "model", "Mixed lubrication: model beside measurement", "sections/model.html.j2", "models"
+    ),
+    Section(
         "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
     ),
     Section("details", "Every run in detail", "sections/details.html.j2", "runs"),

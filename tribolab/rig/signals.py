@@ -190,13 +190,17 @@ def _ripple(
     fine: np.ndarray,
     rng: np.random.Generator,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Stick-slip and fluctuation along a stroke, with zero mean over the constant-speed part."""
+    """Stick-slip of zero mean over the constant-speed part, and fluctuation whose mean is random.
+
+    Were the fluctuation's mean removed too, no error bar told from the trace could be right.
+    """
     noise = slow_noise(rng, length, scatter.fluctuation_length * length)
     wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None
 
-    def raw(distance: np.ndarray) -> np.ndarray:
-        value = level * scatter.fluctuation * noise(distance)
-        return value + wave(distance) if wave else value
+    mean = float(wave(fine).mean()) if wave else 0.0
 
-    mean = float(raw(fine).mean())
-    return lambda distance: raw(distance) - mean
+    def ripple(distance: np.ndarray) -> np.ndarray:
+        value = level * scatter.fluctuation * noise(distance)
+        return value + wave(distance) - mean if wave else value
+
+    return ripple

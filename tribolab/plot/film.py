@@ -1,0 +1,148 @@
+"""Figures of the film: profiles across the contact, flow and friction factors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.lines import Line2D
+
+from tribolab.plot.frame import colours, logarithmic
+from tribolab.plot.labels import plain, speed_text
+from tribolab.plot.style import (
+    DOUBLE_MM,
+    GREY,
+    PaperFigure,
+    margins,
+    new_figure,
+    paper_style,
+    tidy,
+)
+
+# From dark to light and from blue to yellow: in order for everybody, on paper too.
+_SPEED_COLOURS = ("#00204D", "#31446B", "#666970", "#958F78", "#CBBA69")
+_HEIGHT = 66.0
+_PANELS = (
+    ("separation", 1e6, r"mean separation $\bar u$ (µm)"),
+    ("contact_pressure", 1e-6, r"contact pressure $p_{\mathrm{cont}}$ (MPa)"),
+    ("fluid_pressure", 1e-6, r"fluid pressure $p_{\mathrm{fluid}}$ (MPa)"),
+)
+_FLOW = (
+    ("pressure_flow_factor", "-", r"$\phi_{\mathrm{p}}$"),
+    ("shear_flow_factor", "--", r"$\phi_{\mathrm{s}}$"),
+)
+_FRICTION = (
+    ("shear_stress_factor", "-", r"$\phi_{\mathrm{f}}$"),
+    ("shear_stress_correction", "--", r"$\phi_{\mathrm{fs}}$"),
+    ("pressure_stress_factor", ":", r"$\phi_{\mathrm{fp}}$"),
+)
+
+
+def film_profiles(profiles: xr.Dataset, *, title: str = "") -> PaperFigure:
+    """Draw separation, contact and fluid pressure across the contact at several speeds.
+
+    Parameters
+    ----------
+    profiles
+        ``x``, ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` [Pa] over
+        (sliding_speed, point).
+    title
+        Text above the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels over x; the flat slides to +x, so the inlet is on the left.
+    """
+    speeds = profiles["sliding_speed"].values
+    with paper_style():
+        figure = new_figure(DOUBLE_MM, _HEIGHT)
+        panels = figure.subplots(1, 3)
+        widest = 0.0
+        for rank, v in enumerate(speeds):
+            one = profiles.isel(sliding_speed=rank)
+            x = 1e3 * one["x"].values
+            total = (one["contact_pressure"] + one["fluid_pressure"]).values
+            widest = max(widest, np.abs(x[total > 5e-3 * total.max()]).max())
+            place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(speeds) - 1, 1))
+            look = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
+            for axes, (name, factor, _) in zip(panels, _PANELS, strict=True):
+                axes.plot(x, factor * one[name].values, **look, label=speed_text(v))
+            numbers = {f"{name}_{unit}": one[name].values for name, unit in _UNITS}
+            figure.keep("profiles", speed_text(v), x_m=one["x"].values, **numbers)
+        for axes, (_, _, text), letter in zip(panels, _PANELS, "abc", strict=True):
+            axes.set_xlim(-1.05 * widest, 1.05 * widest)
+            axes.set_xlabel("coordinate $x$ (mm)")
+            axes.set_ylabel(text)
+            tidy(axes, letter)
+        middle = np.abs(profiles["x"].values).argmin(axis=-1)[..., None]
+        central = np.take_along_axis(profiles["separation"].values, middle, axis=-1)
+        panels[0].set_ylim(0, 4e6 * central.max())  # the gap outside grows without end
+        for axes in panels[1:]:
+            axes.set_ylim(0, 1.18 * axes.dataLim.y1)
+        margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.32)
+        handles, texts = panels[0].get_legend_handles_labels()
+        figure.legend(
+            handles, texts, loc="upper right", ncols=len(texts),
+            bbox_to_anchor=(1 - 3 / DOUBLE_MM, 1 - (4.5 if title else 0.8) / _HEIGHT),
+        )  # fmt: skip
+        if title:
+            figure.text(13 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
+    return figure
+
+
+_UNITS = (("separation", "m"), ("contact_pressure", "Pa"), ("fluid_pressure", "Pa"))
+
+
+def lubrication_factors(
+    factors: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw flow and friction factors over the separation in units of the roughness.
+
+    Parameters
+    ----------
+    factors
+        The five factors (separation) with the attribute ``rms_roughness_m``, by the surface's
+        name.
+    surfaces
+        All surfaces of the study in their order, so that each keeps its colour.
+    title
+        Text above the figure.
+    """
+    chosen = colours(list(factors), surfaces)
+    with paper_style():
+        figure = new_figure(DOUBLE_MM, _HEIGHT)
+        flow, friction = figure.subplots(1, 2)
+        for axes, names in ((flow, _FLOW), (friction, _FRICTION)):
+            for name, data in factors.items():
+                over = data["separation"].values / data.attrs["rms_roughness_m"]
+                for key, style, _ in names:
+                    axes.plot(over, data[key], color=chosen[name], linestyle=style, linewidth=1.1)
+                numbers = {key: data[key].values for key, _, _ in names}
+                figure.keep("factors", name, separation_over_rms_roughness=over, **numbers)
+            lines = [
+                Line2D([], [], color=GREY, linestyle=style, linewidth=1.1, label=text)
+                for _, style, text in names
+            ]
+            axes.legend(handles=lines, loc="center right" if axes is flow else "lower right")
+            logarithmic(axes, *("x" if axes is flow else "xy"))
+            axes.set_xlim(over.min(), over.max())
+            axes.set_xlabel(r"mean separation / roughness $\bar u/h_{\mathrm{rms}}$")
+        flow.axhline(0, color=GREY, linewidth=0.6, zorder=0)
+        friction.set_ylim(1e-3, 2 * friction.dataLim.y1)
+        flow.set_ylabel("flow factor")
+        friction.set_ylabel("friction factor")
+        tidy(flow, "a")
+        tidy(friction, "b")
+        margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.2)
+        handles = [
+            Line2D([], [], color=c, linewidth=1.4, label=plain(n)) for n, c in chosen.items()
+        ]
+        figure.legend(
+            handles=handles, loc="upper right", ncols=len(handles),
+            bbox_to_anchor=(1 - 3 / DOUBLE_MM, 1 - (4.5 if title else 0.8) / _HEIGHT),
+        )  # fmt: skip
+        if title:
+            figure.text(13 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
+    return figure

@@ -1,0 +1,257 @@
+"""Mixed lubrication beside the measurement: curve, residuals, shear stress, friction factors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from tribolab.plot.frame import band, colours, legend_above, logarithmic, single_axes
+from tribolab.plot.labels import column, label, plain
+from tribolab.plot.style import (
+    BLACK,
+    GREY,
+    SINGLE_MM,
+    PaperFigure,
+    margins,
+    new_figure,
+    paper_style,
+    surface_styles,
+)
+
+_MODEL_HEIGHT, _MISFIT_HEIGHT = 50.0, 20.0  # mm
+
+
+def mixed_curve(
+    fit: xr.Dataset,
+    curve: xr.Dataset,
+    *,
+    uncertainty: xr.Dataset | None = None,
+    dry: xr.Dataset | None = None,
+    surface: str = "",
+    surfaces: Sequence[str] = (),
+    title: str = "",
+) -> PaperFigure:
+    """Draw a measured Stribeck curve, the model with its parts, and what is left between them.
+
+    Parameters
+    ----------
+    fit
+        ``friction_coefficient`` with ``_std``, ``_sem`` and ``_model`` (sliding_speed), and
+        ``friction_coefficient_residual``: the group "fit" of a model's data file.
+    curve
+        The model over a wider range of speeds, with its parts.
+    uncertainty
+        From `tribolab.model_uncertainty`: the band about the model.
+    dry
+        The measured curve of the dry contact at the same load.
+    surface, surfaces
+        Its name, and all names of the study in their order, for the colour.
+    title
+        Text above the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Above: points with wide pale bars (standard deviation) and narrow ones (standard error),
+        the model as a line, its solid part dashed and its viscous part dotted, dry points open.
+        Below: measured less model, with the standard errors.
+    """
+    style = surface_styles([*surfaces, surface])[surface]
+    with paper_style():
+        figure = new_figure(SINGLE_MM, _MODEL_HEIGHT + _MISFIT_HEIGHT)
+        ratios = {"height_ratios": [_MODEL_HEIGHT, _MISFIT_HEIGHT]}
+        axes, below = figure.subplots(2, 1, sharex=True, gridspec_kw=ratios)
+        if uncertainty is not None:
+            _band(figure, axes, uncertainty, style.colour)
+        _model(figure, axes, curve, style.colour)
+        _measured(figure, axes, fit, style, "measured")
+        if dry is not None:
+            _measured(figure, axes, dry, style, "dry", hollow=True)
+        _misfit(figure, below, fit, style)
+        _speeds(below, curve["sliding_speed"].values)
+        axes.set_ylabel(label("friction_coefficient"))
+        axes.set_ylim(0, 1.06 * axes.dataLim.y1)
+        _two_panels(figure, axes, title)
+    return figure
+
+
+def _model(figure: PaperFigure, axes: Axes, curve: xr.Dataset, colour: str) -> None:
+    v = curve["sliding_speed"].values
+    fluid = curve["friction_coefficient_couette"] + curve["friction_coefficient_pressure"]
+    for name, values, look, text in (
+        ("model", curve["friction_coefficient"], {"linestyle": "-", "linewidth": 1.2}, "model"),
+        ("solid", curve["friction_coefficient_solid"], {"linestyle": "--"}, "solid part"),
+        ("viscous", fluid, {"linestyle": (0, (1, 1.2)), "color": BLACK}, "viscous part"),
+    ):
+        axes.plot(v, values, **{"color": colour, "linewidth": 0.9, "zorder": 3} | look, label=text)
+        numbers = {column("sliding_speed"): v, "friction_coefficient": values.values}
+        figure.keep("friction", name, **numbers)
+
+
+def _band(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, colour: str) -> None:
+    v = uncertainty["sliding_speed"].values
+    low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
+    band(axes, v, low, high, colour)
+    axes.fill_between([], [], [], color=colour, alpha=0.2, linewidth=0, label="its band")
+    numbers = {column("sliding_speed"): v, "friction_coefficient_low": low}
+    figure.keep("friction", "band", **numbers, friction_coefficient_high=high)
+
+
+def _measured(figure, axes: Axes, data: xr.Dataset, style, text: str, hollow: bool = False) -> None:
+    v, mu = data["sliding_speed"].values, data["friction_coefficient"].values
+    kept = {}
+    for end, look in (("_std", (2.4, 0.28, 0)), ("_sem", (0.8, 1.0, 1.8))):
+        name = f"friction_coefficient{end}"
+        if name in data:
+            width, alpha, cap = look
+            axes.errorbar(
+                v, mu, np.nan_to_num(data[name].values), fmt="none", ecolor=style.colour,
+                elinewidth=width, alpha=alpha, capsize=cap, capthick=0.8, zorder=3 + alpha,
+            )  # fmt: skip
+            kept[name] = data[name].values
+    axes.plot(
+        v, mu, color=style.colour, marker=style.marker, markersize=4.2, markeredgewidth=0.9,
+        markerfacecolor="white" if hollow else style.colour, linewidth=0.7,
+        linestyle="--" if hollow else "none", label=text, zorder=5,
+    )  # fmt: skip
+    columns = {column("sliding_speed"): v, "friction_coefficient": mu}
+    figure.keep("friction", text, **columns, **kept)
+
+
+def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style) -> None:
+    v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
+    error = np.nan_to_num(fit["friction_coefficient_sem"].values)
+    axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
+    axes.errorbar(
+        v, off, error, color=style.colour, marker=style.marker, markersize=3.2,
+        linestyle="none", elinewidth=0.8, capsize=1.8, capthick=0.8,
+    )  # fmt: skip
+    figure.keep("residual", "measured less model", sliding_speed_m_s=v, residual=off, error=error)
+    axes.set_ylabel("measured −\nmodel")
+    axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
+    reach = 1.15 * np.nanmax(np.abs(off) + error) or 1.0
+    axes.set_ylim(-reach, reach)
+
+
+def _speeds(axes: Axes, speed: np.ndarray) -> None:
+    axes.set_xscale("log")
+    axes.set_xlim(speed.min(), speed.max())
+    axes.xaxis.set_major_locator(LogLocator(numticks=9))
+    axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel(label("sliding_speed"))
+
+
+def _two_panels(figure: PaperFigure, axes: Axes, title: str) -> None:
+    handles, texts = axes.get_legend_handles_labels()
+    rows = -(-len(texts) // 3)
+    top = 2.5 + 3.8 * rows + (4.5 if title else 0)
+    height = _MODEL_HEIGHT + _MISFIT_HEIGHT + top + 10.5
+    figure.set_size_inches(SINGLE_MM / 25.4, height / 25.4)
+    margins(figure, 17, 3, 10.5, top, hspace=0.06)
+    figure.align_ylabels()
+    axes.legend(
+        handles,
+        texts,
+        loc="lower left",
+        ncols=3,
+        bbox_to_anchor=(0, 1 + 0.8 / _MODEL_HEIGHT),
+        handlelength=1.8,
+        columnspacing=1.1,
+    )
+    if title:
+        figure.text(17 / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
+
+
+def shear_stress(
+    table: pd.DataFrame, *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw fitted shear stresses over the load: as fitted, and in the area that adhesion makes.
+
+    Parameters
+    ----------
+    table
+        A row per fit with ``surface``, ``normal_force_N``, ``shear_stress_Pa`` and its
+        ``shear_stress_low_Pa`` and ``_high_Pa``; ``corrected_shear_stress_Pa`` and
+        ``corrected_shear_stress_error_Pa``.
+    surfaces, title
+        As for `mixed_curve`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Open symbols: effective, for the area without adhesion, with the 95 % interval. Filled:
+        corrected for adhesion, with 1.96 standard errors.
+    """
+    names = list(dict.fromkeys(table["surface"]))
+    styles = surface_styles([*surfaces, *names])
+    with paper_style():
+        figure, axes = single_axes()
+        for name in names:
+            rows = table[table["surface"] == name].sort_values("normal_force_N")
+            load, stress = rows["normal_force_N"].to_numpy(), rows["shear_stress_Pa"].to_numpy()
+            ends = rows[["shear_stress_low_Pa", "shear_stress_high_Pa"]].to_numpy().T
+            bars = np.abs(ends - stress)
+            corrected = rows["corrected_shear_stress_Pa"].to_numpy()
+            error = 1.96 * rows["corrected_shear_stress_error_Pa"].to_numpy()
+            for y, bar, face, line in (
+                (stress, bars, "white", "--"),
+                (corrected, error, styles[name].colour, "-"),
+            ):
+                axes.errorbar(
+                    load, 1e-6 * y, 1e-6 * bar, color=styles[name].colour, markersize=4.5,
+                    marker=styles[name].marker, markerfacecolor=face, linestyle=line, capsize=1.8,
+                    linewidth=0.8,
+                    label=plain(name) if line == "-" else "_nolegend_",
+                )  # fmt: skip
+            figure.keep("shear stress", name, **{k: rows[k].to_numpy() for k in rows.columns[1:]})
+        axes.plot([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="--",
+                  label="as fitted")  # fmt: skip
+        axes.plot([], [], color=GREY, marker="o", linestyle="-", label="in the adhesive area")
+        axes.set_xlim(0, 1.08 * table["normal_force_N"].max())
+        axes.set_ylim(min(0.0, 1.1 * axes.dataLim.y0), 1.08 * axes.dataLim.y1)
+        axes.axhline(0, color=GREY, linewidth=0.6, zorder=0)
+        axes.set_xlabel(label("normal_force"))
+        axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
+        legend_above(figure, axes, title)
+    return figure
+
+
+def friction_factor_effect(
+    curves: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw model curves with the friction factors of the roughness and without them.
+
+    Parameters
+    ----------
+    curves
+        ``friction_coefficient`` and ``friction_without_factors`` (sliding_speed) by the surface's
+        name.
+    surfaces, title
+        As for `mixed_curve`.
+    """
+    chosen = colours(list(curves), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, curve in curves.items():
+            v = curve["sliding_speed"].values
+            for key, style in (("friction_coefficient", "-"), ("friction_without_factors", "--")):
+                mu = curve[key].values
+                text = plain(name) if style == "-" else "_nolegend_"
+                axes.plot(v, mu, color=chosen[name], linestyle=style, linewidth=1.1, label=text)
+                figure.keep("friction", f"{name}, {key}", sliding_speed_m_s=v, friction=mu)
+        axes.plot([], [], color=GREY, linestyle="-", label="with factors")
+        axes.plot([], [], color=GREY, linestyle="--", label="without")
+        logarithmic(axes, "x", "y")
+        axes.set_xlim(v.min(), v.max())
+        top = axes.dataLim.y1
+        axes.set_ylim(max(axes.dataLim.y0 / 1.3, 1e-4 * top), 1.4 * top)
+        axes.set_xlabel(label("sliding_speed"))
+        axes.set_ylabel(label("friction_coefficient"))
+        legend_above(figure, axes, title)
+    return figure

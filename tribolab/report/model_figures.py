@@ -1,0 +1,239 @@
+"""The figures of the section on mixed lubrication, each drawn by a worker."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from tribolab.plot.labels import force_text
+from tribolab.report.figure_files import save_figure
+from tribolab.report.model_records import ModelRows, shear_stress_table
+from tribolab.report.wording import span
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from tribolab.campaign.outcome import ModelOutcome, Outcome
+
+_ALONE = threading.Lock()
+_MOST_IN_ONE = 9  # surfaces or loads that can be told apart in one figure
+
+
+@dataclass(frozen=True)
+class ModelFigure:
+    """A figure to draw: its kind, the models that it shows, where it goes.
+
+    Parameters
+    ----------
+    kind
+        Key of `_KINDS`.
+    name
+        What its file is called.
+    title
+        What it shows.
+    models
+        Models with the data.
+    dry
+        Data file of the dry measured curve beside it; "" if there is none.
+    surfaces
+        All surfaces of the study, for their colours.
+    table
+        Rows of fits, where it shows those.
+    folder
+        Folder of the results.
+    """
+
+    kind: str
+    name: str
+    title: str
+    models: tuple[ModelOutcome, ...]
+    surfaces: tuple[str, ...]
+    folder: Path
+    dry: str = ""
+    table: pd.DataFrame | None = None
+
+    @property
+    def file(self) -> str:
+        """Path of the figure relative to the results folder."""
+        return f"figures/{self.name}.svg"
+
+
+def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRows]) -> list[ModelFigure]:
+    """Choose the figures for which there are data."""
+    fitted = [one.model for one in rows if one.fit is not None]
+    surfaces = tuple(dict.fromkeys(curve.surface for curve in outcome.curves))
+    folder = Path(outcome.folder)
+    planned: list[ModelFigure] = []
+
+    def add(kind: str, name: str, title: str, models: Iterable[ModelOutcome], **more: Any) -> None:
+        planned.append(ModelFigure(kind, name, title, tuple(models), surfaces, folder, **more))
+
+    for model in fitted:
+        add("curve", model.name, _title(model), [model], dry=_dry(outcome, model))
+    for number, surface in enumerate(dict.fromkeys(model.surface for model in fitted)):
+        mine = [model for model in fitted if model.surface == surface][:_MOST_IN_ONE]
+        if len(mine) > 1:
+            add("loads", f"model_surface_{number + 1}", surface, mine)
+    if fitted:
+        table = shear_stress_table([one for one in rows if one.fit is not None])
+        add("shear_stress", "shear_stress", "Shear stress over the load", fitted, table=table)
+    for kind, part, title in (
+        ("effect", "profiles", "With and without friction factors"),
+        ("factors", "factors", "Flow and friction factors"),
+    ):
+        mine = [one.model for one in rows if part in one.model.parts][:_MOST_IN_ONE]
+        if mine:
+            add(kind, f"model_{kind}", title, mine)
+    for kind, part in (("profiles", "profiles"), ("sensitivity", "uncertainty")):
+        for one in rows:
+            if part in one.model.parts:
+                name = f"{kind}_{one.model.name.removeprefix('model_')}"
+                add(kind, name, _title(one.model), [one.model])
+    return planned
+
+
+def _title(model: ModelOutcome) -> str:
+    force = force_text(float("nan") if model.normal_force is None else model.normal_force)
+    return ", ".join(part for part in (model.surface, model.medium, force) if part)
+
+
+def _dry(outcome: Outcome, model: ModelOutcome) -> str:
+    """Return the data file of the dry curve of the same surface and load."""
+    from tribolab.plot.curves import is_dry
+
+    for curve in outcome.curves:
+        same = (curve.surface, curve.normal_force) == (model.surface, model.normal_force)
+        if curve.done and same and is_dry(curve.medium):
+            return curve.data_file
+    return ""
+
+
+def draw_model(task: ModelFigure) -> dict[str, str]:
+    """Draw one figure into the results and return its record."""
+    draw, caption = _KINDS[task.kind]
+    with _ALONE:
+        figure, numbers = draw(task)
+        text = f"{task.title}. {caption}"
+        alt = f"{task.title}. {numbers} {caption}"
+        record = save_figure(figure, task.folder, task.file, text, alt)
+    return record | {"kind": task.kind}
+
+
+def _read(task: ModelFigure, model: ModelOutcome, group: str) -> xr.Dataset:
+    from tribolab.io.netcdf import read_netcdf
+
+    return read_netcdf(task.folder / model.data_file, group=group)
+
+
+def _plot() -> Any:
+    from tribolab import plot
+
+    return plot
+
+
+def _by_surface(task: ModelFigure, group: str) -> dict[str, xr.Dataset]:
+    return {model.surface: _read(task, model, group) for model in task.models}
+
+
+def _curve(task: ModelFigure) -> tuple[Figure, str]:
+    from tribolab.io.netcdf import read_netcdf
+
+    (model,) = task.models
+    fit = _read(task, model, "fit")
+    spread = _read(task, model, "uncertainty") if "uncertainty" in model.parts else None
+    dry = read_netcdf(task.folder / task.dry) if task.dry else None
+    figure = _plot().mixed_curve(
+        fit,
+        _read(task, model, "curve"),
+        uncertainty=spread,
+        dry=dry,
+        surface=model.surface,
+        surfaces=task.surfaces,
+        title=task.title,
+    )
+    stress = fit.attrs["shear_stress_Pa"] / 1e6
+    measured = span(fit["friction_coefficient"].values.tolist())
+    return figure, f"Measured µ from {measured}; fitted shear stress {stress:.3g} MPa."
+
+
+def _loads(task: ModelFigure) -> tuple[Figure, str]:
+    measured, models = [], []
+    for model in task.models:
+        labels = {"surface": model.surface, "medium": model.medium}
+        labels["normal_force_N"] = model.normal_force
+        fit, curve = (_read(task, model, group) for group in ("fit", "curve"))
+        measured.append(fit.assign_attrs(labels))
+        models.append(curve.assign_attrs(labels))
+    figure = _plot().stribeck(measured, models, surfaces=task.surfaces, title=task.title)
+    return figure, f"Measured and computed at {len(task.models)} loads."
+
+
+def _shear_stress(task: ModelFigure) -> tuple[Figure, str]:
+    table = task.table
+    figure = _plot().shear_stress(table, surfaces=task.surfaces)
+    words = span((table["shear_stress_Pa"] / 1e6).tolist(), " MPa")
+    return figure, f"As fitted {words}."
+
+
+def _effect(task: ModelFigure) -> tuple[Figure, str]:
+    curves = _by_surface(task, "curve")
+    return _plot().friction_factor_effect(curves, surfaces=task.surfaces), ""
+
+
+def _factors(task: ModelFigure) -> tuple[Figure, str]:
+    factors = _by_surface(task, "factors")
+    return _plot().lubrication_factors(factors, surfaces=task.surfaces), ""
+
+
+def _profiles(task: ModelFigure) -> tuple[Figure, str]:
+    profiles = _read(task, task.models[0], "profiles")
+    return _plot().film_profiles(profiles, title=task.title), ""
+
+
+def _sensitivity(task: ModelFigure) -> tuple[Figure, str]:
+    (model,) = task.models
+    found = _read(task, model, "uncertainty")
+    most = str(found["variation"].values[int(found["largest_change"].argmax())])
+    figure = _plot().model_sensitivity(
+        found, surface=model.surface, surfaces=task.surfaces, title=task.title
+    )
+    return figure, f"Moved most by: {most}."
+
+
+_KINDS: dict[str, tuple[Callable[[ModelFigure], tuple[Figure, str]], str]] = {
+    "curve": (
+        _curve,
+        "Points: measured, wide pale bars the standard deviation while sliding, narrow bars the "
+        "standard error; full: the model with the fitted shear stress; dashed: its solid part; "
+        "dotted: its viscous part; shaded: what the model does not know; open symbols: dry. Below: "
+        "measured less model.",
+    ),
+    "loads": (_loads, "Points: measured; lines: the model with the shear stress of each load."),
+    "shear_stress": (
+        _shear_stress,
+        "Open: as fitted, for the area without adhesion, with the 95 % interval, the spectrum's "
+        "error in it; filled: in the area that adhesion makes.",
+    ),
+    "effect": (_effect, "At the lowest load. Full: with them, dashed: without."),
+    "factors": (
+        _factors,
+        "(a) Pressure flow factor and shear flow factor; (b) friction factors. Where surfaces "
+        "agree their lines lie on each other.",
+    ),
+    "profiles": (
+        _profiles,
+        "Across the contact, the flat sliding to the right: (a) mean separation, (b) pressure in "
+        "the solid contact, (c) pressure in the fluid.",
+    ),
+    "sensitivity": (
+        _sensitivity,
+        "Left: the model with its band. Right: how far each thing that is not known moves the "
+        "curve at most, at the two ends of its range.",
+    ),
+}

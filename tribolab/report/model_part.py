@@ -1,0 +1,50 @@
+"""The report's part on models: tables written, records and figures planned."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.work import explain
+from tribolab.report import model_records, tables
+from tribolab.report.model_figures import ModelFigure, plan_model_figures
+from tribolab.report.model_records import ModelRows, model_record, model_rows
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome
+
+
+def write_models(
+    outcome: Outcome, findings: list[dict[str, str]]
+) -> tuple[list[dict[str, Any]], list[ModelFigure]]:
+    """Write the tables of the models; return their records and the figures to draw.
+
+    What was found about the models is added to `findings`.
+    """
+    rows: dict[str, ModelRows] = {}
+    for model in outcome.models:
+        where = f"model {model.name.removeprefix('model_')}"
+        findings += [
+            {"severity": severity, "run": "", "where": where, "message": message}
+            for severity, message in model.findings
+        ]
+        if not model.done:
+            continue
+        try:
+            rows[model.name] = model_rows(outcome, model)
+        except Exception as error:  # recorded: the other models have their place in the report
+            message = explain(error)[0]
+            findings.append({"severity": "error", "run": "", "where": where, "message": message})
+    every = list(rows.values())
+    model_records.complete(every)
+    folder = Path(outcome.folder)
+    if outcome.models:
+        stresses = model_records.shear_stress_table(every)
+        for name, table in (
+            ("shear_stress", stresses),
+            ("stribeck_model", model_records.curve_table(every)),
+            ("model_sensitivity", model_records.sensitivity_table(every)),
+        ):
+            tables.write(table, folder / "tables" / f"{name}.csv")
+    records = [model_record(model, rows.get(model.name)) for model in outcome.models]
+    return records, plan_model_figures(outcome, every)

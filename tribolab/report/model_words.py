@@ -1,0 +1,77 @@
+"""Where measurement and model part, said in words from the residuals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.plot.labels import speed_text
+from tribolab.report.wording import percent
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_UNLIKELY = 0.05  # probability under which the order of the residuals' signs is no chance
+_LARGE = 0.10  # of the measured friction: a miss that any reader sees
+_CLOSE = 0.02
+
+
+def judgement(fit: xr.Dataset) -> str:
+    """Return a sentence on how well one shear stress describes the measured curve.
+
+    Parameters
+    ----------
+    fit
+        The group "fit" of a model's data file.
+
+    Notes
+    -----
+    Whether the two part is told by chi-square and by the order of the residuals' signs; where,
+    by the range of speeds that one shear stress describes within the errors, and by the points
+    that are off by more than a tenth of the friction.
+    """
+    used = fit["used"].values > 0
+    speed = fit["sliding_speed"].values[used]
+    mu, off = (
+        fit[name].values[used] for name in ("friction_coefficient", "friction_coefficient_residual")
+    )
+    share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
+    worst = int(np.argmax(np.abs(off)))
+    parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max())]
+    low, high = fit.attrs["valid_speed_low_m_s"], fit.attrs["valid_speed_high_m_s"]
+    if np.isfinite(low) and (low > 1.01 * speed[0] or high < 0.99 * speed[-1]):
+        parts.append(
+            f"within the errors one shear stress describes {speed_text(low)} to {speed_text(high)}"
+        )
+    elif not np.isfinite(low):
+        parts.append("no range of speeds is described within the errors")
+    if np.any(share > _LARGE):
+        away = speed[share > _LARGE]
+        where = speed_text(away[0])
+        if away.size > 1:
+            where += f" to {speed_text(away[-1])}"
+        parts.append(f"the two differ by more than {percent(_LARGE)} of the friction at {where}")
+    side = "above" if off[worst] > 0 else "below"
+    parts.append(
+        f"largest at {speed_text(speed[worst])}, where the measurement lies {abs(off[worst]):.2g} "
+        f"{side} the model's {mu[worst] - off[worst]:.3g}"
+    )
+    return "; ".join(parts)
+
+
+def _verdict(attrs: dict, largest: float) -> str:
+    """Say first whether the two agree, then whether what is left has an order."""
+    ordered = attrs["runs_p_value"] < _UNLIKELY
+    if attrs["shear_stress_Pa"] <= 0:
+        return "the model does not describe this curve: the fitted shear stress is not positive"
+    if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
+        return "the model describes the curve within the errors"
+    if attrs["chi_square_p_value"] >= _UNLIKELY:
+        return "within the errors, but the residuals follow one another: the shape differs slightly"
+    if largest < _CLOSE:
+        words = "beyond the small errors of the points, yet the curves are close"
+    else:
+        words = "beyond the errors"
+    order = ", and not by chance: neighbouring points err alike" if ordered else ""
+    return f"measurement and model part {words}{order}"
