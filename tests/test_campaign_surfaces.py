@@ -127,9 +127,9 @@ def test_tables_say_what_the_functions_give(outcome):
     pressure = float(hertz_mean_pressure(310.0, xu2026.contact))
     assert contact["pressure_Pa"] == pressure
     assert contact["contact_area_ratio"] == contact_area_ratio(pressure, psd, 2e6)
-    assert list(tables["roughness"].columns) == ["surface", *ROUGHNESS]
-    assert list(tables["contact"].columns) == ["surface", *CONTACT]
-    assert list(tables["adhesion"].columns) == ["surface", *ADHESION]
+    assert list(tables["roughness"].columns) == ["surface", "quality", *ROUGHNESS]
+    assert list(tables["contact"].columns) == ["surface", "quality", *CONTACT]
+    assert list(tables["adhesion"].columns) == ["surface", "quality", *ADHESION]
     adhesion = tables["adhesion"].set_index("medium")
     assert list(adhesion.index) == ["glycerol", "dry"]
     assert adhesion.work_of_adhesion_J_m2.tolist() == [0.051, 0.064]
@@ -259,7 +259,7 @@ def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):
 
 def test_without_contact_there_is_a_spectrum_only(tmp_path, profiles):
     surface = processed(tmp_path, profiles[:1], contact=NOTHING_KNOWN, lowest_force=None)
-    assert surface.parts == ("psd_1d", "psd", "roughness")
+    assert surface.parts == ("scans", "psd_1d", "psd", "roughness")
     assert any("youngs_modulus" in message for message in said(surface, "note"))
     assert any("begins where the scans do" in message for message in said(surface, "note"))
     rows = surface_rows(surface, tmp_path)
@@ -270,7 +270,7 @@ def test_without_loads_contact_is_known_over_pressure_only(tmp_path, profiles):
     medium = PlannedMedium("dry", 0.064, 0.064, 0.064)
     surface = processed(tmp_path, profiles[:1], forces=(), lowest_force=None, media=(medium,))
     assert set(surface.parts) == {
-        *("psd_1d", "psd", "roughness", "contact", "adhesion", "adhesion_loads")
+        *("scans", "psd_1d", "psd", "roughness", "contact", "adhesion", "adhesion_loads")
     }
     rows = surface_rows(surface, tmp_path)
     assert len(rows.contact) == 31 and rows.contact[0]["normal_force_N"] is None

@@ -1,18 +1,13 @@
 """Drafting dialects: what the drafted TOML reads is what an independent look at the file says."""
 
 import re
-import shlex
 import tomllib
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
-from typer.testing import CliRunner
+from drafts import drafted
 
-from tribolab import cli
-from tribolab.errors import ConfigError, OutputError, ReadError
-from tribolab.io.dialects import load_dialect
+from tribolab.errors import OutputError, ReadError
 from tribolab.io.draft import draft_dialect, save_draft
 from tribolab.io.runs import read
 from tribolab.io.scan_results import read_results
@@ -36,16 +31,6 @@ def column(rows, place, scale=1.0, offset=0.0):
         np.array([float(row[place - 1]) if row[place - 1] else np.nan for row in rows]) * (scale)
         + offset
     )
-
-
-def drafted(path, tmp_path):
-    """The dataset that the drafted TOML reads, and the draft."""
-    draft = draft_dialect(path)
-    toml = save_draft(draft, tmp_path / f"{draft.name}.toml")
-    load_dialect(toml)
-    if draft.kind == "scan":
-        return read_scans(path, instrument=toml), draft
-    return read(path, instrument=toml, pair=False), draft
 
 
 def agree(data, rows, columns, origin_of_time):
@@ -392,134 +377,3 @@ def test_a_long_file_with_a_footer_beyond_what_is_looked_at(tmp_path):
     data, draft = drafted(file, tmp_path)
     assert not draft.layout.whole
     assert data.sizes["time"] == n and data.friction_force.values[-1] == (n - 1) % 97
-
-
-NAMES = {
-    "time": ("Time", "s", 1.0),
-    "friction_force": ("Reibkraft", "mN", 1e-3),
-    "normal_force": ("Normal force", "N", 1.0),
-    "position": ("Weg", "um", 1e-6),
-    "sliding_velocity": ("Sliding speed", "mm/s", 1e-3),
-    "temperature": ("Temperatur", "K", 1.0),
-}
-
-
-@st.composite
-def files(draw):
-    """Text files as instruments write them: every mixture of marks, ends, headers, preambles."""
-    delimiter, decimal = draw(
-        st.sampled_from([("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", ".")])
-    )
-    names = ["time", *draw(st.lists(st.sampled_from(list(NAMES)[1:]), min_size=1, unique=True))]
-    order = draw(st.permutations(names))
-    rows = draw(st.integers(3, 40))
-    seed = draw(st.integers(0, 2**31))
-    values = {n: np.random.default_rng(seed + i).normal(5, 2, rows) for i, n in enumerate(names)}
-    values["time"] = np.cumsum(np.random.default_rng(seed).uniform(0.01, 0.02, rows)) + 3
-    table = np.round(np.array([values[name] for name in order]).T, 4)
-    style = draw(st.sampled_from(["brackets", "round", "row"]))
-    label = {"brackets": "{} [{}]", "round": "{} ({})", "row": "{}"}[style]
-    header = [delimiter.join(label.format(*NAMES[name][:2]) for name in order)]
-    if style == "row":
-        header.append(delimiter.join(NAMES[name][1] for name in order))
-    preamble = draw(
-        st.lists(
-            st.sampled_from(
-                ["# date: 2026-03-02", "Operator: Müller", "Sample PMMA", "", "Rate = 100 Hz"]
-            ),
-            max_size=4,
-        )
-    )
-    body = [delimiter.join(f"{v:.4f}".replace(".", decimal) for v in row) for row in table]
-    footer = draw(st.sampled_from([[], [""], ["", "End of test"]]))
-    end = draw(st.sampled_from(["\n", "\r\n", "\r", "\r\r\n"]))
-    encoding = draw(st.sampled_from(["utf-8", "utf-8-sig", "latin-1", "utf-16"]))
-    text = end.join([*preamble, *header, *body, *footer]) + draw(st.sampled_from(["", end]))
-    return text.encode(encoding), dict(zip(order, table.T, strict=True))
-
-
-@given(made=files())
-@settings(
-    max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
-def test_any_way_of_writing_the_same_table_is_read_back(made, tmp_path_factory):
-    content, columns = made
-    folder = tmp_path_factory.mktemp("made")
-    file = folder / "made.txt"
-    file.write_bytes(content)
-    data, draft = drafted(file, folder)
-    assert draft.kind == "run" and not draft.to_fill_in
-    assert data.attrs["time_origin_s"] == pytest.approx(columns["time"][0])
-    for name, values in columns.items():
-        if name != "time":
-            np.testing.assert_allclose(data[name].values, values * NAMES[name][2], rtol=1e-12)
-
-
-@given(content=st.binary(max_size=400) | st.text(max_size=200).map(str.encode))
-@settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
-def test_any_bytes_are_drafted_or_refused_with_a_reason(content, tmp_path_factory):
-    file = tmp_path_factory.mktemp("bytes") / "any.txt"
-    file.write_bytes(content)
-    try:
-        draft = draft_dialect(file)
-    except ReadError as error:
-        assert str(file) in str(error)
-        return
-    assume(draft.toml)
-    assert draft.dialect is not None
-
-
-def test_an_existing_dialect_is_not_overwritten(tmp_path):
-    file = tmp_path / "a.csv"
-    file.write_text("Time [s],Fx [N]\n0,1\n1,2\n")
-    draft = draft_dialect(file, name="Mine 2")
-    toml = tmp_path / "mine_2.toml"
-    save_draft(draft, toml)
-    toml.write_text("by hand")
-    with pytest.raises(ConfigError, match="--force"):
-        save_draft(draft, toml)
-    assert toml.read_text() == "by hand"
-    save_draft(draft, toml, force=True)
-    assert load_dialect(toml).name == "mine_2"
-
-
-def command(*words):
-    return CliRunner().invoke(cli.app, [str(word) for word in words])
-
-
-def test_the_command_shows_writes_and_tells_what_comes_next(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "odd one.csv"
-    file.write_text("Zeit [s];Reibkraft;Weg [mm]\n0,0;1,5;0,1\n0,5;1,6;0,2\n")
-    done = command("dialect", file.name)
-    assert (done.exit_code, done.stderr) == (0, "")
-    assert "numbers parted by semicolon, decimal comma" in done.stdout
-    assert re.search(r"position +m +0.0001 +0.0002", done.stdout)
-    line = int(re.search(r"fill in odd_one.toml line (\d+)", done.stdout)[1])
-    assert "FILL IN" in (tmp_path / "odd_one.toml").read_text().splitlines()[line - 1]
-    [following] = re.findall(r"next:  tribolab (.*)", done.stdout)
-    info = command(*shlex.split(following))
-    assert info.exit_code == 0 and "2 rows over 0.5 s" in info.stdout
-
-
-def test_the_command_refuses_with_the_exit_codes_of_the_house(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.csv").write_text("Time [s],Fx [N]\n0,1\n1,2\n")
-    assert command("dialect", "a.csv", "--name", "Mine").exit_code == 0
-    (tmp_path / "mine.toml").write_text("by hand")
-    again = command("dialect", "a.csv", "--name", "mine")
-    assert again.exit_code == 2 and "--force" in again.stderr
-    assert (tmp_path / "mine.toml").read_text() == "by hand"
-    assert command("dialect", "a.csv", "--name", "mine", "--force").exit_code == 0
-    assert load_dialect("mine.toml").name == "mine"
-    (tmp_path / "prose.txt").write_text("Once upon a time\nthere was a friction force.\n")
-    refused = command("dialect", "prose.txt")
-    assert refused.exit_code == 3 and "no table of numbers" in refused.stderr
-    (tmp_path / "dma.csv").write_text("f,E_stor\nHz,MPa\n1,2\n2,3\n")
-    table = command("dialect", "dma.csv", "--output", "dma.toml")
-    assert table.exit_code == 3 and "a table of f, E_stor" in table.stderr
-    assert not (tmp_path / "dma.toml").exists()
-    nowhere = command("dialect", "a.csv", "--output", "no/such/folder/a.toml")
-    assert nowhere.exit_code == 3 and "cannot be written" in nowhere.stderr

@@ -8,9 +8,12 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import ConfigError, UnitError
+from tribolab.io.schema_folder import schema_folder
+from tribolab.qc import catalogue
 from tribolab.qc.findings import exit_code
 from tribolab.qc.register import STATUSES, Check, Result
 from tribolab.qc.run_checks import RUN_CHECKS, check, check_run
+from tribolab.qc.scan_checks import SCAN_CHECKS
 from tribolab.quantities import stamp
 from tribolab.units import to_si
 
@@ -164,3 +167,10 @@ def test_a_check_of_ones_own_can_be_added(run):
     own = Check("mine", 30, "Mine?", "Mend it.", {}, lambda s, _: [Result("suspect", "", "no")])
     found = check_run(run, checks={"mine": own})
     assert found.status == "suspect" and found.rows[0]["cure"] == "Mend it."
+
+
+def test_the_page_of_all_checks_and_limits_is_made_from_the_code():
+    page = (schema_folder() / catalogue.PAGE_FILE).read_text(encoding="utf-8")
+    assert page == catalogue.catalogue()
+    for known in (*RUN_CHECKS.values(), *SCAN_CHECKS.values()):
+        assert f"### {known.name}\n" in page

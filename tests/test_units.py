@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tribolab import units
 from tribolab.errors import TribolabError, UnitError
 from tribolab.quantities import QUANTITIES, quantity, stamp
 from tribolab.units import conversion, to_si
@@ -35,6 +36,15 @@ def test_bad_units_say_what_and_where(text, words):
     with pytest.raises(UnitError, match="load") as caught:
         to_si(text, "N", name="load")
     assert words in str(caught.value)
+
+
+def test_usual_units_are_what_the_units_library_says():
+    prefixed = [(f"{p}{u}", u) for p in units._PREFIXES for u in ("m", "m/s", "N", "Pa", "s", "V")]
+    for unit, si_unit in [*units._USUAL, *prefixed]:
+        ureg = units.registry()
+        source, target = ureg.Unit(units._clean(unit)), ureg.Unit(units._clean(si_unit))
+        zero, one = (ureg.Quantity(x, source).to(target).magnitude for x in (0.0, 1.0))
+        assert conversion(unit, si_unit) == pytest.approx((one - zero, zero), rel=1e-14), unit
 
 
 def test_every_unit_in_the_dictionary_is_si():

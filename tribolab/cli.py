@@ -204,43 +204,41 @@ def simulate(
 @app.command()
 def check(
     files: Annotated[
-        list[Path], typer.Argument(help="Raw files; the two logs of a run are one run.")
+        list[Path], typer.Argument(help="Runs (the two logs of one are one run) and scans.")
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
     fail_on: Annotated[
         str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
     ] = "fail",
     instrument: Instrument = None,
+    repeats: Annotated[
+        bool | None,
+        typer.Option(help="Compare scans as repeats.", show_default="by names but the last number"),
+    ] = None,
     everything: Annotated[bool, typer.Option("--all", help="Show what passed, too.")] = False,
     debug: Debug = False,
 ) -> None:
-    """Say whether runs are usable, while the sample is still mounted.
+    """Say whether runs and scans are usable, while the sample is still mounted.
 
     What is wrong, where, how badly, and what to do. Nothing is written.
 
         tribolab check raw/friction/sb-r_dry_31N_01_*.csv
 
-        tribolab check raw/friction/*.csv --json --fail-on suspect
+        tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
     with _reported(debug):
-        import json
+        from tribolab.report.quick import plain_arrays_only
 
-        from tribolab.report import checks, terminal
+        plain_arrays_only()
+        from tribolab.report import checks
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
-        checked = checks.check_files(files, instrument)
+        checked = checks.check_files(files, instrument, repeats=repeats)
         code = checks.code_of(checked, fail_on)
         if as_json:
-            typer.echo(json.dumps(checks.document(checked, fail_on), indent=1, allow_nan=False))
+            typer.echo(checks.as_json(checked, fail_on))
         else:
-            for one in checked:
-                typer.echo(checks.summary(one))
-                if one.findings is None:
-                    typer.echo(f"tribolab: {one.error}", err=True)
-                    continue
-                table = checks.findings_table(one.findings, everything)
-                if table.row_count:
-                    terminal.console().print(table)
+            checks.show(checked, everything)
     raise typer.Exit(code)
 
 
@@ -392,7 +390,9 @@ def _show(outcome: Outcome) -> int:
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
     if spoilt or not outcome.segments:
         return UNREADABLE
-    return exit_code({run.quality for run in outcome.runs}, outcome.campaign.qc.fail_on)
+    statuses = {run.quality for run in outcome.runs}
+    statuses.update(*(surface.objections for surface in outcome.surfaces))
+    return exit_code(statuses, outcome.campaign.qc.fail_on)
 
 
 def main() -> None:

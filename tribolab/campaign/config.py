@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -220,20 +221,29 @@ class Qc(Table):
     fail_on: Literal["suspect", "fail", "never"] = "fail"
     """The mildest finding that gives exit code 1."""
     skip: tuple[Text, ...] = ()
-    """Checks that are left out."""
+    """Checks on runs and on scans that are left out."""
     limits: dict[Text, dict[Text, float | Text]] = {}
     """Limits of checks by name, e.g. limits.spikes.noise = 10; numbers in SI or with a unit."""
+
+    def options(self, checks: Mapping[str, Any]) -> dict[str, Any]:
+        """Return limits and names to skip, as far as they are of these checks."""
+        return {
+            "limits": {name: of for name, of in self.limits.items() if name in checks},
+            "skip": tuple(name for name in self.skip if name in checks),
+        }
 
     @model_validator(mode="after")
     def _names_are_known(self) -> Self:
         from tribolab.qc.register import resolve_limits
         from tribolab.qc.run_checks import RUN_CHECKS
+        from tribolab.qc.scan_checks import SCAN_CHECKS
 
+        known = RUN_CHECKS | SCAN_CHECKS
         try:
-            resolve_limits(RUN_CHECKS, self.limits)
+            resolve_limits(known, self.limits)
             for name in self.skip:
-                if name not in RUN_CHECKS:
-                    raise ConfigError(f"no check is called '{name}'{nearest(name, RUN_CHECKS)}")
+                if name not in known:
+                    raise ConfigError(f"no check is called '{name}'{nearest(name, known)}")
         except TribolabError as error:
             raise ValueError(str(error)) from error
         return self
@@ -262,7 +272,9 @@ class Campaign(Table):
 
     def quality_options(self, entry: RunEntry) -> dict[str, Any]:
         """Return the arguments of `check_run` for a run."""
-        options: dict[str, Any] = {"limits": self.qc.limits, "skip": self.qc.skip}
+        from tribolab.qc.run_checks import RUN_CHECKS
+
+        options = self.qc.options(RUN_CHECKS)
         known = self.contact
         load, modulus = entry.normal_force, known.youngs_modulus
         if None not in (known.radius, known.length, modulus, known.poisson_ratio, load):
@@ -272,6 +284,12 @@ class Campaign(Table):
             contact = LineContact(known.radius, known.length, modulus, known.poisson_ratio)
             options["contact_width"] = 2 * float(hertz_half_width(load / known.length, contact))
         return options
+
+    def scan_quality_options(self) -> dict[str, Any]:
+        """Return the arguments of `check_scan_set` for the scans of a surface."""
+        from tribolab.qc.scan_checks import SCAN_CHECKS
+
+        return self.qc.options(SCAN_CHECKS)
 
     @property
     def name(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -86,10 +86,14 @@ class CurveOutcome:
 
 
 class Finding(NamedTuple):
-    """Something that a reader of the results should know: "fail", "error", "suspect", "note"."""
+    """Something that a reader of the results should know: "fail", "error", "suspect", "note".
+
+    `check` is the name of the check on the raw data that says so; "" for everything else.
+    """
 
     severity: str
     message: str
+    check: str = ""
 
 
 @dataclass(frozen=True)
@@ -106,6 +110,10 @@ class SurfaceOutcome:
         Names of the groups in the data file.
     findings
         What went wrong, what was left out, and why.
+    quality
+        Gravest finding of the checks on the scans that were used, as for a run.
+    checks
+        What every check said of every scan: a row each, with the scan's file as "scan".
     status, reason, error, data_file, reused, seconds
         As for a run.
     """
@@ -120,6 +128,8 @@ class SurfaceOutcome:
     seconds: float = 0.0
     parts: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    quality: str = ""
+    checks: tuple[dict[str, Any], ...] = ()
 
     @property
     def done(self) -> bool:
@@ -129,7 +139,13 @@ class SurfaceOutcome:
     @property
     def unreadable(self) -> tuple[Finding, ...]:
         """What could not be read or computed."""
-        return tuple(f for f in self.findings if f.severity in ("fail", "error"))
+        grave = ("fail", "error")
+        return tuple(f for f in self.findings if f.severity in grave and not f.check)
+
+    @property
+    def objections(self) -> set[str]:
+        """Every status that the checks gave to the scans, also to those that were left out."""
+        return {f.severity for f in self.findings if f.check and f.severity != "note"}
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,8 @@ class PlannedSurface:
         Media whose work of adhesion is known.
     modulus_file
         File of the viscoelastic modulus, and its label; None if there is none.
+    quality
+        Arguments of `check_scan_set`: limits, skip.
     config_sha256
         Checksum of all of these, but of the scans.
     """
@@ -73,6 +75,7 @@ class PlannedSurface:
     lowest_force: float | None
     media: tuple[PlannedMedium, ...]
     modulus_file: tuple[Path, str] | None = None
+    quality: dict[str, Any] = field(default_factory=dict)
     config_sha256: str = field(default="", compare=False)
 
 
@@ -113,6 +116,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "forces": tuple(sorted({force for name, force in known if name == surface.name})),
             "lowest_force": min((force for _, force in known), default=None),
             "media": media,
+            "quality": campaign.scan_quality_options(),
         }
         shaping = facts | {
             "media": [asdict(medium) for medium in media],

@@ -4,37 +4,108 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from tribolab.campaign.outcome import Finding
 from tribolab.errors import AnalysisError, TribolabError
+from tribolab.io.scans import stacked
+from tribolab.qc.register import STATUSES
+from tribolab.qc.scan_sets import check_scan_set
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.qc.findings import Findings
 
+_FAILED = ("fail", "error")
+_ROW = ("scan", "check", "status", "variable", "message", "where", "value", "unit")
 # shares of the mean square slope that come from extrapolation, from which on that is said
 _NOTED, _SUSPECT = 0.5, 0.8
 
 
-def usable_scans(surface: PlannedSurface) -> tuple[xr.Dataset, list[Finding]]:
-    """Read the scans; those that cannot be read, or do not go with the others, are left out.
+class CheckedScans(NamedTuple):
+    """Scans that can be used, and what is known of all that were named.
 
-    Returns
-    -------
-    tuple
-        The scans, without dropouts and stacked, and a finding for each file that is not in them.
+    Parameters
+    ----------
+    scans
+        Without dropouts, stacked.
+    raw
+        The same with their dropouts and quality flags.
+    findings
+        On each file that is not in them, and on what the checks object to.
+    quality
+        Gravest status of the checks on the scans that are used.
+    checks
+        A row for each scan and check.
+    """
+
+    scans: xr.Dataset
+    raw: xr.Dataset
+    findings: list[Finding]
+    quality: str
+    checks: list[dict[str, Any]]
+
+
+def usable_scans(surface: PlannedSurface) -> CheckedScans:
+    """Read and check the scans; those that cannot be used or do not fit the others are left out.
+
+    A scan that fails its checks is left out if there is one that does not; else all are used and
+    the quality says that they failed.
 
     Raises
     ------
     AnalysisError
         If no scan is left.
     """
+    from tribolab.surface.form import fill_dropouts
+
+    scans, findings = _read(surface)
+    if not scans:
+        raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
+    label = dict(zip(surface.files, surface.labels, strict=True))
+    found = dict(zip(scans, check_scan_set(list(scans.values()), **surface.quality), strict=True))
+    for path, said in found.items():
+        findings += _objections(label[path], said)
+    shapes = {path: _shape(scan) for path, scan in scans.items()}
+    sound = [path for path in scans if found[path].status not in _FAILED] or list(scans)
+    usual = Counter(shapes[path] for path in sound).most_common(1)[0][0]
+    alike = [path for path in sound if shapes[path] == usual]
+    chosen = alike[:1] if usual[2] else alike  # maps cannot be averaged
+    for path in scans:
+        if path in chosen:
+            continue
+        why, severity = "it differs in pitch or length", "suspect"
+        if path in alike:
+            why = "one map is used"
+        elif path not in sound:  # the failure itself is a finding already
+            why, severity = "its checks failed", "note"
+        findings.append(Finding(severity, f"scan {label[path]} is left out: {why}"))
+    quality = max((found[path].status for path in chosen), key=STATUSES.index)
+    if quality in _FAILED:
+        text = "no scan passed its checks, so all that follows from them is marked"
+        findings.append(Finding("note", text))
+    together = stacked(chosen, [scans[path] for path in chosen])
+    filled = fill_dropouts(together)
+    if number := filled.attrs["dropouts"]:
+        share = 100 * filled.attrs["dropout_share"]
+        text = f"{number} dropouts were filled ({share:.2g} % of heights)"
+        findings.append(Finding("note", text))
+    rows = [{"scan": label[path]} | row for path, said in found.items() for row in said.rows]
+    checks = [{key: row[key] for key in _ROW} for row in rows]
+    flagged = [found[path].flagged for path in chosen]
+    return CheckedScans(filled, _with_flags(together, flagged), findings, quality, checks)
+
+
+def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding]]:
+    """Read each scan alone; a finding for each that cannot be read."""
     from tribolab.io.scans import read_scans
     from tribolab.surface.form import fill_dropouts
 
-    findings, shapes = [], {}
+    scans, findings = {}, []
     for path, label in zip(surface.files, surface.labels, strict=True):
         try:
             [scan] = read_scans([path], surface.instrument, stack=False)
@@ -43,23 +114,37 @@ def usable_scans(surface: PlannedSurface) -> tuple[xr.Dataset, list[Finding]]:
             reason = _without_folder(str(error), path)
             findings.append(Finding("fail", f"scan {label} is left out: {reason}"))
             continue
-        shapes[path] = (tuple(scan.sizes.items()), f"{scan.attrs['pitch_m']:.4g}", "y" in scan.dims)
-    if not shapes:
-        raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
-    usual = Counter(shapes.values()).most_common(1)[0][0]
-    alike = [path for path, shape in shapes.items() if shape == usual]
-    chosen = alike[:1] if usual[2] else alike  # maps cannot be averaged
-    for path, label in zip(surface.files, surface.labels, strict=True):
-        if path in shapes and path not in chosen:
-            why = "one map is used" if path in alike else "it differs in pitch or length"
-            findings.append(Finding("suspect", f"scan {label} is left out: {why}"))
-    scans = fill_dropouts(read_scans(chosen, surface.instrument))
-    if filled := scans.attrs["dropouts"]:
-        share = 100 * scans.attrs["dropout_share"]
-        findings.append(
-            Finding("note", f"{filled} dropouts were filled ({share:.2g} % of heights)")
-        )
+        if "tip_radius" in surface.roughness and "tip_radius_m" not in scan.attrs:
+            scan = scan.assign_attrs(tip_radius_m=surface.roughness["tip_radius"])
+        scans[path] = scan
     return scans, findings
+
+
+def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
+    return tuple(scan.sizes.items()), f"{scan.attrs['pitch_m']:.4g}", "y" in scan.dims
+
+
+def _objections(label: str, said: Findings) -> list[Finding]:
+    return [
+        Finding(
+            "note" if row["status"] == "pass" else row["status"],
+            f"scan {label}: {row['check']}: {row['message']}. {row['cure']}".strip(". ") + ".",
+            row["check"],
+        )
+        for row in said.rows
+        if row["status"] in ("suspect", *_FAILED) or row["noted"]
+    ]
+
+
+def _with_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
+    """Put the flags of each scan on the heights of all."""
+    height = scans.height.assign_attrs(ancillary_variables="height_qc height_qc_tests")
+    flags = {}
+    for name in ("height_qc", "height_qc_tests"):
+        parts = [one[name].values for one in flagged]
+        values = np.stack(parts) if "scan" in scans.dims else parts[0]
+        flags[name] = (height.dims, values, flagged[0][name].attrs)
+    return scans.assign(height=height, **flags)
 
 
 def _without_folder(message: str, path: Path) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,10 @@ from tribolab.provenance import CONVENTIONS, history_line
 if TYPE_CHECKING:
     import xarray as xr
 
+    from tribolab.campaign.surface_scans import CheckedScans
+
 RECORD = "surface_record"
+SCANS = "scans"  # group of the scans as they were read, with their quality flags
 
 
 @dataclass(frozen=True)
@@ -53,48 +56,57 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         return SurfaceRecord(
             SurfaceOutcome(surface.name, (), "skipped", findings=(Finding("note", text),)), ()
         )
+    from tribolab.campaign.surface_scans import usable_scans
+
     sources = sources_of(surface)
+    checked: CheckedScans | None = None
     try:
-        groups, findings = analyse(surface)
-        write_data({None: _root(surface, sources, findings, groups)} | groups, _place(task))
+        checked = usable_scans(surface)
+        groups, findings = analyse(surface, checked)
+        outcome = SurfaceOutcome(
+            name=surface.name,
+            files=surface.labels,
+            status="done",
+            data_file=surface.data_file,
+            seconds=time.monotonic() - began,
+            parts=tuple(groups),
+            findings=tuple(findings),
+            quality=checked.quality,
+            checks=tuple(checked.checks),
+        )
+        write_data({None: _root(surface, sources, outcome)} | groups, _place(task))
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad surface must not stop the others
-        reason, name = explain(error)
-        outcome = failed_surface(surface, reason, name, time.monotonic() - began)
-        return SurfaceRecord(outcome, sources)
-    outcome = SurfaceOutcome(
-        name=surface.name,
-        files=surface.labels,
-        status="done",
-        data_file=surface.data_file,
-        seconds=time.monotonic() - began,
-        parts=tuple(groups),
-        findings=tuple(findings),
-    )
+        outcome = failed_surface(surface, *explain(error), time.monotonic() - began)
+        if checked is not None:  # what the checks said may be why
+            findings = (*outcome.findings, *checked.findings)
+            outcome = replace(outcome, findings=findings, checks=tuple(checked.checks))
     return SurfaceRecord(outcome, sources)
 
 
-def analyse(surface: PlannedSurface) -> tuple[dict[str, xr.Dataset], list[Finding]]:
+def analyse(
+    surface: PlannedSurface, checked: CheckedScans
+) -> tuple[dict[str, xr.Dataset], list[Finding]]:
     """Return the groups of a surface's data file, and the findings.
 
     Raises
     ------
     TribolabError
-        If no scan can be used, or they have no spectrum.
+        If the scans have no spectrum.
     """
     from tribolab.campaign.surface_contact import contact_groups, lowest_wavenumber
-    from tribolab.campaign.surface_scans import spectra, usable_scans
+    from tribolab.campaign.surface_scans import spectra
 
-    scans, findings = usable_scans(surface)
+    findings = list(checked.findings)
     q_low = lowest_wavenumber(surface)
     if q_low is None and "q_low" not in surface.roughness:
         text = "the spectrum begins where the scans do: no load and contact tell the width of both"
         findings.append(Finding("note", text))
-    groups, more = spectra(surface, scans, q_low)
+    groups, more = spectra(surface, checked.scans, q_low)
     findings += more
     contact, more = contact_groups(surface, groups["psd"])
-    return groups | contact, findings + more
+    return {SCANS: checked.raw} | groups | contact, findings + more
 
 
 def failed_surface(
@@ -136,6 +148,7 @@ def known_surface(
         record: dict[str, Any] = json.loads(attrs[RECORD])
         sources = tuple((str(n), str(c), int(b)) for n, c, b in record["sources"])
         findings = tuple(Finding(*finding) for finding in record["findings"])
+        quality, checks = str(record["quality"]), tuple(map(dict, record["checks"]))
     except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
         return None
     same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
@@ -149,6 +162,8 @@ def known_surface(
         reused=True,
         parts=groups,
         findings=findings,
+        quality=quality,
+        checks=checks,
     )
     return sources, outcome
 
@@ -158,20 +173,24 @@ def _place(task: SurfaceTask) -> Path:
 
 
 def _root(
-    surface: PlannedSurface,
-    sources: tuple[Source, ...],
-    findings: list[Finding],
-    groups: dict[str, xr.Dataset],
+    surface: PlannedSurface, sources: tuple[Source, ...], outcome: SurfaceOutcome
 ) -> xr.Dataset:
     """Attributes of the whole file; checksums also of what could not be used."""
     import xarray as xr
 
     from tribolab import __version__
 
-    record = {"sources": sources, "findings": findings, "parts": list(groups)}
+    record = {
+        "sources": sources,
+        "findings": outcome.findings,
+        "parts": outcome.parts,
+        "quality": outcome.quality,
+        "checks": outcome.checks,
+    }
     return xr.Dataset(
         attrs={
             "surface": surface.name,
+            "quality": outcome.quality,
             "source": "; ".join(label for label, _, _ in sources),
             "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
             "tribolab_version": __version__,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft, ndimage
 
 _NEIGHBOURS = 61  # bins around a line that give its background
 LONGEST = 1 << 18  # samples of one transform; more do not make a line clearer than it must be
@@ -75,8 +74,8 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     part = values[:n] - values[:n].mean()
     part = part - 12 * place * (place @ part) / n  # a drift is no line
     window = np.hanning(n)
-    amplitude = 2 * np.abs(fft.rfft(part * window)) / window.sum()
-    return fft.rfftfreq(n, interval), amplitude
+    amplitude = 2 * np.abs(np.fft.rfft(part * window)) / window.sum()
+    return np.fft.rfftfreq(n, interval), amplitude
 
 
 def find_lines(
@@ -105,6 +104,10 @@ def find_lines(
     """
     if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
         return []
+    from scipy import (
+        ndimage,
+    )  # not before there is a spectrum: it takes a tenth of a second to load
+
     frequency, amplitude = amplitude_spectrum(time, values)
     power = amplitude**2
     background = ndimage.median_filter(power, size=_NEIGHBOURS, mode="reflect") / np.log(2)

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import optimize
 
 from tribolab.friction.statistics import describe
 
@@ -139,6 +138,8 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     excess = np.diff(offset) ** 2 - noise
     if offset.size == 2:
         return Wander(max(0.0, float(excess[0])), 0.0)
+    from scipy import optimize  # not before it is needed: it takes a fifth of a second to load
+
     scale = apart.mean()
     parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
     found = np.zeros(2)

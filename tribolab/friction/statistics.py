@@ -30,7 +30,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
 ORDER = 20  # highest order: as long as one of five teeth of a saw
@@ -245,7 +245,7 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     power, floor = spectrum(centred)
     plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
     effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
-    student = stats.t.ppf(0.995, n - 1) / stats.norm.ppf(0.995)
+    student = special.stdtrit(n - 1, 0.995) / special.ndtri(0.995)
     # the many coefficients that describe a line leave the noise beside it less well known
     share = floor / n / np.maximum(plain**2, 1e-300)
     beside = 1 + BESIDE * share**2
@@ -278,4 +278,4 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)
     error *= _widening(effective, n)
     freedom = max(effective - 2, 2.0)
-    return slope, float(2 * stats.t.sf(abs(slope) / error, freedom))
+    return slope, float(2 * special.stdtr(freedom, -abs(slope) / error))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import stats
+from scipy import special
 
 from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
@@ -156,7 +156,7 @@ def _random_effects(y: np.ndarray, s: np.ndarray) -> tuple[float, float]:
     w = 1 / (1 / w + tau2)
     mean = (w @ y) / w.sum()
     spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
-    student = stats.t.ppf(0.995, max(y.size - 1, FREEDOM)) / 3
+    student = special.stdtrit(max(y.size - 1, FREEDOM), 0.995) / 3
     return float(mean), float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
 
 

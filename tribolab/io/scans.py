@@ -89,7 +89,7 @@ def read_scans(
             f"those that do are {scanning}"
         )
     scans = [_read(file, dialect, x_unit, height_unit) for file in files]
-    return _stacked(files, scans) if stack else [stamp(scan) for scan in scans]
+    return stacked(files, scans) if stack else [stamp(scan) for scan in scans]
 
 
 def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
@@ -187,7 +187,14 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
     return scan, content.sha256
 
 
-def _stacked(files: list[Path], scans: list[xr.Dataset]) -> xr.Dataset:
+def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Put scans that were read one by one together, as `read_scans` does.
+
+    Raises
+    ------
+    ReadError
+        If they differ in pitch or length, or one of several is a map.
+    """
     maps = [file for file, scan in zip(files, scans, strict=True) if "y" in scan.dims]
     if maps and len(scans) > 1:
         raise ReadError(

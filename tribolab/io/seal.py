@@ -20,23 +20,22 @@ from tribolab.errors import ReadError
 
 _MARK = b"\ntribolab sha256 "
 _LENGTH = len(_MARK) + 64
-_SECONDS = 2.0  # of computing, for a small file; what waits for other programs does not count
+_SECONDS = 1.0  # of computing, for a small file; what waits for other programs does not count
 _BYTES_PER_SECOND = 30e6
 _NO_CRASH = 3  # exit code of a trial that ended in an error of its own
 _MEMORY = 2 << 30  # bytes of address space, for a small file
 _PATIENCE = 60.0  # s on the clock, if the computing cannot be limited
 _TRIAL = """
 import sys
-path, seconds = sys.argv[1], int(sys.argv[2])
+path, seconds = sys.argv[1], float(sys.argv[2])
 try:
     import netCDF4
     try:
-        import resource
-        used = int(resource.getrusage(resource.RUSAGE_SELF).ru_utime)
-        resource.setrlimit(resource.RLIMIT_CPU, (used + seconds, used + seconds))
+        import resource, signal
+        signal.setitimer(signal.ITIMER_PROF, seconds)  # its signal ends the process
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (int(sys.argv[3]), int(sys.argv[3])))
-    except (ImportError, ValueError, OSError):
+    except (ImportError, AttributeError, ValueError, OSError):
         pass
     def visit(group):
         group.ncattrs() and group.__dict__
@@ -104,7 +103,7 @@ def try_out(path: Path) -> None:
     seconds = _SECONDS + size / _BYTES_PER_SECOND
     try:
         done = subprocess.run(
-            [sys.executable, "-c", _TRIAL, str(path), str(int(seconds)), str(_MEMORY + 4 * size)],
+            [sys.executable, "-c", _TRIAL, str(path), str(seconds), str(_MEMORY + 4 * size)],
             capture_output=True,
             check=False,
             timeout=_PATIENCE + seconds,

@@ -47,6 +47,7 @@ class Findings:
                 "name": self.name,
                 "check": check.name,
                 "status": result.status,
+                "noted": result.noted,
                 "variable": result.variable,
                 "message": result.message,
                 "where": result.where,

@@ -73,7 +73,8 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     if places.size:
         text = f"the sampling rate changes {places.size} times, never within a trimmed segment"
         text += f": {where}" + (" ..." if places.size > 5 else "")
-    return [Result("pass", "time", text, float(places.size), where=where, flags=flags)]
+    seen = places.size > 0
+    return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
 
 def _step_changes(subject: RunSubject) -> np.ndarray:
@@ -95,7 +96,7 @@ def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
     text += f"; they begin at {where}" + (" ..." if changes.size > 5 else "")
-    return [Result("pass", "step", text, float(changes.size + 1), where=where)]
+    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True)]
 
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -113,7 +114,7 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         first = int(np.flatnonzero(np.isnan(values))[0])
         where = f"first at t = {subject.time[first]:.6g} s (sample {first})"
         text = f"{count} samples ({share:.2%}) have no value, {where}"
-        results.append(Result(status, name, text, share, "1", where, count, flags))
+        results.append(Result(status, name, text, share, "1", where, count, flags, noted=True))
     return results
 
 

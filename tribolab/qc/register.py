@@ -31,7 +31,11 @@ class Limit:
 
 @dataclass(frozen=True)
 class Result:
-    """What one check found on one variable."""
+    """What one check found on one variable.
+
+    `noted` says that a status "pass" is worth a reader's while: something is there, too little to
+    object to.
+    """
 
     status: str
     variable: str
@@ -41,6 +45,7 @@ class Result:
     where: str = ""
     count: int = 0
     flags: np.ndarray | None = field(default=None, repr=False, compare=False)
+    noted: bool = False
 
 
 @dataclass(frozen=True)

@@ -77,9 +77,8 @@ def check_scans(
         if result.flags is not None
     }
     bits = {check.name: check.bit for check in SCAN_CHECKS.values()}
-    return Findings(
-        str(scans.attrs.get("source", "scans")), listed, attach(scans, "height", flags, bits)
-    )
+    flagged = attach(scans, "height", flags, bits)
+    return Findings(str(scans.attrs.get("source", "scans")), listed, flagged, resolved)
 
 
 def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float) -> list[Result]:
@@ -122,7 +121,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
         status = "suspect"
     if share > limits["fail"] or span > limits["fail"] * whole:
         status = "fail"
-    return [Result(status, "height", text, share, "1", where, count, flags)]
+    return [Result(status, "height", text, share, "1", where, count, flags, noted=True)]
 
 
 def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -130,7 +129,7 @@ def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     return _flagged(subject, flags, "the height jumps {count} times", limits["fail"])
 
 
-def _saturation(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+def _clipping(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = np.stack([profiles.clipped(row, int(limits["points"])) for row in subject.rows])
     text = "{count} points lie flat at the end of the range: cut off there"
     return _flagged(subject, flags, text, limits["fail"])
@@ -244,7 +243,7 @@ PROFILE_CHECKS = (
         _steps,
     ),
     Check(
-        "saturation",
+        "clipping",
         3,
         "Does the profile run into the end of the gauge's range?",
         "Level the specimen or choose a larger range, and scan again.",
@@ -252,7 +251,7 @@ PROFILE_CHECKS = (
             "points": Limit(8.0, "1", "a stylus rests on one height for some points by chance"),
             "fail": Limit(0.01, "1", "a hundredth cut off changes Rq and spectrum"),
         },
-        _saturation,
+        _clipping,
     ),
     Check(
         "form",

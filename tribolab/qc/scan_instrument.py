@@ -29,7 +29,7 @@ def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             f"the file's positions look uneven, by up to {unevenness:.2g} steps, as rounding of "
             "their last digit explains: taken as even"
         )
-        return [Result("pass", "x", text, unevenness)]
+        return [Result("pass", "x", text, unevenness, noted=True)]
     text = (
         f"the file's positions deviate from even ones by up to {unevenness:.2g} steps, more than "
         "their rounding: heights were interpolated, which takes short waves away"
@@ -91,14 +91,21 @@ def _ours(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
     return found
 
 
+def not_computed(results: xr.Dataset) -> Result | None:
+    """Name the values that the instrument could not compute; None if there are none."""
+    errors = str(results.attrs.get("instrument_errors", "none"))
+    if errors in ("", "none"):
+        return None
+    source = str(results.attrs.get("source", "results"))
+    text = f"{source}: the instrument could not compute {errors}"
+    return Result("suspect", "results", text, count=errors.count(":"))
+
+
 def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for result in subject.results:
-        errors = str(result.attrs.get("instrument_errors", "none"))
-        source = str(result.attrs.get("source", "results"))
-        if errors not in ("", "none"):
-            text = f"{source}: the instrument could not compute {errors}"
-            results.append(Result("suspect", "results", text, count=errors.count(":")))
+        if (missing := not_computed(result)) is not None:
+            results.append(missing)
     sets = _own_results(subject)
     if not sets and not results:
         return [Result("skipped", "Ra", "the instrument gives no results of its own")]
@@ -155,7 +162,8 @@ INSTRUMENT_CHECKS = (
         "results",
         9,
         "Do the instrument's own Ra and Rq fit the profile?",
-        "Check units, filter and which profile the results belong to.",
+        "Check units, filter and which profile they belong to; for missing values, scan longer or "
+        "cleaner.",
         {
             "suspect": Limit(0.1, "1", "ends of the filter and form make up to a tenth"),
             "fail": Limit(0.5, "1", "with a known filter, half as much again is another profile"),

@@ -51,6 +51,8 @@ class ScanSubject:
         """What to call each row."""
         if "file" in self.scans:
             return [str(name) for name in np.atleast_1d(self.scans["file"].values)]
+        if len(self.rows) == 1 and "source" in self.scans.attrs:
+            return [str(self.scans.attrs["source"])]
         kind = "row" if self.is_map else "scan"
         return [f"{kind} {number}" for number in range(1, len(self.rows) + 1)]
 

@@ -47,7 +47,7 @@ def _strongest(
     share = worst.amplitude / subject.typical_friction
     where = subject.segment_label(worst.segment)
     text = f"{kind} at {worst.frequency:.4g} Hz, {share:.2%} of the typical friction, {where}"
-    return [Result(status_of(share, limits), name, text, share, "1", where)]
+    return [Result(status_of(share, limits), name, text, share, "1", where, noted=True)]
 
 
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

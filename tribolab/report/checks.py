@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import json
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.errors import ConfigError, TribolabError
+from tribolab.errors import ConfigError, ReadError, TribolabError
+from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
+from tribolab.io.scan_results import read_results
+from tribolab.io.signature import peek
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.run_checks import check_run
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SCHEMA_VERSION = 1
 UNREADABLE = 3
@@ -22,11 +30,15 @@ _STYLES = {"error": "bold red", "fail": "red", "suspect": "yellow", "skipped": "
 
 @dataclass(frozen=True)
 class Checked:
-    """One run: its files, and what the checks found, or why it could not be read."""
+    """One run or scan: its files, and what the checks found, or why it could not be read.
+
+    `kind` is "run", "scan", "results" (of a roughness tester), or "file" if it is not known.
+    """
 
     files: tuple[Path, ...]
     findings: Findings | None
     error: str = ""
+    kind: str = "run"
 
     @property
     def name(self) -> str:
@@ -39,32 +51,92 @@ class Checked:
         return "unreadable" if self.findings is None else self.findings.status
 
 
-def check_files(paths: Iterable[str | Path], instrument: str | Path | None = None) -> list[Checked]:
-    """Read and check runs; a bad file never stops the others.
+def check_files(
+    paths: Iterable[str | Path],
+    instrument: str | Path | None = None,
+    *,
+    repeats: bool | None = None,
+) -> list[Checked]:
+    """Read and check runs, scans and results of roughness testers; a bad file stops no other.
 
     Parameters
     ----------
     paths
-        Raw files; the two logs of a run are one run.
+        Raw files of any kind; the two logs of a run are one run.
     instrument
         Their instrument; recognised by the content when not given.
+    repeats
+        Whether the scans are of one surface, to be compared with each other. By default those are
+        whose names differ in their last number only.
 
     Raises
     ------
     ConfigError
         If there is no such instrument.
     """
-    checked = []
-    for group in group_files([Path(path) for path in paths], instrument):
+    groups = group_files([Path(path) for path in paths], instrument)
+    kinds = {
+        tuple(group): kind_of(group[0], instrument) if len(group) == 1 else "run"
+        for group in groups
+    }
+    checked: dict[tuple[Path, ...], Checked] = {}
+    scans: dict[Path, xr.Dataset] = {}
+    results: dict[Path, xr.Dataset] = {}
+    for group, kind in kinds.items():
         try:
-            run = read(group if len(group) > 1 else group[0], instrument)
+            if kind == "results":
+                results[group[0]] = read_results(group[0])
+            elif kind == "run":
+                run = read(list(group) if len(group) > 1 else group[0], instrument)
+                checked[group] = Checked(group, check_run(run))
+            else:
+                scans[group[0]] = _scan(group[0], instrument, kind)
         except ConfigError:
             raise  # a wrong instrument is wrong for every file
         except (TribolabError, OSError) as error:
-            checked.append(Checked(tuple(group), None, str(error)))
-            continue
-        checked.append(Checked(tuple(group), check_run(run)))
-    return checked
+            checked[group] = Checked(group, None, str(error), kind="file")
+    every = list(scans)
+    sets = (
+        [every] if repeats else repeats_by_name(every) if repeats is None else [[p] for p in every]
+    )
+    for files in filter(None, sets):
+        own = [[r for path, r in results.items() if _belongs(path, file)] for file in files]
+        from tribolab.qc.scan_sets import check_scan_set
+
+        found = check_scan_set([scans[file] for file in files], results=own)
+        for file, findings in zip(files, found, strict=True):
+            checked[(file,)] = Checked((file,), findings, kind="scan")
+    for path, result in results.items():
+        if not any(_belongs(path, file) for file in every):
+            from tribolab.qc.scan_sets import check_results
+
+            checked[(path,)] = Checked((path,), check_results(result), kind="results")
+    return [checked[group] for group in kinds if group in checked]
+
+
+def _scan(path: Path, instrument: str | Path | None, kind: str) -> xr.Dataset:
+    """Read a scan; what turns out to be none is told about as a run would be."""
+    from tribolab.io.scans import read_scans
+
+    try:
+        [scan] = read_scans([path], instrument, stack=False)
+    except ReadError:
+        if kind == "unknown" and _is_text(path):
+            read(path, instrument)  # says which instruments there are
+        raise
+    return scan
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return peek(path).format == "text"
+    except ReadError:
+        return not path.is_file() or path.stat().st_size == 0
+
+
+def _belongs(results: Path, scan: Path) -> bool:
+    """Whether results have the name of a scan beside them."""
+    return results.parent == scan.parent and results.stem.casefold() == scan.stem.casefold()
 
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
@@ -74,20 +146,21 @@ def code_of(checked: Sequence[Checked], fail_on: str) -> int:
 
 
 def findings_table(findings: Findings, everything: bool = False) -> Table:
-    """Return the objections of one run, graver ones first; with `everything` all that was asked."""
+    """Return objections and notes, graver ones first; with `everything` all that was asked."""
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     for row in findings.rows:
         status = row["status"]
-        if not everything and status in ("pass", "skipped"):
+        note = status == "pass" and row["noted"]
+        if not everything and status in ("pass", "skipped") and not note:
             continue
         variable = f"{row['variable']}: " if row["variable"] else ""
         text = escape(f"{variable}{row['message']}")
         if row["cure"]:
             text += f"\n[dim]{escape(row['cure'])}[/dim]"
-        table.add_row(status, row["check"], text, style=_STYLES[status])
+        table.add_row("note" if note else status, row["check"], text, style=_STYLES[status])
     return table
 
 
@@ -107,6 +180,25 @@ def summary(checked: Checked) -> str:
     return f"{checked.name}: {checked.status} ({', '.join(parts)})"
 
 
+def show(checked: Sequence[Checked], everything: bool = False) -> None:
+    """Print what the checks found on stdout, and on stderr why a file could not be read."""
+    from tribolab.report import terminal
+
+    for one in checked:
+        print(summary(one), flush=True)
+        if one.findings is None:
+            print(f"tribolab: {one.error}", file=sys.stderr)
+            continue
+        table = findings_table(one.findings, everything)
+        if table.row_count:
+            terminal.console().print(table)
+
+
+def as_json(checked: Sequence[Checked], fail_on: str) -> str:
+    """Return `document` as strict JSON."""
+    return json.dumps(document(checked, fail_on), indent=1, allow_nan=False)
+
+
 def document(checked: Sequence[Checked], fail_on: str) -> dict[str, Any]:
     """Return everything as one JSON document; what is not known is null."""
     from tribolab import __version__
@@ -119,6 +211,7 @@ def document(checked: Sequence[Checked], fail_on: str) -> dict[str, Any]:
         "runs": [
             {
                 "name": c.name,
+                "kind": c.kind,
                 "files": [str(path) for path in c.files],
                 "status": c.status,
                 "error": c.error,

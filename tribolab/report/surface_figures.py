@@ -55,15 +55,20 @@ class _Kind:
 def plan_surface_figures(surfaces: Sequence[SurfaceOutcome], folder: Path) -> list[SurfaceFigure]:
     """Choose the figures for which at least one surface has data."""
     done = [surface for surface in surfaces if surface.done]
-    names = tuple(surface.name for surface in surfaces)
+    names = tuple(map(_label, surfaces))
     planned = []
     for kind, known in _KINDS.items():
-        mine = [(s.name, s.data_file) for s in done if known.group in s.parts][:_MOST_IN_ONE]
+        mine = [(_label(s), s.data_file) for s in done if known.group in s.parts][:_MOST_IN_ONE]
         if kind == "modulus":
             mine = mine[:1]  # one rubber
         if mine:
             planned.append(SurfaceFigure(kind, tuple(mine), names, folder))
     return planned
+
+
+def _label(surface: SurfaceOutcome) -> str:
+    """Name of a surface; what follows from bad scans must not be taken for the others' like."""
+    return surface.name + (" (bad scans)" if surface.quality in ("fail", "error") else "")
 
 
 def draw_surfaces(task: SurfaceFigure) -> dict[str, str]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from tribolab.campaign.surface_work import SCANS
 from tribolab.plot.labels import column
 from tribolab.report.wording import plain_value
 
@@ -58,6 +59,7 @@ class SurfaceRows:
     contact: list[dict[str, Any]]
     adhesion: list[dict[str, Any]]
     modulus: str
+    quality: str = ""
 
 
 def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
@@ -71,24 +73,26 @@ def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
     from tribolab.io.netcdf import read_netcdf
 
     path = folder / surface.data_file
-    groups = {part: read_netcdf(path, group=part) for part in surface.parts}
+    parts = [part for part in surface.parts if part != SCANS]
+    groups = {part: read_netcdf(path, group=part) for part in parts}
     return SurfaceRows(
         surface.name,
         plain_value(_roughness(groups["roughness"], groups["psd"])),
         plain_value(_contact(groups)),
         plain_value(_adhesion(groups)),
         str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
+        surface.quality,
     )
 
 
 def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.DataFrame:
     """Return one of the three tables over all surfaces."""
     parts = [
-        {"surface": one.name} | row
+        {"surface": one.name, "quality": one.quality} | row
         for one in rows
         for row in ([one.roughness] if name == "roughness" else getattr(one, name))
     ]
-    return pd.DataFrame(parts, columns=["surface", *columns])
+    return pd.DataFrame(parts, columns=["surface", "quality", *columns])
 
 
 def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[str, Any]:
@@ -98,6 +102,8 @@ def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[st
         "status": surface.status,
         "reason": surface.reason,
         "error": surface.error,
+        "quality": surface.quality,
+        "checks": list(surface.checks),
         "files": list(surface.files),
         "data_file": surface.data_file,
         "reused": surface.reused,

@@ -70,6 +70,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     lines = [line]
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         names = [run.name for run in outcome.runs if run.quality == quality]
+        names += [f"scans of {s.name}" for s in outcome.surfaces if quality in s.objections]
         if names:
             more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
             lines.append(f"checks {what}: {', '.join(names[:_SHOWN])}{more}")
@@ -115,6 +116,13 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         lines.append(
             f"surfaces, from their scans: at most {text} from the truth; "
             f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
+        )
+    fits = compared.shear_stress
+    if len(fits):
+        lines.append(
+            f"shear stresses, fitted with the scanned spectra: at most "
+            f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
+            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals"
         )
     count = compared.paper.status.value_counts()
     lines.append(

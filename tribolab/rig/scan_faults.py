@@ -217,7 +217,7 @@ _ALL = (
     ),
     ScanFault("steps", "The specimen slips under the stylus, twice.", "suspect", "steps", _steps),
     ScanFault(
-        "saturation", "The gauge's range ends below the summit.", "fail", "saturation", _saturation
+        "saturation", "The gauge's range ends below the summit.", "fail", "clipping", _saturation
     ),
     ScanFault(
         "tilt", "The specimen is mounted askew by 6 to 12 degrees.", "suspect", "form", _tilt

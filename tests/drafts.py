@@ -1,0 +1,16 @@
+"""What the tests of drafted dialects share."""
+
+from tribolab.io.dialects import load_dialect
+from tribolab.io.draft import draft_dialect, save_draft
+from tribolab.io.runs import read
+from tribolab.io.scans import read_scans
+
+
+def drafted(path, tmp_path):
+    """The dataset that the drafted TOML reads, and the draft."""
+    draft = draft_dialect(path)
+    toml = save_draft(draft, tmp_path / f"{draft.name}.toml")
+    load_dialect(toml)
+    if draft.kind == "scan":
+        return read_scans(path, instrument=toml), draft
+    return read(path, instrument=toml, pair=False), draft

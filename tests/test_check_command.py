@@ -1,0 +1,164 @@
+"""`tribolab check` on files of every kind: runs, scans, and results of roughness testers."""
+
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tribolab import cli, rig
+from tribolab.io.kinds import kind_of
+from tribolab.qc import run_checks, scan_checks
+from tribolab.qc.register import Check
+from tribolab.rig.files import scan_file
+
+
+def tribolab_check(*words):
+    return CliRunner().invoke(cli.app, ["check", *map(str, words)])
+
+
+def told(*words):
+    return json.loads(tribolab_check(*words, "--json").stdout)
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory):
+    """Three scans of one surface, the second of four times the height, and one of another."""
+    folder = tmp_path_factory.mktemp("scans")
+    found = rig.scans("Sb-R", 3, seed=1001, length=4e-3)
+    for number, factor in enumerate((1, 4, 1), start=1):
+        text = scan_file(found.x.values, factor * found.height.values[number - 1]).decode()
+        (folder / f"sb-r_{number}.csv").write_text(re.sub(r"# length:.*\n", "", text))
+    (folder / "other_1.csv").write_text((folder / "sb-r_1.csv").read_text())
+    return folder
+
+
+def test_scans_are_recognised_and_repeats_compared_by_their_names(scans):
+    found = told(*sorted(scans.glob("*.csv")))
+    by_name = {one["name"]: one for one in found["runs"]}
+    assert {one["kind"] for one in found["runs"]} == {"scan"}
+    assert {name: one["status"] for name, one in by_name.items()} == {
+        "other_1.csv": "pass",
+        "sb-r_1.csv": "pass",
+        "sb-r_2.csv": "fail",
+        "sb-r_3.csv": "pass",
+    }
+    assert found["exit_code"] == 1
+    [row] = [row for row in by_name["sb-r_2.csv"]["findings"] if row["status"] == "fail"]
+    assert row["check"] == "repeats" and row["message"].startswith("sb-r_2.csv has a spectrum")
+    [row] = [row for row in by_name["sb-r_3.csv"]["findings"] if row["check"] == "repeats"]
+    assert row["message"] == "agrees with the other scans but sb-r_2.csv"
+
+
+def test_whether_scans_are_repeats_can_be_said(scans):
+    files = sorted(scans.glob("sb-r_*.csv"))
+    assert tribolab_check(*files, "--no-repeats").exit_code == 0
+    pair = [scans / "other_1.csv", scans / "sb-r_2.csv"]
+    assert tribolab_check(*pair).exit_code == 0
+    found = told(*pair, "--repeats")
+    assert [one["status"] for one in found["runs"]] == ["fail", "fail"]
+
+
+def test_runs_scans_and_rubbish_can_be_given_together(scans, shared_data, tmp_path):
+    rubbish = tmp_path / "odd.csv"
+    rubbish.write_text("nothing,here\nbut,words\n")
+    rock = shared_data / "rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt"
+    found = told(scans / "sb-r_1.csv", rubbish, rock)
+    assert [one["kind"] for one in found["runs"]] == ["scan", "file", "run"]
+    assert found["runs"][1]["status"] == "unreadable" and found["exit_code"] == 3
+    assert "odd.csv: no known instrument writes such a file" in found["runs"][1]["error"]
+
+
+def test_err110_of_the_roughness_tester_is_found(shared_data):
+    folder = shared_data / "mitutoyo_sj410_res_MIT"
+    found = told(*sorted(folder.glob("*.TXT")))["runs"]
+    assert [(one["kind"], one["status"]) for one in found] == [
+        ("results", "suspect"),
+        ("results", "pass"),
+        ("results", "pass"),
+    ]
+    assert "RSm: Err110" in found[0]["findings"][0]["message"]
+
+
+def test_results_beside_their_profile_are_compared_with_it(scans, shared_data, tmp_path):
+    results = (shared_data / "mitutoyo_sj410_res_MIT/12A11003.TXT").read_bytes()
+    profile = (scans / "sb-r_1.csv").read_bytes()
+    (tmp_path / "s_1.txt").write_bytes(results)
+    (tmp_path / "s_1.csv").write_bytes(profile)
+    [one] = told(tmp_path / "s_1.txt", tmp_path / "s_1.csv")["runs"]
+    rows = [row for row in one["findings"] if row["check"] == "results"]
+    assert {"results", "Ra", "Rq"} == {row["variable"] for row in rows}
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("stickslip_paper_CeCILL-B/k168Nm_v1100.mat", r"note +hum .*mains hum at 49\.96 Hz"),
+        ("rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt", r"note +rate_changes .*changes 1"),
+        ("cetr_umt2_MIT/HT-2n-6-4 2_001.csv", r"note +restarts .*2 steps"),
+        ("surfacetopography_MIT/dektak-1.csv", r"note +spacing .*look uneven"),
+    ],
+)
+def test_known_troubles_too_small_to_object_to_are_shown(shared_data, path, said):
+    done = tribolab_check(shared_data / path)
+    assert done.exit_code == 0
+    assert re.search(said, done.stdout)
+
+
+def test_what_every_file_of_the_data_holds_is_told(shared_data):
+    kinds = {
+        "surfacetopography_MIT/dektak-1.csv": "scan",
+        "bearing_profiles_MIT/NU208-IR-1.txt": "scan",
+        "surfacetopography_MIT/mitutoyo_mock.xlsx": "unknown",
+        "mitutoyo_sj410_res_MIT/8A2.TXT": "results",
+        "tdms_force_MIT/TDMSSample.tdms": "run",
+        "stickslip_paper_CeCILL-B/k168Nm_v1100.mat": "run",
+        "pcs_mtm_ehd_MIT/demo_2.txt": "run",
+        "no such file": "unknown",
+    }
+    assert {path: kind_of(shared_data / path) for path in kinds} == kinds
+
+
+@pytest.mark.parametrize("which", ["run", "scan"])
+def test_a_check_that_raises_is_a_row_and_exit_code_3(monkeypatch, scans, shared_data, which):
+    def crash(subject, limits):
+        raise ZeroDivisionError("division by zero")
+
+    home, name = (run_checks, "RUN_CHECKS") if which == "run" else (scan_checks, "SCAN_CHECKS")
+    broken = Check("broken", 30, "Broken?", "Mend it.", {}, crash)
+    monkeypatch.setitem(getattr(home, name), "broken", broken)
+    file = scans / "sb-r_1.csv"
+    if which == "run":
+        file = shared_data / "rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt"
+    found = told(file, "--fail-on", "never")
+    assert found["exit_code"] == 3
+    row = found["runs"][0]["findings"][0]
+    assert (row["check"], row["status"]) == ("broken", "error")
+    assert "ZeroDivisionError: division by zero" in row["message"]
+
+
+def test_a_quick_answer_waits_for_no_library_that_it_does_not_need(shared_data):
+    file = shared_data / "rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt"
+    code = (
+        "import sys\nfrom tribolab import cli\n"
+        f"try:\n    cli.app(['check', {str(file)!r}])\nexcept SystemExit:\n    pass\n"
+        "slow = {'pint', 'dask', 'matplotlib', 'SurfaceTopography', 'scipy.stats', 'netCDF4'}\n"
+        "sys.stderr.write(str(sorted(slow & set(sys.modules))))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "[]"
+
+
+def test_a_map_and_a_single_scan_have_nothing_to_be_compared_with(tmp_path):
+    x, y = np.meshgrid(np.arange(20) * 1e-3, np.arange(20) * 1e-3)
+    z = np.random.default_rng(0).standard_normal(x.size)
+    for number in (1, 2):
+        rows = np.column_stack([x.ravel(), y.ravel(), z])
+        np.savetxt(tmp_path / f"map_{number}.txt", rows, fmt="%.6f", delimiter=",")
+    found = told(*sorted(tmp_path.glob("*.txt")), "--instrument", "nanovea_map")
+    for one in found["runs"]:
+        [row] = [row for row in one["findings"] if row["check"] == "repeats"]
+        assert row["status"] == "skipped", row

@@ -1,0 +1,66 @@
+"""`tribolab dialect`: what it shows, writes, refuses and says comes next."""
+
+import re
+import shlex
+
+import pytest
+from typer.testing import CliRunner
+
+from tribolab import cli
+from tribolab.errors import ConfigError
+from tribolab.io.dialects import load_dialect
+from tribolab.io.draft import draft_dialect, save_draft
+
+
+def test_an_existing_dialect_is_not_overwritten(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("Time [s],Fx [N]\n0,1\n1,2\n")
+    draft = draft_dialect(file, name="Mine 2")
+    toml = tmp_path / "mine_2.toml"
+    save_draft(draft, toml)
+    toml.write_text("by hand")
+    with pytest.raises(ConfigError, match="--force"):
+        save_draft(draft, toml)
+    assert toml.read_text() == "by hand"
+    save_draft(draft, toml, force=True)
+    assert load_dialect(toml).name == "mine_2"
+
+
+def command(*words):
+    return CliRunner().invoke(cli.app, [str(word) for word in words])
+
+
+def test_the_command_shows_writes_and_tells_what_comes_next(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "odd one.csv"
+    file.write_text("Zeit [s];Reibkraft;Weg [mm]\n0,0;1,5;0,1\n0,5;1,6;0,2\n")
+    done = command("dialect", file.name)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "numbers parted by semicolon, decimal comma" in done.stdout
+    assert re.search(r"position +m +0.0001 +0.0002", done.stdout)
+    line = int(re.search(r"fill in odd_one.toml line (\d+)", done.stdout)[1])
+    assert "FILL IN" in (tmp_path / "odd_one.toml").read_text().splitlines()[line - 1]
+    [following] = re.findall(r"next:  tribolab (.*)", done.stdout)
+    info = command(*shlex.split(following))
+    assert info.exit_code == 0 and "2 rows over 0.5 s" in info.stdout
+
+
+def test_the_command_refuses_with_the_exit_codes_of_the_house(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.csv").write_text("Time [s],Fx [N]\n0,1\n1,2\n")
+    assert command("dialect", "a.csv", "--name", "Mine").exit_code == 0
+    (tmp_path / "mine.toml").write_text("by hand")
+    again = command("dialect", "a.csv", "--name", "mine")
+    assert again.exit_code == 2 and "--force" in again.stderr
+    assert (tmp_path / "mine.toml").read_text() == "by hand"
+    assert command("dialect", "a.csv", "--name", "mine", "--force").exit_code == 0
+    assert load_dialect("mine.toml").name == "mine"
+    (tmp_path / "prose.txt").write_text("Once upon a time\nthere was a friction force.\n")
+    refused = command("dialect", "prose.txt")
+    assert refused.exit_code == 3 and "no table of numbers" in refused.stderr
+    (tmp_path / "dma.csv").write_text("f,E_stor\nHz,MPa\n1,2\n2,3\n")
+    table = command("dialect", "dma.csv", "--output", "dma.toml")
+    assert table.exit_code == 3 and "a table of f, E_stor" in table.stderr
+    assert not (tmp_path / "dma.toml").exists()
+    nowhere = command("dialect", "a.csv", "--output", "no/such/folder/a.toml")
+    assert nowhere.exit_code == 3 and "cannot be written" in nowhere.stderr

@@ -1,0 +1,42 @@
+"""All checks with their limits as a page to read: raw_data_schema/CHECKS.md."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tribolab.qc.register import Check
+from tribolab.qc.run_checks import RUN_CHECKS
+from tribolab.qc.scan_checks import SCAN_CHECKS
+
+PAGE_FILE = "CHECKS.md"
+_HEAD = """# The checks
+
+What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign
+file under `[qc]`, as text with a unit or as numbers in SI: `limits.spikes.noise = 10`;
+`skip = ["hum"]` leaves a check out. Each answers pass, suspect, fail, skipped (and why) or error
+(and which). This page is made from the code, and a test keeps the two equal.
+"""
+
+
+def catalogue() -> str:
+    """Return the page: what each check asks, its limits with units and reasons, and the cure.
+
+    Examples
+    --------
+    >>> "### spikes" in catalogue()
+    True
+    """
+    parts = [_HEAD, "## On runs\n", *_chapter(RUN_CHECKS), "## On scans\n", *_chapter(SCAN_CHECKS)]
+    return "\n".join(parts)
+
+
+def _chapter(checks: Mapping[str, Check]) -> list[str]:
+    lines = []
+    for check in checks.values():
+        lines += [f"### {check.name}\n", f"{check.question} {check.cure}\n"]
+        if check.limits:
+            lines += ["| limit | default | unit | why |", "| --- | --- | --- | --- |"]
+            for name, limit in check.limits.items():
+                lines.append(f"| {name} | {limit.value:g} | {limit.unit} | {limit.reason} |")
+            lines.append("")
+    return lines

@@ -1,0 +1,136 @@
+"""Several scans of one surface, each with a verdict of its own; and results without a profile."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.qc.findings import Findings
+from tribolab.qc.register import Result
+from tribolab.qc.scan_checks import SCAN_CHECKS, check_scans
+from tribolab.qc.scan_instrument import not_computed
+
+_REPEATS = "repeats"
+Limits = Mapping[str, Mapping[str, str | float]]
+
+
+def check_scan_set(
+    scans: Sequence[xr.Dataset],
+    *,
+    limits: Limits | None = None,
+    skip: Sequence[str] = (),
+    results: Sequence[Sequence[xr.Dataset]] | None = None,
+) -> list[Findings]:
+    """Examine each scan of a surface alone, and all against each other.
+
+    Parameters
+    ----------
+    scans
+        One dataset for each file, as `read_scans` with ``stack=False`` returns them.
+    limits, skip
+        As for `check_scans`.
+    results
+        For each scan, what the instrument wrote of its own results.
+
+    Returns
+    -------
+    list of Findings
+        One for each scan. In the row "repeats" only the odd scan is objected to; where two scans
+        differ and no third tells which is right, both are.
+
+    Raises
+    ------
+    AnalysisError
+        If a dataset holds no scan.
+    ConfigError
+        If a check or a limit is unknown; the message names the nearest.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> rows = 1e-8 * rng.standard_normal((3, 4096)).cumsum(axis=1) * [[1], [1], [9]]
+    >>> x = 1e-6 * np.arange(4096)
+    >>> scans = [xr.Dataset({"height": ("x", row)}, {"x": x}) for row in rows]
+    >>> [found.status for found in check_scan_set(scans)]
+    ['pass', 'pass', 'fail']
+    """
+    given = results or [()] * len(scans)
+    found = [
+        check_scans(scan, limits=limits, skip=skip, results=list(own))
+        for scan, own in zip(scans, given, strict=True)
+    ]
+    if len(scans) < 2 or _REPEATS in skip:
+        return found
+    shapes = [_shape(scan) for scan in scans]
+    usual = Counter(shapes).most_common(1)[0][0]
+    alike = [number for number, shape in enumerate(shapes) if shape == usual]
+    verdicts = {
+        number: Result("skipped", "height", "it differs from the others in pitch or length")
+        for number in range(len(scans))
+    }
+    if len(alike) > 1:
+        verdicts.update(_repeats([scans[number] for number in alike], alike, limits, skip))
+    return [_with(one, verdicts[number]) for number, one in enumerate(found)]
+
+
+def check_results(results: xr.Dataset) -> Findings:
+    """Examine an instrument's own results that came without their profile.
+
+    Parameters
+    ----------
+    results
+        From `tribolab.io.scan_results.read_results`.
+
+    Returns
+    -------
+    Findings
+        Of the check "results" only: which values the instrument could not compute.
+    """
+    text = "the instrument could compute all of its values; there is no profile to compare with"
+    found = not_computed(results) or Result("pass", "results", text)
+    name = str(results.attrs.get("source", "results"))
+    return Findings(name, ((SCAN_CHECKS["results"], found),))
+
+
+def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
+    x = scan.x.values
+    return (*sorted(scan.sizes.items()), f"{(x[-1] - x[0]) / (x.size - 1):.4g}")
+
+
+def _repeats(
+    scans: list[xr.Dataset], numbers: list[int], limits: Limits | None, skip: Sequence[str]
+) -> dict[int, Result]:
+    """Judge scans of one shape against each other."""
+    rows = [np.asarray(scan.height.transpose(..., "x").values, dtype=float) for scan in scans]
+    names = [str(scan.attrs.get("source", f"scan {n + 1}")) for n, scan in enumerate(scans)]
+    first = scans[0]
+    if any(row.ndim > 2 or (row.ndim == 2 and len(row) > 1) for row in rows):
+        text = "maps are not compared with each other"
+        return dict.fromkeys(numbers, Result("skipped", "height", text))
+    kept = {k: v for k, v in first.attrs.items() if k in ("tip_radius_m", "form_removed")}
+    together = xr.Dataset(
+        {"height": (("scan", "x"), np.stack([row.reshape(-1) for row in rows]))},
+        {"x": first.x.values, "file": ("scan", names)},
+        kept,
+    )
+    others = tuple(name for name in SCAN_CHECKS if name != _REPEATS)
+    checked = check_scans(together, limits=limits, skip=(*skip, *others))
+    [said] = [result for check, result in checked.results if check.name == _REPEATS]
+    if said.status not in ("suspect", "fail") or len(scans) == 2:
+        return dict.fromkeys(numbers, said)
+    odd = names.index(said.where)
+    fine = f"agrees with the other scans but {names[odd]}"
+    right = Result("pass", "height", fine, said.value)
+    return {number: said if n == odd else right for n, number in enumerate(numbers)}
+
+
+def _with(found: Findings, repeats: Result) -> Findings:
+    """Put the verdict on the repeats where a scan alone had none."""
+    rows = tuple(
+        (check, repeats if check.name == _REPEATS else result) for check, result in found.results
+    )
+    return Findings(found.name, rows, found.flagged, found.limits)
