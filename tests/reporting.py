@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.campaign.config import Campaign
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.friction.stick_slip import stick_slip
 from tribolab.io.netcdf import write_netcdf
 from tribolab.quantities import stamp
 
@@ -104,6 +105,14 @@ def made_run(speeds=SPEEDS, load=31.0, mu=0.8, seed=0, samples=400, stroke=2e-3,
     return run, segments, stamp(friction, offset="half loop")
 
 
+def write_groups(path, run, segments, friction):
+    """Write the data file of a run, with the stick-slip that is in it."""
+    slip = stick_slip(run, segments)
+    groups = {"run": run, "segments": segments, "friction": friction, "stick_slip": slip}
+    for group, data in groups.items():
+        write_netcdf(data, path, group=group)
+
+
 def made_curve(speeds=SPEEDS, mu=0.8, surface="Sb-R", medium="glycerol", load=31.0):
     """Return a measured curve."""
     speeds = np.array(speeds, float)
@@ -146,8 +155,7 @@ def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS,
     for number, (run_name, surface, medium, load, mu) in enumerate(runs):
         data_file = f"data/run{number}.nc"
         parts = made_run(speeds, load or 31.0, mu, seed=number, samples=samples)
-        for group, data in zip(("run", "segments", "friction"), parts, strict=True):
-            write_netcdf(data, results / data_file, group=group)
+        write_groups(results / data_file, *parts)
         count = parts[1].sizes["segment"]
         outcomes.append(
             RunOutcome(

@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tribolab.friction.lines import find_lines, mains_harmonic
+from tribolab.friction.noise import noise_level
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
-from tribolab.qc.lines import find_lines, mains_harmonic
 from tribolab.qc.subject import stick_slip_periods
 
 seeds = st.integers(0, 2**32 - 1)
@@ -99,7 +100,7 @@ def test_the_step_of_a_converter_is_recovered(step, seed):
 @settings(max_examples=25)
 def test_noise_is_measured_through_a_drift(seed, size, slope):
     values = size * (noise(seed, 20_000) + slope * np.arange(20_000))
-    assert signals.noise_level(values) == pytest.approx(size, rel=0.06)
+    assert noise_level(values) == pytest.approx(size, rel=0.06)
 
 
 def test_time_that_stands_still_or_goes_back_fails():

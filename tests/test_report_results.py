@@ -220,8 +220,7 @@ def _one(tmp_path, change):
     path = made.folder / made.runs[0].data_file
     parts = change(*made_run())
     path.unlink()
-    for group, data in zip(("run", "segments", "friction"), parts, strict=True):
-        write_netcdf(data, path, group=group)
+    write_groups(path, *parts)
     return made
 
 

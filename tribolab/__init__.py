@@ -26,6 +26,8 @@ _PUBLIC = {
     "find_segments": "tribolab.friction.segments",
     "friction_coefficient": "tribolab.friction.coefficient",
     "half_loops": "tribolab.friction.coefficient",
+    "stick_slip": "tribolab.friction.stick_slip",
+    "stick_slip_curve": "tribolab.friction.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
     "read_scans": "tribolab.io.scans",
@@ -49,6 +51,7 @@ _PUBLIC = {
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "fit_shear_stress": "tribolab.compare.shear_stress",
+    "sliding_mode": "tribolab.compare.sliding_mode",
     "model_uncertainty": "tribolab.compare.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
@@ -68,6 +71,8 @@ __all__ = [
     "find_segments",
     "friction_coefficient",
     "half_loops",
+    "stick_slip",
+    "stick_slip_curve",
     "measured_stribeck_curve",
     "check",
     "read_scans",
@@ -91,6 +96,7 @@ __all__ = [
     "work_of_adhesion_spread",
     "stribeck_curve",
     "fit_shear_stress",
+    "sliding_mode",
     "model_uncertainty",
     "viscoelastic_friction",
     "read_modulus",
@@ -107,6 +113,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.config import load_campaign
     from tribolab.compare.model_uncertainty import model_uncertainty
     from tribolab.compare.shear_stress import fit_shear_stress
+    from tribolab.compare.sliding_mode import sliding_mode
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution
@@ -118,6 +125,8 @@ if TYPE_CHECKING:
     from tribolab.errors import TribolabError
     from tribolab.friction.coefficient import friction_coefficient, half_loops
     from tribolab.friction.segments import find_segments
+    from tribolab.friction.slip_curve import stick_slip_curve
+    from tribolab.friction.stick_slip import stick_slip
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read

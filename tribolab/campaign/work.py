@@ -81,9 +81,9 @@ def process_run(task: RunTask) -> RunRecord:
     began = time.monotonic()
     run = task.run
     try:
-        signals, segments, friction, quality = _analyse(run)
+        signals, segments, friction, slip, quality = _analyse(run)
         write_data(
-            {"run": signals, "segments": segments, "friction": friction},
+            {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip},
             task.folder / task.data_file,
         )
     except OutputError:
@@ -194,9 +194,10 @@ def source_of(file: Path, label: str) -> Source:
         return label, "", 0
 
 
-def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, str]:
+def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset, str]:
     from tribolab.friction.coefficient import friction_coefficient
     from tribolab.friction.segments import find_segments
+    from tribolab.friction.stick_slip import stick_slip
     from tribolab.io.runs import read
     from tribolab.qc.run_checks import check_run
 
@@ -206,12 +207,13 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, str]:
         signals.attrs["set_normal_force_N"] = run.normal_force
     segments = find_segments(signals, **run.segments)
     friction = friction_coefficient(signals, segments, **run.friction)
+    slip = stick_slip(signals, segments)
     found = check_run(signals, segments, friction, **run.quality)
     signals = found.flagged
     signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
-    for data in (signals, segments, friction):
+    for data in (signals, segments, friction, slip):
         data.attrs.update(_labels(run), config_sha256=run.config_sha256)
-    return signals, segments, friction, found.status
+    return signals, segments, friction, slip, found.status
 
 
 def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:

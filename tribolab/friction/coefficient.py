@@ -97,7 +97,7 @@ def friction_coefficient(
     """
     if offset not in OFFSETS:
         raise AnalysisError(f"offset: '{offset}' is not known{nearest(offset, OFFSETS)}")
-    _belong(run, segments)
+    belong(run, segments)
     pair = pair_strokes(segments, pair_tolerance)
     if "friction_force" in run:
         result = _from_forces(run, segments, offset, pair)
@@ -116,7 +116,8 @@ def _name(run: xr.Dataset) -> str:
     return str(run.attrs.get("source", "run"))
 
 
-def _belong(run: xr.Dataset, segments: xr.Dataset) -> None:
+def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
+    """Refuse segments of another run."""
     mine, theirs = (d.attrs.get("source_sha256") for d in (run, segments))
     outside = False
     if segments.sizes["segment"]:
@@ -135,7 +136,8 @@ def _belong(run: xr.Dataset, segments: xr.Dataset) -> None:
         )
 
 
-def _slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
+def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
+    """Find the samples of each trimmed segment."""
     time = run["time"].values
     first = np.searchsorted(time, segments["trimmed_start"].values, side="left")
     last = np.searchsorted(time, segments["trimmed_stop"].values, side="right")
@@ -229,7 +231,7 @@ def _from_forces(
     run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.ndarray
 ) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
-    parts = _slices(run, segments)
+    parts = trimmed_slices(run, segments)
     forces = [describe(time[s], force[s]) for s in parts]
     means = _column(forces, "mean")
     sign = _signs(segments, means)
@@ -321,7 +323,7 @@ def _ratio(
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.ndarray) -> xr.Dataset:
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
-    found = [describe(time[s], ratio[s]) for s in _slices(run, segments)]
+    found = [describe(time[s], ratio[s]) for s in trimmed_slices(run, segments)]
     means = _column(found, "mean")
     sign = _signs(segments, means)
     rectified = bool((means[np.isfinite(means)] >= 0).all())

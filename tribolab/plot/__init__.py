@@ -16,10 +16,12 @@ from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
 from tribolab.plot.sensitivity import model_sensitivity
+from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
 from tribolab.plot.style import figure_data, paper_style, save, svg
 from tribolab.plot.surfaces import modulus, spectra, viscoelastic
 
 __all__ = [
+    "Trace",
     "adhesive_area",
     "contact_area",
     "effective_work",
@@ -36,6 +38,9 @@ __all__ = [
     "modulus",
     "paper_style",
     "save",
+    "slip_events",
+    "slip_spectra",
+    "slip_traces",
     "shear_stress",
     "spectra",
     "strokes",
@@ -43,4 +48,5 @@ __all__ = [
     "svg",
     "trace",
     "viscoelastic",
+    "waveform_map",
 ]

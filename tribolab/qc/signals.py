@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT
-
-_LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -22,42 +21,6 @@ def missing(values: np.ndarray) -> np.ndarray:
     array([1, 9], dtype=int8)
     """
     return np.where(np.isnan(values), MISSING, GOOD).astype(np.int8)
-
-
-def quantisation_step(values: np.ndarray) -> float:
-    """Smallest step between recorded values, in their unit; 0 where values hardly repeat.
-
-    Notes
-    -----
-    A digitised signal takes few different values. Where more than half of the values are
-    different, no step can be told from the numbers and none is claimed.
-    """
-    values = values[~np.isnan(values)]
-    if values.size < 32:
-        return 0.0
-    sample = values[:: max(1, values.size // _LARGEST_SAMPLE)]
-    levels = np.unique(sample)
-    if levels.size < 2 or levels.size > 0.5 * sample.size:
-        return 0.0
-    steps = np.diff(levels)
-    # arithmetic leaves dust of 1e-12 between equal codes; it is not a step
-    steps = steps[steps > 1e-9 * np.abs(levels).max()]
-    return float(np.quantile(steps, 0.05)) if steps.size else 0.0
-
-
-def noise_level(values: np.ndarray) -> float:
-    """Robust standard deviation of the sample-to-sample noise, in the signal's unit.
-
-    Notes
-    -----
-    From second differences, which a drift or a slow wave leaves near zero: their median
-    absolute deviation over 0.6745 sqrt(6).
-    """
-    values = values[~np.isnan(values)]
-    if values.size < 5:
-        return 0.0
-    second = np.diff(values, 2)
-    return float(np.median(np.abs(second)) / (0.6745 * np.sqrt(6.0)))
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.friction.lines import Line
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
-from tribolab.qc.lines import Line
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject

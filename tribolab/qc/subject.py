@@ -9,10 +9,10 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import friction_coefficient
+from tribolab.friction.lines import Line, segment_lines
+from tribolab.friction.noise import noise_level
 from tribolab.friction.segments import find_segments
-from tribolab.qc.lines import Line, segment_lines
 from tribolab.qc.register import Skip
-from tribolab.qc.signals import noise_level
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
 _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperature")

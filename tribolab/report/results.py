@@ -11,13 +11,14 @@ import pandas as pd
 from markupsafe import Markup
 
 from tribolab.campaign.executor import completed
-from tribolab.report import surface_records, tables
+from tribolab.report import sliding, surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
 from tribolab.report.model_figures import draw_model
 from tribolab.report.model_part import write_models
 from tribolab.report.page import PageTrace, write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
+from tribolab.report.sliding_figures import draw_sliding
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
 from tribolab.report.traces import trace_points
@@ -71,8 +72,10 @@ def write_report(
     models, tasks = write_models(outcome, findings)
     model_figures = _drawn(draw_model, tasks, "models' figures", executor, tell, findings)
 
+    modes, slip_figures, slip_rows = _sliding(outcome, readable, rows, findings)
     ordered = tables.findings_table(findings)
     _write_tables(outcome, summaries, points, ordered)
+    tables.write(tables.together(slip_rows, ["run", "segment"]), folder / "tables/stick_slip.csv")
     for name in ("roughness", "contact", "adhesion"):
         columns = getattr(surface_records, name.upper())
         table = surface_records.table(list(rows.values()), name, columns)
@@ -81,6 +84,7 @@ def write_report(
     document = report_document(outcome, summaries, curves, figures, records)
     document["surfaces"] = [surface_record(one, rows.get(one.name)) for one in outcome.surfaces]
     document["surface_figures"] = drawn
+    document["sliding_mode"], document["sliding_figures"] = modes, slip_figures
     document |= {"models": models, "model_figures": model_figures}
     write_json(document, folder / "report.json")
     traces = {
@@ -171,6 +175,33 @@ def _surfaces(outcome: Outcome, findings: list[dict[str, str]]) -> dict[str, Sur
         except Exception as error:  # recorded, as above
             findings.append(_error("", where, error))
     return rows
+
+
+def _sliding(
+    outcome: Outcome,
+    readable: set[str],
+    rows: dict[str, SurfaceRows],
+    findings: list[dict[str, str]],
+) -> tuple[list[dict[str, Any]], list[dict[str, str]], list[pd.DataFrame]]:
+    """Return the sliding modes, their figures and the rows of the table on stick-slip."""
+    found: list[sliding.CurveSlip] = []
+    for curve in outcome.curves:
+        if curve.name not in readable:
+            continue
+        try:
+            found.append(sliding.read_slip(outcome, curve))
+        except Exception as error:  # recorded, as above
+            findings.append(_error("; ".join(curve.run_names), f"stick-slip {curve.name}", error))
+    if not found:
+        return [], [], []
+    table = sliding.sliding_tables(found, outcome)
+    try:
+        modes = sliding.judge_modes(found, outcome, rows)
+        records = [sliding.mode_record(one, modes[one.outcome.name]) for one in found]
+        return records, draw_sliding(found, outcome), table
+    except Exception as error:  # recorded, as above
+        findings.append(_error("", "sliding mode", error))
+        return [], [], table
 
 
 def _drawn(

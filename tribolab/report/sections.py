@@ -44,6 +44,9 @@ SECTIONS = (
     Section(
         "model", "Mixed lubrication: model beside measurement", "sections/model.html.j2", "models"
     ),
+    Section(
+        "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
+    ),
     Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
     Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
     Section("provenance", "Where it comes from", "sections/provenance.html.j2"),

@@ -7,6 +7,7 @@ from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import SimulatedRun, simulate_run
+from tribolab.rig.traces import simulate_trace
 from tribolab.rig.truth import Truth, read_truth
 
 __all__ = [
@@ -31,5 +32,6 @@ __all__ = [
     "scans",
     "simulate_campaign",
     "simulate_run",
+    "simulate_trace",
     "stick_slip",
 ]

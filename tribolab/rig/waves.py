@@ -11,7 +11,11 @@ FALL = 0.04  # part of a period that the abrupt drop takes
 
 
 def sawtooth(
-    rng: np.random.Generator, length: float, wavelength: float, drop: float
+    rng: np.random.Generator,
+    length: float,
+    wavelength: float,
+    drop: float,
+    jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Slow linear rise, abrupt drop; each period and each drop a little different.
 
@@ -23,13 +27,15 @@ def sawtooth(
         Distance that is covered, and mean distance between drops [m].
     drop
         Mean height of a drop, in the unit of the result.
+    jitter
+        Relative standard deviation of periods and drops.
 
     Returns
     -------
     callable
         The waveform at distances [m].
     """
-    starts, periods, sizes = _periods(rng, length, wavelength)
+    starts, periods, sizes = _periods(rng, length, wavelength, jitter)
     valleys = -0.5 * drop * sizes[:-1]
     peaks = 0.5 * drop * sizes[1:]
     distance = np.stack([starts, starts + (1 - FALL) * periods], axis=1).ravel()
@@ -38,10 +44,14 @@ def sawtooth(
 
 
 def rounded(
-    rng: np.random.Generator, length: float, wavelength: float, drop: float
+    rng: np.random.Generator,
+    length: float,
+    wavelength: float,
+    drop: float,
+    jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Near a sine, leaning a little to the sawtooth's side; parameters as in `sawtooth`."""
-    starts, periods, sizes = _periods(rng, length, wavelength)
+    starts, periods, sizes = _periods(rng, length, wavelength, jitter)
     edges = np.append(starts, starts[-1] + periods[-1])
     turns = np.arange(edges.size)
 
@@ -54,15 +64,41 @@ def rounded(
 
 
 def _periods(
-    rng: np.random.Generator, length: float, wavelength: float
+    rng: np.random.Generator, length: float, wavelength: float, jitter: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Draw starts and lengths of enough periods to cover the length, and a size at each edge."""
     count = int(np.ceil(1.5 * length / wavelength)) + 4
-    periods = wavelength * np.clip(1 + JITTER * rng.standard_normal(count), 0.5, 1.5)
+    periods = wavelength * np.clip(1 + jitter * rng.standard_normal(count), 0.5, 1.5)
     first = -wavelength * rng.uniform(1, 2)
     starts = first + np.concatenate([[0.0], np.cumsum(periods)[:-1]])
-    sizes = np.clip(1 + JITTER * rng.standard_normal(count + 1), 0.5, 1.5)
+    sizes = np.clip(1 + jitter * rng.standard_normal(count + 1), 0.5, 1.5)
     return starts, periods, sizes
 
 
-WAVES = {"sawtooth": sawtooth, "rounded": rounded}
+def irregular(
+    rng: np.random.Generator,
+    length: float,
+    wavelength: float,
+    drop: float,
+    jitter: float = JITTER,
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Stick-slip without a period: loads to thresholds that scatter, drops as they come.
+
+    Parameters as in `sawtooth`; `jitter` plays no part. Peaks and valleys scatter by a third of a
+    drop each, loading is alike, so that periods follow what there is to load; a fall takes a tenth
+    to a third of its period.
+    """
+    count = int(np.ceil(3 * length / wavelength)) + 8
+    valleys = drop * (-0.5 + 0.33 * rng.standard_normal(count + 1).clip(-2, 2))
+    peaks = drop * (0.5 + 0.33 * rng.standard_normal(count).clip(-2, 2))
+    peaks = np.maximum(peaks, np.maximum(valleys[:-1], valleys[1:]) + 0.15 * drop)
+    periods = (peaks - valleys[:-1]) * rng.uniform(0.8, 1.2, count)
+    periods *= wavelength / periods.mean()
+    starts = np.concatenate([[0.0], np.cumsum(periods)[:-1]]) - 2 * wavelength
+    share = rng.uniform(0.1, 0.33, count)
+    distance = np.stack([starts, starts + (1 - share) * periods], axis=1).ravel()
+    values = np.stack([valleys[:-1], peaks], axis=1).ravel()
+    return lambda s: np.interp(s, distance, values)
+
+
+WAVES = {"sawtooth": sawtooth, "rounded": rounded, "irregular": irregular}

@@ -1,0 +1,169 @@
+"""The sliding mode: regimes, evidence and verdict, on curves whose answer is known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tribolab.compare.regimes import end_of_boundary, measured_regimes, model_regimes
+from tribolab.compare.sliding_mode import (
+    LOCAL,
+    STEADY_SLIDING,
+    SUSPECTED,
+    UNEXPLAINED,
+    UNKNOWN,
+    Mode,
+    sliding_mode,
+)
+from tribolab.errors import AnalysisError
+from tribolab.friction.segments import find_segments
+from tribolab.friction.slip_curve import frequency_scaling, stick_slip_curve
+from tribolab.friction.stick_slip import stick_slip
+from tribolab.rig import simulate_trace
+
+SPEEDS = np.geomspace(1e-6, 1e-2, 13)
+
+
+def curve(mu):
+    return xr.Dataset({"friction_coefficient": ("sliding_speed", mu)}, {"sliding_speed": SPEEDS})
+
+
+def slips(form, speeds=(1e-6, 2e-6, 4e-6), drops=(0.2, 0.2, 0.2), wavelength=22e-6, power=0.0):
+    """One result of stick_slip for each speed; the wavelength goes with a power of the speed."""
+    found = []
+    for k, (v, drop) in enumerate(zip(speeds, drops, strict=True)):
+        kind = form if drop else "none"
+        run = simulate_trace(
+            kind,
+            speed=v,
+            drop=drop,
+            noise=0.005,
+            wavelength=wavelength * (v / 1e-6) ** power,
+            seed=k,
+        )
+        found.append(stick_slip(run, find_segments(run)))
+    return found
+
+
+@pytest.fixture(scope="module")
+def saw():
+    return stick_slip_curve(slips("sawtooth"))
+
+
+@pytest.fixture(scope="module")
+def quiet():
+    return stick_slip_curve(slips("none", drops=(0, 0, 0)))
+
+
+plateau = 2.6 * np.exp(-((SPEEDS / 2e-5) ** 1.5)) + 0.02 * (SPEEDS / 1e-2) ** 0.4
+
+
+def modelled(end):
+    """A model that leaves its boundary regime at a speed."""
+    v = np.geomspace(1e-9, 1e-2, 60)
+    share = 1 / (1 + v / end)
+    data = {
+        "friction_coefficient": ("sliding_speed", 2.6 * share + 0.02 * (v / 1e-2) ** 0.4),
+        "solid_load_share": ("sliding_speed", share),
+    }
+    return xr.Dataset(data, {"sliding_speed": v})
+
+
+def test_regimes_follow_plateau_fall_and_rise():
+    found = measured_regimes(curve(plateau))
+    assert end_of_boundary(SPEEDS, found) == pytest.approx(4.64e-6, rel=0.01)
+    assert found[-1] == "hydrodynamic"
+    assert found[5] == "mixed"
+    # a curve that falls from the first speed on has no plateau
+    assert np.isnan(end_of_boundary(SPEEDS, measured_regimes(curve(SPEEDS**-0.3))))
+    assert end_of_boundary(*_model_end(1e-7)) < 2e-8
+
+
+def _model_end(end):
+    model = modelled(end)
+    return model["sliding_speed"].values, model_regimes(model)
+
+
+def test_stick_slip_with_macroscopic_adhesion_is_suspected_and_not_claimed(saw):
+    known = Mode(work_of_adhesion=0.02, work_of_adhesion_range=(0.0, 0.04))
+    found = sliding_mode(curve(plateau), modelled(1e-8), saw, known, name="Smooth")
+    assert found.verdict == SUSPECTED
+    assert "suspected" in found.text
+    assert "may also vanish" in found.paragraph
+    sides = {piece.topic: piece.side for piece in found.evidence}
+    assert sides["traces"] == sides["adhesion"] == "for"
+    assert any("plateau reaches" in p.text and p.side == "for" for p in found.evidence)
+    assert found.decide
+
+
+def test_stick_slip_without_macroscopic_adhesion_is_local(saw):
+    found = sliding_mode(curve(plateau), None, saw, Mode(work_of_adhesion=0.0))
+    assert found.verdict == LOCAL
+    assert sliding_mode(curve(plateau), None, saw).verdict == UNEXPLAINED
+
+
+def test_no_stick_slip_is_steady_sliding_whatever_adhesion_would_allow(quiet):
+    for work in (0.0, 0.02, None):
+        found = sliding_mode(curve(plateau), None, quiet, Mode(work_of_adhesion=work))
+        assert found.verdict == STEADY_SLIDING
+        assert "suspected" not in found.text
+    assert sliding_mode(curve(plateau)).verdict == UNKNOWN
+
+
+def test_a_model_that_fits_is_called_sufficient_and_one_that_misses_is_not(quiet):
+    model = modelled(1e-5)
+    place = np.log(model["sliding_speed"].values)
+    mu = np.interp(np.log(SPEEDS), place, model["friction_coefficient"].values)
+    known = Mode(work_of_adhesion=0.0)
+    good = sliding_mode(curve(mu), model, quiet, known)
+    assert good.numbers["model_misfit"] < 1e-12
+    assert "sufficient" in good.text and "not sufficient" not in good.text
+    assert "not sufficient" in sliding_mode(curve(mu), modelled(1e-8), quiet, known).text
+
+
+def test_uniform_slip_needs_the_papers_friction_of_order_ten(saw):
+    known = Mode(
+        work_of_adhesion=0.02,
+        area_ratio=0.876,
+        pressure=0.042e6,
+        rough_shear_stress=0.84e6 / 1.7,
+        youngs_modulus=1.5e6,
+    )
+    found = sliding_mode(curve(plateau), None, saw, known)
+    assert found.numbers["uniform_friction"] == pytest.approx(10.3, abs=0.1)
+    assert any("would need µ = 10" in piece.text for piece in found.evidence)
+
+
+def test_forced_wetting_sets_in_between_the_last_stick_slip_and_the_fall():
+    slip = stick_slip_curve(
+        slips("rounded", (1e-6, 2.15e-6, 4.64e-6, 1e-5), (0.5, 0.25, 0.1, 0.0), 40e-6)
+    )
+    found = sliding_mode(curve(plateau), None, slip, Mode(work_of_adhesion=0.02))
+    low, high = (found.numbers[f"forced_wetting_{end}_m_s"] for end in ("low", "high"))
+    assert 2e-6 < low <= 5e-6 < 9e-6 < high < 5e-5
+    assert any("weaken" in piece.text for piece in found.evidence)
+    dry = sliding_mode(curve(plateau), None, slip, Mode(work_of_adhesion=0.02, fluid=False))
+    assert "wetting" not in dry.paragraph
+
+
+def test_frequency_goes_with_speed_or_it_does_not(saw):
+    assert saw.attrs["scaling_exponent"] == pytest.approx(1, abs=0.05)
+    assert "wavelength is fixed" in saw.attrs["scaling"]
+    # a wavelength that grows as the speed is a fixed frequency
+    fixed = stick_slip_curve(slips("rounded", power=1.0))
+    assert abs(fixed.attrs["scaling_exponent"]) < 0.05
+    assert "fixed" in fixed.attrs["scaling"] and "wavelength" not in fixed.attrs["scaling"]
+    shrinking = stick_slip_curve(slips("rounded", power=-0.4))
+    assert abs(shrinking.attrs["scaling_exponent"] - 1.4) < 3 * shrinking.attrs["scaling_error"]
+
+
+def test_scaling_needs_three_speeds(quiet, saw):
+    assert "not known" in quiet.attrs["scaling"]
+    assert frequency_scaling(saw.isel(sliding_speed=[0, 1])).speeds == 2
+
+
+def test_stick_slip_over_speed_counts_segments_and_averages(saw):
+    twice = stick_slip_curve([*slips("sawtooth"), *slips("sawtooth")])
+    assert twice["segments"].values.tolist() == [2, 2, 2]
+    assert twice["drop"].values == pytest.approx(saw["drop"].values)
+    with pytest.raises(AnalysisError, match="at least one run"):
+        stick_slip_curve([])

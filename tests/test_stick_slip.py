@@ -1,0 +1,265 @@
+"""Stick-slip per segment: known waveforms, real records, and records that hold nothing."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.real_runs import paper
+from tribolab.errors import AnalysisError
+from tribolab.friction.segments import find_segments
+from tribolab.friction.stick_slip import stick_slip
+from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.quantities import stamp
+from tribolab.rig import Protocol, Rig, StickSlip, simulate_run, simulate_trace
+
+CLASS = {
+    "none": "smooth sliding",
+    "sawtooth": "sawtooth stick-slip",
+    "rounded": "sinus-like oscillation",
+    "irregular": "irregular",
+}
+
+
+def looked_at(run):
+    return stick_slip(run, find_segments(run))
+
+
+def a_run(values, spacing=0.1, speed=1e-6, time=None):
+    values = np.asarray(values, dtype=float)
+    time = spacing * np.arange(values.size) if time is None else time
+    data = {
+        "friction_coefficient": ("time", values),
+        "sliding_velocity": ("time", np.full(values.size, speed)),
+    }
+    return stamp(xr.Dataset(data, {"time": time}))
+
+
+def whole(run):
+    """One segment over the whole run, whatever is in it."""
+    time = run["time"].values
+    data = {
+        "start": time[:1],
+        "stop": time[-1:],
+        "trimmed_start": time[:1],
+        "trimmed_stop": time[-1:],
+        "sliding_speed": np.array([1e-6]),
+        "direction": np.array([1], np.int8),
+        "sliding_distance": np.array([1e-6 * (time[-1] - time[0])]),
+    }
+    return xr.Dataset({k: ("segment", v) for k, v in data.items()}, {"segment": [0]})
+
+
+@pytest.mark.parametrize("form", CLASS)
+def test_waveforms_of_the_rig_are_told_apart_at_three_times_the_noise(form):
+    wrong = 0
+    for seed in range(8):
+        run = simulate_trace(form, noise=0.2 / 6, seed=seed)
+        wrong += looked_at(run)["waveform"].item() != CLASS[form]
+    assert wrong <= 1
+
+
+@pytest.mark.parametrize("form", ["sawtooth", "rounded"])
+def test_wavelength_and_drop_are_the_drawn_ones(form):
+    for seed in range(6):
+        run = simulate_trace(form, noise=0.2 / 6, seed=100 + seed)
+        found = looked_at(run)
+        assert found["dominant_wavelength"].item() == pytest.approx(
+            run.attrs["wavelength_m"], rel=0.05
+        )
+        assert found["drop"].item() == pytest.approx(run.attrs["drop"], rel=0.10)
+        assert found["recurrence_distance"].item() == pytest.approx(
+            run.attrs["wavelength_m"], rel=0.10
+        )
+
+
+def test_loading_slope_and_durations_of_a_saw():
+    t = 0.01 * np.arange(20_000)
+    phase = t % 2.0
+    saw = np.where(phase < 1.8, phase / 1.8, (2.0 - phase) / 0.2)
+    found = looked_at(a_run(1 + 0.3 * saw, 0.01, 1e-5))
+    assert found["drop"].item() == pytest.approx(0.3, rel=0.02)
+    assert found["stick_duration"].item() == pytest.approx(1.8, rel=0.03)
+    assert found["slip_duration"].item() == pytest.approx(0.2, rel=0.2)
+    assert found["recurrence_time"].item() == pytest.approx(2.0, rel=0.002)
+    assert found["loading_slope"].item() == pytest.approx(0.3 / 1.8 / 1e-5, rel=0.03)
+    assert found["fall_share"].item() == pytest.approx(0.1, abs=0.02)
+    # the events carry the same numbers one by one
+    assert found["event_drop"].size == found["events"].item()
+    assert found["event_drop"].mean().item() == pytest.approx(found["drop"].item())
+
+
+def test_the_spectrum_holds_the_variance_over_time_and_over_distance():
+    run = simulate_trace("none", noise=0.02, red=0.3, samples=20_000, seed=3)
+    found = looked_at(run)
+    variance = 0.02**2
+    for name, axis in (("psd", "frequency"), ("distance_psd", "inverse_wavelength")):
+        power = found[name].isel(segment=0).dropna(axis)
+        assert np.trapezoid(power, power[axis]) == pytest.approx(variance, rel=0.2)
+
+
+def test_uneven_sampling_finds_the_same_saw():
+    run = simulate_trace("sawtooth", noise=0.01, samples=8000, periods=40, seed=5)
+    rng = np.random.default_rng(0)
+    some = run.isel(time=np.sort(rng.choice(8000, 3000, replace=False)))
+    even, uneven = looked_at(run), stick_slip(some, whole(some))
+    assert uneven["method"].item() == "Lomb-Scargle"
+    assert even["method"].item() == "periodogram"
+    assert uneven["waveform"].item() == "sawtooth stick-slip"
+    assert uneven["dominant_wavelength"].item() == pytest.approx(
+        even["dominant_wavelength"].item(), rel=0.02
+    )
+
+
+def test_a_gap_of_missing_values_does_not_hide_the_oscillation():
+    run = simulate_trace("rounded", noise=0.02, seed=2)
+    holed = run.copy(deep=True)
+    holed["friction_coefficient"][1200:1500] = np.nan
+    found = looked_at(holed)
+    assert found["waveform"].item() == "sinus-like oscillation"
+    assert found["dominant_wavelength"].item() == pytest.approx(
+        looked_at(run)["dominant_wavelength"].item(), rel=0.03
+    )
+
+
+def test_single_sample_spikes_are_no_slips():
+    run = simulate_trace("sawtooth", noise=0.01, seed=7)
+    clean = looked_at(run)
+    rng = np.random.default_rng(1)
+    values = run["friction_coefficient"].values.copy()
+    values[rng.choice(values.size, 60, replace=False)] += rng.choice([-0.8, 0.8], 60)
+    found = looked_at(run.assign(friction_coefficient=("time", values)))
+    assert abs(found["events"].item() - clean["events"].item()) <= 1
+    assert found["drop"].item() == pytest.approx(clean["drop"].item(), rel=0.06)
+    assert found["spike_share"].item() == pytest.approx(60 / 4000, rel=0.3)
+
+
+def test_a_coarse_converter_makes_no_events():
+    run = simulate_trace("none", noise=0.004, seed=4)
+    rough = np.round(run["friction_coefficient"].values / 0.02) * 0.02
+    assert looked_at(a_run(rough))["waveform"].item() == "smooth sliding"
+
+
+def test_a_clipped_signal_says_that_its_drops_are_lower_bounds():
+    run = simulate_trace("rounded", noise=0.002, seed=3)
+    cut = run.assign(friction_coefficient=run["friction_coefficient"].clip(0.95, 1.05))
+    found = looked_at(cut)
+    assert "cut off" in found["remark"].item()
+    assert 0.09 < found["drop"].item() < 0.15
+    assert "cut off" not in looked_at(run)["remark"].item()
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        (np.array([1.0, 1.1]), "2 samples are too few"),
+        (np.full(500, 0.3), "the signal is constant"),
+        (np.full(500, np.nan), "0 samples are too few"),
+    ],
+    ids=["two samples", "constant", "missing"],
+)
+def test_what_holds_nothing_is_not_evaluated_and_says_why(values, why):
+    run = a_run(values)
+    found = stick_slip(run, whole(run))
+    assert found["waveform"].item() == "not evaluated"
+    assert found["remark"].item() == why
+    assert found["events"].item() == 0
+    assert np.isnan(found["dominant_frequency"].item())
+
+
+def test_a_segment_shorter_than_a_few_periods_claims_nothing():
+    t = np.arange(2000)
+    for periods in (0.3, 0.8, 2.0):
+        run = a_run(1 + 0.1 * np.sin(2 * np.pi * periods * t / 2000))
+        assert stick_slip(run, whole(run))["waveform"].item() != "sawtooth stick-slip"
+        assert not stick_slip(run, whole(run))["events"].item() > 2
+
+
+def test_no_segments_give_an_empty_answer():
+    run = a_run(np.ones(100), speed=0.0)
+    found = stick_slip(run, find_segments(run))
+    assert found.sizes["segment"] == 0
+    assert found.sizes["event"] == 0
+
+
+def test_a_run_without_friction_is_refused():
+    run = a_run(np.ones(100)).drop_vars("friction_coefficient")
+    with pytest.raises(AnalysisError, match="friction_force"):
+        stick_slip(run, find_segments(run))
+
+
+def test_forces_without_a_load_are_judged_in_newtons():
+    run = simulate_trace("sawtooth", noise=0.01, seed=1)
+    force = stamp(run.rename(friction_coefficient="friction_force") * 30.0, **run.attrs)
+    force["sliding_velocity"] = run["sliding_velocity"]
+    found = looked_at(force)
+    assert found["force_drop"].attrs["units"] == "N"
+    assert found["force_drop"].item() == pytest.approx(30 * looked_at(run)["drop"].item(), rel=1e-6)
+    assert found["loading_stiffness"].item() == pytest.approx(
+        found["force_loading_slope"].item(), rel=1e-9
+    )
+
+
+def test_the_mains_is_the_instruments_and_a_ringing_rig_too():
+    rng = np.random.default_rng(8)
+    t = 0.001 * np.arange(8000)
+    hum = 0.02 * np.sin(2 * np.pi * 50.0 * t) + 0.01 * rng.standard_normal(8000)
+    found = looked_at(a_run(1 + hum, 0.001, 1e-4))
+    assert found["instrument"].item() == "mains at 50 Hz"
+    assert found["mains_amplitude"].item() == pytest.approx(0.02, rel=0.05)
+    assert found["waveform"].item() == "smooth sliding"
+
+    ringing = 1 + 0.05 * np.sin(2 * np.pi * 17.0 * np.arange(16_000) / 1000)
+    ringing += 0.005 * rng.standard_normal(16_000)
+    run = a_run(ringing, 0.001)
+    run["sliding_velocity"] = "time", np.repeat([1e-4, 5e-4], 8000)
+    found = looked_at(run)
+    assert found.sizes["segment"] == 2
+    assert all("resonance at 17" in text for text in found["instrument"].values)
+
+
+def test_a_run_of_the_rig_shows_what_was_put_in_and_nothing_else():
+    rig = Rig(Protocol(speeds=(1e-6, 4.64e-6, 2.15e-5)))
+    for medium, waveform in (
+        ("dry", "sawtooth stick-slip"),
+        ("glycerol", "sinus-like oscillation"),
+    ):
+        sim = simulate_run("Smooth", medium, rig=rig, seed=11)
+        run = sim.force_log.assign(sliding_velocity=sim.noise_free["sliding_velocity"])
+        found = looked_at(run)
+        told = [x == waveform for x in found["waveform"].values]
+        assert told == (sim.segments["stick_slip"] != "none").tolist()
+        quiet = simulate_run("Smooth", medium, rig=rig, seed=11, slip=StickSlip())
+        run = quiet.force_log.assign(sliding_velocity=quiet.noise_free["sliding_velocity"])
+        assert (looked_at(run)["waveform"] == "smooth sliding").all()
+
+
+def test_it_survives_netcdf(tmp_path):
+    found = looked_at(simulate_trace("sawtooth", seed=1))
+    write_netcdf(found, tmp_path / "slip.nc")
+    again = read_netcdf(tmp_path / "slip.nc")
+    assert again["waveform"].item() == "sawtooth stick-slip"
+    assert again["event_drop"].values.tolist() == found["event_drop"].values.tolist()
+
+
+def test_paper_on_paper_near_a_sine_above_the_sliders_own_frequency(shared_data):
+    for stiffness, frequency in ((168, 15.1), (1002, 34.6)):
+        found = looked_at(paper(shared_data, stiffness, 4300))
+        assert found["waveform"].item() == "sinus-like oscillation"
+        assert found["dominant_frequency"].item() == pytest.approx(frequency, rel=0.05)
+        own = np.sqrt(stiffness / 30.7e-3) / (2 * np.pi)
+        assert 1.1 < found["dominant_frequency"].item() / own < 1.4
+
+
+def test_paper_on_paper_irregular_stick_slip_and_the_mains(shared_data):
+    found = looked_at(paper(shared_data, 168, 1100))
+    assert found["waveform"].item() == "irregular"
+    assert "mains at 50 Hz" in found["instrument"].item()
+    assert 0.1 < found["fall_share"].item() < 0.4
+
+
+def test_paper_on_paper_where_noise_and_spikes_rule_claims_no_stick_slip(shared_data):
+    found = looked_at(paper(shared_data, 2254, 1100))
+    assert found["waveform"].item() not in ("sawtooth stick-slip", "irregular")
+    assert found["oscillation_share"].item() < 0.5
+    assert "mains at 50 Hz" in found["instrument"].item()
+    assert found["spike_share"].item() > 0.001

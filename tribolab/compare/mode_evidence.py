@@ -1,0 +1,163 @@
+"""The single pieces of evidence on the sliding mode, each one sentence with its numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.compare.mode_words import SAW, SINE, friction_text, percent_text, speed_text
+from tribolab.friction.slip_curve import STEADY
+
+if TYPE_CHECKING:
+    from tribolab.compare.sliding_mode import Mode
+
+FOR, AGAINST, NEUTRAL = "for", "against", "neutral"
+SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is sufficient
+FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
+BELOW = 2.0  # times that friction lies below a uniform slip's
+WEAKER = 1.5  # times that drops differ between speeds
+FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
+
+
+class Evidence(NamedTuple):
+    """One piece: for or against an adhesion-controlled mode, or neutral; what; a figure's topic."""
+
+    side: str
+    text: str
+    topic: str
+
+
+def _moving(slip: xr.Dataset) -> xr.Dataset:
+    return slip.isel(sliding_speed=np.flatnonzero(slip["waveform"].values != STEADY))
+
+
+def traces(slip: xr.Dataset | None) -> Evidence | None:
+    """Say what the traces show."""
+    if slip is None or not slip.sizes.get("sliding_speed", 0):
+        return Evidence(NEUTRAL, "stick-slip was not looked for in the traces", "traces")
+    moving = _moving(slip)
+    count = moving.sizes["sliding_speed"]
+    if count == 0:
+        text = "no stick-slip is seen in any trace"
+        if "oscillation_swing" in slip and np.isfinite(slip["oscillation_swing"]).any():
+            worst = float(slip["oscillation_swing"].max())
+            text += f"; swings of friction above {friction_text(worst)} would have been seen"
+        return Evidence(AGAINST, text, "traces")
+    speed = moving["sliding_speed"].values
+    names, counts = np.unique(moving["waveform"].values.astype(str), return_counts=True)
+    kinds = " and ".join(names[np.argsort(-counts)])
+    first = int(np.argmin(speed))
+    text = f"the traces oscillate at {count} of {slip.sizes['sliding_speed']} speeds ({kinds})"
+    drop = float(moving["drop"].values[first])
+    text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
+    if "dominant_wavelength" in moving:
+        text += f" every {float(moving['dominant_wavelength'].values[first]) * 1e6:.3g} µm"
+    if SAW in names and SINE not in names:
+        text += ", slow rises and abrupt drops"
+    elif SINE in names and SAW not in names:
+        text += ", rounded rather than abrupt"
+    return Evidence(FOR, text, "traces")
+
+
+def adhesion(known: Mode) -> Evidence | None:
+    """Whether adhesion reaches the macroscopic scale."""
+    work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
+    if work is None:
+        text = "the work of adhesion at magnification 1 is not known: no scan, medium or modulus"
+        return Evidence(NEUTRAL, text, "adhesion")
+    value = f"γ_eff(1) = {1e3 * work:.2g} mJ/m²"
+    span = ""
+    if bounds is not None:
+        span = f" (between {1e3 * bounds[0]:.2g} and {1e3 * bounds[1]:.2g})"
+    if work > 0:
+        sure = bounds is None or bounds[0] > 0
+        text = f"adhesion reaches the macroscopic scale, {value}{span}"
+        if not sure:
+            text += "; within its bounds it may also vanish"
+        return Evidence(FOR, text, "adhesion")
+    text = f"{value}{span}: no macroscopic instability can be driven by adhesion"
+    if bounds is not None and bounds[1] > 0:
+        text = f"{value}{span}: adhesion is not expected to reach the macroscopic scale, but may"
+    return Evidence(AGAINST, text, "adhesion")
+
+
+def strength(slip: xr.Dataset | None) -> Evidence | None:
+    """Whether the oscillation weakens with speed, as forced wetting makes it."""
+    if slip is None or not slip.sizes.get("sliding_speed", 0):
+        return None
+    moving = _moving(slip)
+    if moving.sizes["sliding_speed"] < 2:
+        return None
+    speed, drop = moving["sliding_speed"].values, moving["drop"].values
+    slow, fast = float(drop[0]), float(drop[-1])
+    words = f"{friction_text(slow)} at {speed_text(speed[0])}"
+    words += f", {friction_text(fast)} at {speed_text(speed[-1])}"
+    if slow > WEAKER * fast:
+        quiet = slip["sliding_speed"].values[slip["waveform"].values == STEADY]
+        above = quiet[quiet > speed.max()]
+        end = f", gone at {speed_text(above.min())}" if above.size else ""
+        return Evidence(FOR, f"drops weaken as the speed grows: {words}{end}", "speed")
+    return Evidence(NEUTRAL, f"drops hardly depend on speed: {words}", "speed")
+
+
+def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
+    """Where the plateau ends against where the model's boundary regime does."""
+    end, computed = numbers["boundary_end_m_s"], numbers["model_boundary_end_m_s"]
+    if model is None or np.isnan(end) or "solid_load_share" not in model:
+        return None
+    lowest = numbers["model_lowest_m_s"]
+    if np.isnan(computed):
+        computed, words = lowest, f"below {speed_text(lowest)}"
+    else:
+        words = f"at {speed_text(computed)}"
+    text = f"the measured plateau reaches up to {speed_text(end)}"
+    text += f"; the model's boundary regime ends {words}"
+    if end > FAR * computed:
+        return Evidence(FOR, text + f", {float(f'{end / computed:.1g}'):g} times slower", "curve")
+    return Evidence(AGAINST, text, "curve")
+
+
+def misfit(numbers: dict[str, float]) -> Evidence | None:
+    """Whether the mixed-lubrication model is sufficient."""
+    off = numbers["model_misfit"]
+    if np.isnan(off):
+        return None
+    if off < SUFFICIENT:
+        text = "the mixed-lubrication model is sufficient: its curve misses the measured one by"
+        return Evidence(AGAINST, f"{text} {percent_text(off)} of the largest friction", "curve")
+    text = "the mixed-lubrication model does not describe the measured curve: it misses by"
+    return Evidence(FOR, f"{text} {percent_text(off)} of the largest friction", "curve")
+
+
+def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
+    """Say what friction a uniform slip at the rough surfaces' shear stress would need."""
+    uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
+    if not uniform > BELOW * seen > 0:  # nothing to explain
+        return None
+    text = (
+        f"uniform slip at the rough surfaces' shear stress "
+        f"({1e-6 * known.rough_shear_stress:.2g} MPa) over A/A0 = {known.area_ratio:.2g} would "
+        f"need µ = {uniform:.2g}; µ = {friction_text(seen)} is measured"
+    )
+    if known.youngs_modulus:
+        share = numbers["uniform_stress_Pa"] / known.youngs_modulus
+        text += f", and its shear stress would be {share:.2g} of Young's modulus"
+    return Evidence(FOR, text, "stress")
+
+
+def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> dict[str, float]:
+    """Between which speeds forced wetting would set in: stick-slip ends, or friction has fallen."""
+    if not known.fluid or slip is None:
+        return {}
+    speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values
+    last = _moving(slip)["sliding_speed"].values.max()
+    fallen = speed[(mu < FALLEN * np.median(mu[:3])) & (speed > 0)]
+    quiet = slip["sliding_speed"].values
+    quiet = quiet[(quiet > last) & (slip["waveform"].values == STEADY)]
+    ends = [x.min() for x in (fallen, quiet) if x.size]
+    if not ends:
+        return {}
+    high = float(max(max(ends), last))
+    return {"forced_wetting_low_m_s": float(min(last, *ends)), "forced_wetting_high_m_s": high}

@@ -1,0 +1,85 @@
+"""Boundary, mixed or hydrodynamic: of a measured curve by its form, of a model by who carries."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+BOUNDARY, MIXED, HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
+FLAT = 0.15  # part of its level by which friction may change along a plateau
+SIGMAS = 3.0  # or that many standard errors
+RISE = 1.2  # friction over its minimum where it is hydrodynamic
+CARRIED = 0.9  # part of the load on one side that decides a regime
+
+
+def measured_regimes(curve: xr.Dataset) -> np.ndarray:
+    """Regime at each speed of a measured curve, from its form alone.
+
+    Parameters
+    ----------
+    curve
+        From `measured_stribeck_curve`, in a fluid.
+
+    Returns
+    -------
+    ndarray
+        Text (sliding_speed).
+
+    Notes
+    -----
+    Boundary: from the lowest speed on as long as friction stays within 15 % (or three standard
+    errors) of its median over the three lowest speeds; none unless three speeds do. Hydrodynamic:
+    behind the minimum, where friction has risen by a fifth. Mixed: between.
+
+    Examples
+    --------
+    >>> mu = [1.0, 1.02, 0.98, 0.5, 0.1, 0.12, 0.3]
+    >>> curve = xr.Dataset(
+    ...     {"friction_coefficient": ("sliding_speed", mu)},
+    ...     {"sliding_speed": np.geomspace(1e-6, 1e-2, 7)},
+    ... )
+    >>> [str(word)[0] for word in measured_regimes(curve)]
+    ['b', 'b', 'b', 'm', 'm', 'm', 'h']
+    """
+    mu = curve["friction_coefficient"].values
+    error = np.zeros(mu.size)
+    if "friction_coefficient_sem" in curve:
+        error = np.nan_to_num(curve["friction_coefficient_sem"].values)
+    found = np.full(mu.size, MIXED, dtype=object)
+    if mu.size < 3:
+        return found
+    level = float(np.median(mu[:3]))
+    flat = np.abs(mu - level) <= np.maximum(FLAT * abs(level), SIGMAS * error)
+    count = int(np.argmin(np.append(flat, False)))
+    if count >= 3:
+        found[:count] = BOUNDARY
+    lowest = int(np.argmin(mu))
+    risen = np.arange(mu.size) > lowest
+    risen &= mu > np.maximum(RISE * mu[lowest], mu[lowest] + SIGMAS * error)
+    if count < mu.size:
+        found[risen & (found != BOUNDARY)] = HYDRODYNAMIC
+    return found
+
+
+def model_regimes(curve: xr.Dataset) -> np.ndarray:
+    """Regime at each speed of a computed curve: who carries nine tenths of the load.
+
+    Parameters
+    ----------
+    curve
+        From `stribeck_curve`, with ``solid_load_share`` (sliding_speed).
+
+    Returns
+    -------
+    ndarray
+        Text (sliding_speed).
+    """
+    share = curve["solid_load_share"].values
+    solid, fluid = share >= CARRIED, share <= 1 - CARRIED
+    return np.where(solid, BOUNDARY, np.where(fluid, HYDRODYNAMIC, MIXED)).astype(object)
+
+
+def end_of_boundary(speed: np.ndarray, regimes: np.ndarray) -> float:
+    """Highest speed of the boundary regime [m/s]; NaN if there is none."""
+    inside = speed[regimes == BOUNDARY]
+    return float(inside.max()) if inside.size else float("nan")

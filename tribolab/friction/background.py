@@ -1,0 +1,82 @@
+"""What a spectrum would be without a line: red noise on white noise, and what stands above it."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import special
+
+_CORNERS = 24  # corner frequencies that are tried
+_FLOORS = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])  # white noise over the red, at zero
+_ABOVE = 0.7  # a band so far (natural log) above the model counts no more than this
+
+
+def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
+    """Fit an AR(1) process on white noise to a spectrum, peaks left aside.
+
+    Parameters
+    ----------
+    frequency, power, freedom
+        Bands [Hz], power density, degrees of freedom (band).
+
+    Returns
+    -------
+    ndarray
+        Power density of the background (band).
+
+    Notes
+    -----
+    S(f) = S_0 [1/(1 + (f/f_c)^2) + w]: an AR(1) process far below the sampling rate, and the
+    sensor's white noise. The least sum of absolute deviations of log S, weighted with the root of
+    the degrees of freedom; what stands above by more than a factor of two counts as if it stood
+    there, so that peaks and their harmonics do not lift their own background. All models are
+    tried at once.
+    """
+    corners = np.concatenate(
+        [np.geomspace(frequency[0] / 4, frequency[-1] * 2, _CORNERS), [np.inf]]
+    )
+    shape = 1 / (1 + (frequency[None, :] / corners[:, None]) ** 2)
+    models = np.log(shape[:, None, :] + _FLOORS[None, :, None]).reshape(-1, frequency.size)
+    # a mean of few exponential values lies below its expectation in the log
+    half = freedom / 2
+    measured = np.log(np.maximum(power, 1e-300)) - (special.digamma(half) - np.log(half))
+    weight = np.sqrt(np.minimum(freedom, 64.0))
+    weight = weight / weight.sum()
+    rest = measured - models
+    level = np.quantile(rest, 0.4, axis=1, keepdims=True)
+    best_cost, best_level = np.full(models.shape[0], np.inf), level[:, 0]
+    for shift in np.linspace(-1.2, 1.2, 17):
+        off = rest - level - shift
+        cost = np.minimum(np.abs(off), np.where(off > 0, _ABOVE, np.inf)) @ weight
+        better = cost < best_cost
+        best_cost = np.where(better, cost, best_cost)
+        best_level = np.where(better, level[:, 0] + shift, best_level)
+    best = int(np.argmin(best_cost))
+    return np.exp(models[best] + best_level[best])
+
+
+def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:
+    """Probability that noise shows such a band anywhere among all bands.
+
+    Parameters
+    ----------
+    power, background, freedom
+        Power densities and degrees of freedom (band).
+
+    Returns
+    -------
+    ndarray
+        1 - (1 - p)^N (band), with p the tail of the chi-squared distribution.
+
+    Examples
+    --------
+    >>> false_alarm(np.array([1.0, 30.0]), np.ones(2), np.full(2, 2.0)).round(3).tolist()
+    [0.6, 0.0]
+    """
+    single = special.gammaincc(freedom / 2, freedom / 2 * power / background)
+    return -np.expm1(power.size * np.log1p(-np.minimum(single, 1 - 1e-12)))
+
+
+def significant_power(background: np.ndarray, freedom: np.ndarray, chance: float) -> np.ndarray:
+    """Power density that noise exceeds anywhere among all bands with the given probability."""
+    single = -np.expm1(np.log1p(-chance) / background.size)
+    return background * special.gammainccinv(freedom / 2, single) / (freedom / 2)

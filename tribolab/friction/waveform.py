@@ -1,0 +1,139 @@
+"""The form of an oscillation: how steeply it rises and falls, how alike its periods are.
+
+The class follows from nine features by a multinomial logistic model. Its coefficients stand below;
+they were fitted to traces of the virtual rig (``tests/benchmarks/calibrate_stick_slip.py``, whose
+seeds no test and no table uses) and looked at on real records.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from tribolab.friction.events import Events
+from tribolab.friction.oscillation import Oscillation
+
+
+class Waveform(NamedTuple):
+    """Features of the form.
+
+    Parameters
+    ----------
+    fall_share
+        Median part of a cycle in which friction falls: 0.5 for a sine, near 0 for a saw.
+    asymmetry_p_value
+        Probability that rises and falls that last equally long differ so, by the sign test over
+        cycles: noise looks the same backwards in time.
+    derivative_skewness
+        Skewness of the derivative: 0 for a sine, strongly negative for a saw.
+    period_scatter, drop_scatter
+        Standard deviation over mean of the recurrence times and of the drops.
+    events
+        Whole cycles.
+    """
+
+    fall_share: float
+    asymmetry_p_value: float
+    derivative_skewness: float
+    period_scatter: float
+    drop_scatter: float
+    events: int
+
+
+def describe_waveform(values: np.ndarray, lag: int, events: Events) -> Waveform:
+    """Features of the form of a record.
+
+    Parameters
+    ----------
+    values
+        Evenly sampled, some 48 samples in a period (time).
+    lag
+        Samples over which the derivative is taken.
+    events
+        Cycles found in it.
+    """
+    rise, fall = events.peak - events.start, events.stop - events.peak
+    n = events.drop.size
+    slope = values[lag:] - values[:-lag] if values.size > lag else np.zeros(0)
+    slope = slope - slope.mean() if slope.size else slope
+    spread = float(np.sqrt(np.mean(slope**2))) if slope.size else 0.0
+    skewness = float(np.mean((slope / spread) ** 3)) if spread > 0 else np.nan
+    if n == 0:
+        return Waveform(np.nan, 1.0, skewness, np.nan, np.nan, 0)
+    longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())
+    p_value = 1.0
+    if longer + shorter:
+        p_value = float(stats.binomtest(longer, longer + shorter).pvalue)
+    period = np.diff(events.peak)
+    return Waveform(
+        fall_share=float(np.median(fall / (rise + fall))),
+        asymmetry_p_value=p_value,
+        derivative_skewness=skewness,
+        period_scatter=float(np.std(period, ddof=1) / period.mean()) if n > 2 else np.nan,
+        drop_scatter=float(np.std(events.drop, ddof=1) / events.drop.mean()) if n > 1 else np.nan,
+        events=n,
+    )
+
+
+CLASSES = ("smooth sliding", "sawtooth stick-slip", "sinus-like oscillation", "irregular")
+
+# feature: (value where unknown, lowest, highest); what lies beyond counts as the limit
+LIMITS = {
+    "prominence": (0.0, -0.5, 4.0),  # log10 of the peak's power over the background
+    "significance": (0.0, 0.0, 8.0),  # -log10 of the false-alarm probability
+    "strength": (-0.3, -0.5, 1.5),  # log10 of the swing over the noise
+    "share": (0.0, 0.0, 1.0),
+    "harmonics": (0.5, 0.0, 1.2),
+    "asymmetry": (0.0, -0.1, 0.5),  # one half less the part of a cycle that falls
+    "reversal": (0.0, 0.0, 6.0),  # -log10 of the probability that rises and falls are alike
+    "skewness": (0.0, -4.0, 1.0),
+    "scatter": (0.5, 0.0, 0.8),  # of the periods
+}
+
+# one number for each class, in the order of CLASSES
+INTERCEPT = np.array([5.22, -6.00, 0.67, 0.11])
+COEFFICIENTS = {
+    "prominence": np.array([-0.37, -0.14, 0.44, 0.07]),
+    "significance": np.array([-0.20, 0.68, 0.27, -0.75]),
+    "strength": np.array([-1.56, -1.68, 2.01, 1.22]),
+    "share": np.array([-3.08, 0.91, 1.69, 0.47]),
+    "harmonics": np.array([0.48, 1.39, -2.49, 0.62]),
+    "asymmetry": np.array([-9.83, 17.32, -9.57, 2.08]),
+    "reversal": np.array([-0.46, -0.10, -0.03, 0.59]),
+    "skewness": np.array([1.31, -1.46, 0.75, -0.59]),
+    "scatter": np.array([1.79, 0.72, -2.74, 0.23]),
+}
+
+
+def features(form: Waveform, found: Oscillation) -> dict[str, float]:
+    """Features of the class, each within its `LIMITS`."""
+    raw = {
+        "prominence": np.log10(max(found.prominence, 1e-9)),
+        "significance": -np.log10(max(found.false_alarm, 1e-99)),
+        "strength": np.log10(max(found.swing, 1e-99) / max(found.noise, 1e-99)),
+        "share": found.share,
+        "harmonics": found.harmonic_content,
+        "asymmetry": 0.5 - form.fall_share,
+        "reversal": -np.log10(max(form.asymmetry_p_value, 1e-99)),
+        "skewness": form.derivative_skewness,
+        "scatter": form.period_scatter,
+    }
+    return {
+        name: float(np.clip(raw[name], low, high)) if np.isfinite(raw[name]) else unknown
+        for name, (unknown, low, high) in LIMITS.items()
+    }
+
+
+def class_probabilities(values: dict[str, float]) -> np.ndarray:
+    """Probability of each of `CLASSES` from the features.
+
+    Parameters
+    ----------
+    values
+        From `features`.
+    """
+    score = INTERCEPT + sum(COEFFICIENTS[name] * value for name, value in values.items())
+    weight = np.exp(score - score.max())
+    return weight / weight.sum()
