@@ -1,5 +1,6 @@
 """The whole loop with a model: rig, files, spectrum, curve, fit; reuse, failures, the report."""
 
+import html
 import json
 import re
 from pathlib import Path
@@ -112,7 +113,7 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     assert len(pd.read_csv(folder / "tables/stribeck_model.csv")) == 33
     kinds = [figure["kind"] for figure in report["model_figures"]]
     assert kinds == ["curve", "shear_stress", "effect", "factors", "profiles", "sensitivity"]
-    page = (folder / "report.html").read_text("utf-8")
+    page = html.unescape((folder / "report.html").read_text("utf-8"))
     assert "model beside measurement" in page
     assert record["fit"]["judgement"].split(";")[0] in page
     assert not [f for f in report["findings"] if f["severity"] == "error"]
