@@ -35,7 +35,11 @@ def chromium(profile):
     command = [BROWSER, *OPTIONS, f"--user-data-dir={profile}", "about:blank"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        yield Browser(Path(profile))
+        browser = Browser(Path(profile))
+        try:
+            yield browser
+        finally:
+            browser.close()
     finally:
         process.terminate()
         try:
@@ -51,6 +55,10 @@ class Browser:
     def __init__(self, profile):
         self._port = _port(profile / "DevToolsActivePort")
         self._devtools = _Devtools(f"ws://127.0.0.1:{self._port[0]}{self._port[1]}")
+
+    def close(self):
+        """Let go of the browser."""
+        self._devtools.close()
 
     @contextlib.contextmanager
     def page(self, address, width=1400, height=900, dark=False):

@@ -3,73 +3,40 @@
 import json
 import os
 import re
-import shutil
-import subprocess
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from chromium import BROWSER, chromium
+from report_pages import FLAGGED, LONG, Reader, made, page_of
 from reporting import made_outcome
 
+from tribolab.report import page as page_module
 from tribolab.report.page import data_address
 from tribolab.report.results import write_report
 
-BROWSER = next(
-    (
-        found
-        for name in ("chromium", "chromium-browser", "google-chrome", "chrome")
-        if (found := shutil.which(name))
-    ),
-    "",
-)
+AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
 HOSTILE = [
     "<script>document.title='broken into'</script>",
     '"><img src=x onerror="document.title=\'broken into\'">',
     "'+alert(1)+' javascript:alert(1) {{ 7*7 }} {% raw %}",
     "</style></script><svg onload=\"document.title='broken into'\">",
 ]
-RUNS = [("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8), ("sb-s_1", "Sb-S", "glycerol", 31.0, 1.1)]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     if not BROWSER:
         message = "no chromium was found to open the report with"
         if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
             pytest.fail(message)
         pytest.skip(message)
-
-    def run(page, *options):
-        profile = tmp_path_factory.mktemp("profile")
-        command = [
-            BROWSER,
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--disable-quic",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--enable-logging=stderr",
-            "--v=0",
-            f"--user-data-dir={profile}",
-            *options,
-            str(page) if "://" in str(page) else Path(page).as_uri(),
-        ]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=90, check=True)
-        console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-        return done.stdout, console
-
-    return run
+    with chromium(tmp_path_factory.mktemp("profile")) as started:
+        yield started
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    failed = [("broken", "bad.csv: column 'Fx' has no unit")]
-    made = made_outcome(tmp_path_factory.mktemp("page"), RUNS, "Glycerol & PMMA", failed)
-    write_report(made)
-    return made.folder
+    return made(tmp_path_factory.mktemp("page"))
 
 
 @pytest.fixture(scope="module")
@@ -77,65 +44,39 @@ def hostile(tmp_path_factory):
     runs = [(HOSTILE[1], HOSTILE[2], HOSTILE[0], 31.0, 0.8)]
     failed = [(HOSTILE[3], HOSTILE[1])]
     folder = tmp_path_factory.mktemp("hostile")
-    made = made_outcome(folder, runs, HOSTILE[0], failed, speeds=[1e-3], samples=50)
-    write_report(made)
-    return made.folder
+    outcome = made_outcome(folder, runs, HOSTILE[0], failed, speeds=[1e-3], samples=50)
+    write_report(outcome)
+    return outcome.folder
 
 
-class Reader(HTMLParser):
-    """Collects the elements of a page, and checks that they are closed in order."""
-
-    VOID = {"meta", "link", "img", "br", "input", "hr", "wbr"}
-
-    def __init__(self, text):
-        super().__init__()
-        self.elements, self.open, self.text = [], [], []
-        self.feed(text)
-        self.close()
-        assert self.open == []
-
-    def handle_starttag(self, tag, attrs):
-        self.elements.append((tag, dict(attrs)))
-        if tag not in self.VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.text.append(data)
-
-    def all(self, tag):
-        return [attrs for name, attrs in self.elements if name == tag]
+def shown_runs(page):
+    """The names in the table of runs, as they stand there."""
+    return page.run(
+        "Array.from(document.querySelectorAll('#runs-table tbody tr:not([hidden]) th'),"
+        "cell => cell.textContent)"
+    )
 
 
-def page_of(folder):
-    return (folder / "report.html").read_text(encoding="utf-8")
-
-
-def with_probe(folder, tmp_path, script):
-    """Return a copy of the page, without its policy, that runs a script and shows its answer."""
-    text = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page_of(folder))
-    probe = f"<script>document.title = 'answer:' + JSON.stringify((() => {{{script}}})())</script>"
-    path = tmp_path / "probed.html"
-    path.write_text(text.replace("</body>", probe + "</body>"), encoding="utf-8")
-    return path
-
-
-def answer(dom):
-    found = re.search(r"<title>answer:(.*?)</title>", dom)
-    assert found, "the page's title was not set by the probe"
-    return json.loads(found[1].replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">"))
+def span_of(page, run):
+    """What a run's chart says of the time that it shows: from, to [s]."""
+    text = page.run(f"document.querySelector('#run-{run} .state').textContent")
+    return tuple(float(word) for word in re.match(r"([\d.]+) s to ([\d.]+) s", text).groups())
 
 
 @pytest.mark.slow
-def test_page_opens_without_a_word_on_the_console(browser, results):
-    dom, console = browser(results / "report.html", "--dump-dom")
-    assert console == []
-    assert "2 of 3 runs done; 1 failed" in dom
-    assert "<title>Glycerol &amp; PMMA" in dom
-    # its script ran under its own policy: headers became buttons
-    assert dom.count('<th scope="col"><button') > 10
+def test_page_opens_without_a_word_and_asks_nothing_of_the_network(browser, results):
+    address = (results / "report.html").as_uri()
+    with browser.page(address) as page:
+        page.run("document.querySelectorAll('details').forEach(one => { one.open = true })")
+        page.wait("document.querySelectorAll('.plot canvas').length === 6")
+        assert page.console == []
+        assert page.requests == [address]
+        assert "3 of 4 runs done; 1 failed" in page.run("document.body.textContent")
+        widths = page.run(
+            "Promise.all(Array.from(document.images, i => { i.loading = 'eager';"
+            "return i.decode().then(() => i.naturalWidth) }))"
+        )
+    assert len(widths) == 3 + 2 + 1 and min(widths) > 300
 
 
 @pytest.mark.slow
@@ -143,92 +84,208 @@ def test_the_browser_reports_errors_and_what_the_policy_stopped(browser, results
     trouble = "<script>throw 1</script><img src='http://localhost:9/x.png'></body>"
     path = tmp_path / "trouble.html"
     path.write_text(page_of(results).replace("</body>", trouble), encoding="utf-8")
-    assert len(browser(path, "--dump-dom")[1]) == 2
-
-
-@pytest.mark.slow
-def test_every_figure_on_the_page_can_be_drawn(browser, results, tmp_path):
-    sizes = (
-        "<script>addEventListener('load', async () => {"
-        "for (const d of document.querySelectorAll('details')) d.open = true;"
-        "const all = Array.from(document.images);"
-        "await Promise.all(all.map(i => {i.loading = 'eager'; return i.decode()}));"
-        "document.title = 'answer:' + JSON.stringify(all.map(i => i.naturalWidth))})</script>"
-    )
-    text = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page_of(results))
-    path = tmp_path / "drawn.html"
-    path.write_text(text.replace("</body>", sizes + "</body>"), encoding="utf-8")
-    dom, _ = browser(path, "--dump-dom", "--virtual-time-budget=20000")
-    widths = answer(dom)
-    assert len(widths) == 2 * 2 + 2 + 1
-    assert min(widths) > 300
+    with browser.page(path) as page:
+        assert len(page.console) == 2
+        assert "Content Security Policy" in page.console[0]
 
 
 @pytest.mark.slow
 def test_nothing_in_a_name_runs(browser, hostile, tmp_path):
-    dom, console = browser(hostile / "report.html", "--dump-dom")
-    assert "<title>broken into" not in dom
-    assert console == [], "not even an attempt that the policy had to stop"
-    script = (
-        "return [document.querySelectorAll('script').length,"
-        "document.querySelectorAll('[onerror],[onload]').length,"
-        "document.querySelector('h1').textContent]"
-    )
     # without the policy too: escaping alone has to do
-    assert answer(browser(with_probe(hostile, tmp_path, script), "--dump-dom")[0]) == [
-        page_of(hostile).count("<script>") + 1,
-        0,
-        HOSTILE[0],
-    ]
-
-
-@pytest.mark.slow
-def test_headers_sort_by_value_and_back(browser, results, tmp_path):
-    script = (
-        "const table = document.querySelector('table.runs');"
-        "const names = () => Array.from(table.tBodies[0].rows, r => r.cells[0].textContent);"
-        "const head = table.tHead.rows[0].cells[6];"
-        "head.firstChild.click(); const up = [names(), head.getAttribute('aria-sort')];"
-        "head.firstChild.click(); return [up, names(), head.getAttribute('aria-sort')]"
+    bare = tmp_path / "bare.html"
+    bare.write_text(
+        re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page_of(hostile))
     )
-    (up, word), down, back = answer(browser(with_probe(results, tmp_path, script), "--dump-dom")[0])
-    assert (word, back) == ("ascending", "descending")
-    assert up[:2] == ["sb-r_1", "sb-s_1"] and down[:2] == ["sb-s_1", "sb-r_1"]
+    for path in (hostile / "report.html", bare):
+        with browser.page(f"{path.as_uri()}#run-1") as page:
+            page.wait("document.querySelector('#run-1 .plot canvas') !== null")
+            assert page.console == [], "not even an attempt that the policy had to stop"
+            assert page.run("document.title").startswith(HOSTILE[0])
+            assert page.run("document.querySelector('h1').textContent") == HOSTILE[0]
+            assert page.run("document.querySelectorAll('[onerror],[onload]').length") == 0
+            running = "Array.from(document.scripts).filter(s => !s.type).length"
+            assert page.run(running) == len(page_module._SCRIPTS)
 
 
 @pytest.mark.slow
-def test_a_link_opens_the_run_it_points_to(browser, results):
-    address = (results / "report.html").as_uri() + "#run-2"
-    dom, _ = browser(address, "--dump-dom")
-    assert re.findall(r'<details class="run[^"]*" id="(run-\d)" open', dom) == ["run-2"]
+def test_contents_lead_to_every_section_and_follow_the_scroll(browser, results):
+    current = "document.querySelector('nav [aria-current]')?.textContent"
+    with browser.page(results / "report.html") as page:
+        titles = page.run(
+            "Array.from(document.querySelectorAll('main > section > h2'), h => h.textContent)"
+        )
+        links = page.run(
+            "Array.from(document.querySelectorAll('nav .contents > ul > li > a'),"
+            "a => a.textContent)"
+        )
+        assert links == titles and len(titles) >= 6
+        for section, title in (("curves", "Stribeck curves"), ("runs", "Runs")):
+            page.click(f"nav a[href='#{section}']")
+            page.wait(f"{current} === {json.dumps(title)}")
+            top = page.run(f"document.getElementById('{section}').getBoundingClientRect().top")
+            assert 0 <= top < 300
+
+
+@pytest.mark.slow
+def test_table_sorts_filters_and_hides(browser, results):
+    with browser.page(results / "report.html") as page:
+        head = "#runs-table th[data-name=slowest]"
+        page.click(f"{head} button")
+        assert shown_runs(page) == ["sb-r_1", "sb-s_long", "sb-s_1", "broken"]
+        assert page.run(f"document.querySelector('{head}').ariaSort") == "ascending"
+        page.click(f"{head} button")
+        assert shown_runs(page) == ["sb-s_1", "sb-s_long", "sb-r_1", "broken"]
+        page.click("input[type=search]")
+        page.type("no unit")
+        assert shown_runs(page) == ["broken"]
+        assert page.run("document.querySelector('.filters output').textContent") == "1 of 4 runs"
+        page.click(".filters [type=reset]")
+        page.wait("document.querySelector('.filters output').textContent === '4 runs'")
+        page.run(
+            "(() => { const s = document.querySelector('select[data-column=surface]');"
+            "s.value = 'Sb-S'; s.dispatchEvent(new Event('input')) })()"
+        )
+        assert sorted(shown_runs(page)) == ["sb-s_1", "sb-s_long"]
+        width = "document.querySelector('#runs-table th[data-name=medium]').offsetWidth"
+        assert page.run(width) > 0
+        page.click(".columns summary")
+        page.click("[data-hides=medium]")
+        assert page.run(width) == 0
+
+
+@pytest.mark.slow
+def test_a_flagged_run_is_two_clicks_away_with_its_span_marked(browser, results):
+    number = FLAGGED + 1
+    with browser.page(results / "report.html") as page:
+        page.click(".banner a[href='#findings']")
+        page.click(f"#findings a[href='#run-{number}']")
+        page.wait(f"document.querySelector('#run-{number} .plot canvas') !== null")
+        assert page.run(f"document.querySelector('#run-{number}').open")
+        # a third click zooms to what was flagged
+        page.click(f"#run-{number} .flags button")
+        low, high = span_of(page, number)
+        assert low < 3.0 < high and high - low < 0.1
+        marked = page.run(
+            f"(() => {{ const c = document.querySelector('#run-{number} .plot canvas');"
+            "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+            "for (let i = 0; i < d.length; i += 4)"
+            "if (d[i] === 176 && d[i + 1] === 117 && d[i + 2] === 0) return true;"
+            "return false })()"
+        )
+        assert marked, "the flagged span has its colour in the chart"
+
+
+@pytest.mark.slow
+def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
+    with browser.page(f"{(results / 'report.html').as_uri()}#run-1") as page:
+        page.wait("document.querySelector('#run-1 .u-over') !== null")
+        whole = span_of(page, 1)
+        box = page.run(
+            "(() => { const e = document.querySelector('#run-1 .u-over');"
+            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
+            "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()"
+        )
+        x, y = box[0], box[1] + box[3] / 2
+        page.mouse([(x + box[2] * share, y) for share in (0.25, 0.4, 0.5)])
+        page.wait("!document.querySelector('#run-1 .state').textContent.startsWith('0 s')")
+        low, high = span_of(page, 1)
+        assert (low / whole[1], high / whole[1]) == pytest.approx((0.25, 0.5), abs=0.01)
+        page.run("document.querySelector('#run-1 .plot').focus()")
+        page.key("ArrowRight")
+        later = span_of(page, 1)
+        assert later[0] - low == pytest.approx(0.2 * (high - low), rel=1e-3)
+        page.key("+", "+")
+        near = span_of(page, 1)
+        assert near[1] - near[0] == pytest.approx((high - low) / 2, rel=1e-3)
+        page.click("#run-1 [data-act=out]")
+        assert span_of(page, 1) == pytest.approx(later, rel=1e-3)
+        page.run("document.querySelector('#run-1 .plot').focus()")
+        page.key("Home")
+        assert span_of(page, 1) == whole
+        assert page.console == []
+
+
+@pytest.mark.slow
+def test_zooming_loads_the_finer_trace_from_beside_the_page(browser, results, tmp_path):
+    number = LONG[0] + 1
+    state = f"document.querySelector('#run-{number} .state').textContent"
+    alone = tmp_path / "alone.html"
+    alone.write_text(page_of(results), encoding="utf-8")
+    for path, word in ((results / "report.html", "all 10100 samples"), (alone, "not beside")):
+        with browser.page(f"{path.as_uri()}#run-{number}") as page:
+            page.wait(f"document.querySelector('#run-{number} .plot canvas') !== null")
+            assert "extremes kept" in page.run(state)
+            for _ in range(2):
+                page.click(f"#run-{number} [data-act=in]")
+            page.wait(f"{state}.includes({json.dumps(word)})")
+
+
+@pytest.mark.slow
+def test_no_accessibility_fault_of_weight(browser, results):
+    for width, dark in ((1400, False), (400, True)):
+        with browser.page(results / "report.html", width, 900, dark) as page:
+            page.run("document.querySelectorAll('details').forEach(one => { one.open = true })")
+            page.wait("document.querySelectorAll('.plot canvas').length === 6")
+            page.run(f"{AXE};0")
+            faults = page.run(
+                "axe.run(document, {resultTypes: ['violations']}).then(found => found.violations"
+                ".filter(v => ['serious', 'critical'].includes(v.impact))"
+                ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
+            )
+            assert faults == []
+
+
+@pytest.mark.slow
+def test_appearance_follows_the_reader_or_the_button(browser, results):
+    ground = "getComputedStyle(document.body).backgroundColor"
+    with browser.page(results / "report.html", dark=True) as page:
+        dark = page.run(ground)
+        page.click("#theme")
+        assert page.run(ground) == "rgb(255, 255, 255)" != dark
+        page.click("#theme")
+        assert page.run(ground) == dark
+        page.click("#theme")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [400, 1400])
-def test_page_never_scrolls_sideways(browser, results, tmp_path, width):
-    # a frame of that width, because a headless window has a least width of its own
-    text = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page_of(results))
-    (tmp_path / "inner.html").write_text(
-        text.replace("<details", "<details open"), encoding="utf-8"
-    )
-    outer = (
-        f"<iframe id=f src=inner.html width={width} height=900></iframe><script>"
-        "addEventListener('load', () => { const e = document.getElementById('f')"
-        ".contentDocument.documentElement;"
-        "document.title = 'answer:' + JSON.stringify([e.scrollWidth, e.clientWidth])})</script>"
-    )
-    (tmp_path / "outer.html").write_text(outer)
-    dom, _ = browser(tmp_path / "outer.html", "--dump-dom", "--allow-file-access-from-files")
-    wide, seen = answer(dom)
-    assert seen <= width and wide <= seen
+def test_page_never_scrolls_sideways(browser, results, width):
+    with browser.page(results / "report.html", width) as page:
+        page.run("document.querySelectorAll('details').forEach(one => { one.open = true })")
+        page.wait("document.querySelectorAll('.plot canvas').length === 6")
+        assert page.run("document.documentElement.scrollWidth") <= width
 
 
-def test_page_asks_nothing_of_the_network(results, hostile):
+@pytest.mark.slow
+def test_page_prints_with_its_traces(browser, results, tmp_path):
+    with browser.page(results / "report.html") as page:
+        page.pdf(tmp_path / "page.pdf")
+        assert page.run("document.querySelectorAll('details.run[open] canvas').length") == 6
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.slow
+def test_details_of_very_many_runs_come_from_beside_the_page(
+    browser, results, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(page_module, "_MOST_INSIDE", 1)
+    document = json.loads((results / "report.json").read_text())
+    (tmp_path / "figures").symlink_to(results / "figures")
+    page_module.write_page(document, tmp_path)
+    assert "<h3>Segments</h3>" not in page_of(tmp_path)
+    with browser.page(f"{(tmp_path / 'report.html').as_uri()}#run-1") as page:
+        page.wait("document.querySelector('#run-1 table') !== null")
+        assert page.run("document.querySelectorAll('#run-1 tbody tr').length") == 6
+        assert page.console == []
+
+
+def test_page_points_only_to_itself_and_to_what_lies_beside_it(results, hostile):
     for folder in (results, hostile):
         reader = Reader(page_of(folder))
         for tag, attrs in reader.elements:
             for name in ("src", "srcset", "action", "data", "poster", "background"):
-                assert attrs.get(name, "data:").startswith("data:"), (tag, attrs)
+                beside = attrs.get(name, "data:").startswith(("data:", "figures/"))
+                assert beside, (tag, attrs)
             if tag == "link":
                 assert attrs["href"] == "data:,"
             if "href" in attrs and tag == "a":
@@ -247,11 +304,13 @@ def test_every_link_leads_somewhere(results):
         assert target[1:] in ids if target.startswith("#") else (results / target).is_file()
 
 
-def test_figures_are_described_in_words_and_numbers(results):
-    images = Reader(page_of(results)).all("img")
-    assert len(images) == 7
-    for image in images:
-        assert re.search(r"µ from 0\.\d|µ from 1\.\d", image["alt"]), image["alt"]
+def test_figures_and_charts_are_described_in_words_and_numbers(results):
+    reader = Reader(page_of(results))
+    said = [image["alt"] for image in reader.all("img")]
+    said += [d["aria-label"] for d in reader.all("div") if "plot" in d.get("class", "").split()]
+    assert len(said) == 3 + 3 + 2 + 1 + 3
+    for words in said:
+        assert re.search(r"µ from 0\.\d|µ from 1\.\d", words), words
 
 
 def test_failed_runs_are_struck_out_with_their_reason(results):
@@ -272,6 +331,10 @@ def test_campaign_file_and_checksums_stand_on_the_page(results):
     text = "".join(Reader(page_of(results)).text)
     assert 'name = "Glycerol & PMMA"' in text
     assert "ab" * 32 in text and "could not be read" in text
+
+
+def test_the_charting_library_comes_with_its_licence(results):
+    assert "Copyright (c) 2022 Leon Sorokin" in page_of(results)
 
 
 def test_data_address_needs_no_escaping_in_an_attribute():

@@ -1,5 +1,6 @@
 """The results folder: tables, report.json and figures say what the data files say."""
 
+import base64
 import json
 import math
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -15,8 +16,10 @@ from reporting import made_curve, made_outcome, made_run
 
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.qc.flags import attach
 from tribolab.report.results import write_report
 from tribolab.report.run_summary import RunTask, summarise_run
+from tribolab.report.traces import as_text, flagged_spans, trace
 from tribolab.report.wording import plain_value, with_error
 
 SCHEMA = json.loads(
@@ -321,3 +324,38 @@ def test_curves_beyond_nine_go_to_further_figures(tmp_path):
     assert [len(figure.curves) for figure in planned] == [9, 2]
     assert "9 measured curves" in draw_curves(planned[0])["alt"]
     assert len({figure.file for figure in planned}) == 2
+
+
+def test_traces_for_the_page_are_the_signals_with_every_extreme():
+    run, segments, friction = made_run(samples=3000)
+    run["friction_force"][7000] = 900.0
+    packed = trace(run, segments, friction, 2000)
+    assert not packed["complete"] and packed["signals"][0]["points"] < 2200
+    length = float(run.time[-1] - run.time[0])
+    for signal, name in zip(packed["signals"], ("ratio", "sliding_velocity"), strict=True):
+        raw, points = base64.b64decode(signal["data"]), signal["points"]
+        share = np.frombuffer(raw, "<u4", points) / (2**32 - 1)
+        level = np.frombuffer(raw, "<u2", points, 4 * points) / 65534
+        value = signal["low"] + level * (signal["high"] - signal["low"])
+        if signal["linear_below"]:
+            value = signal["linear_below"] * np.sinh(value)
+        true = (run.friction_force / run.normal_force if name == "ratio" else run[name]).values
+        at = np.abs(np.subtract.outer(share * length, run.time.values)).argmin(axis=1)
+        resolution = np.ptp(true) / 65534 if name == "ratio" else 1e-3 * np.abs(true[at]) + 1e-9
+        assert np.all(np.abs(value - true[at]) <= resolution)
+        assert value.max() == pytest.approx(true.max(), rel=1e-4)
+    assert as_text({"a": "</script>"}) == '{"a":"\\u003c/script>"}'
+
+
+def test_flagged_spans_say_where_why_and_how_gravely():
+    run, _, _ = made_run(speeds=[1e-2])
+    flags = np.ones(run.sizes["time"], np.int8)
+    flags[100:103], flags[400] = 3, 4
+    run = attach(run, "friction_force", {"spikes": flags}, {"spikes": 14})
+    spans = flagged_spans(run)
+    assert [(s["severity"], s["checks"]) for s in spans] == [
+        ("suspect", ["spikes"]),
+        ("fail", ["spikes"]),
+    ]
+    assert spans[0]["start_s"] == pytest.approx(float(run.time[100]))
+    assert spans[0]["stop_s"] == pytest.approx(float(run.time[102]))

@@ -90,12 +90,12 @@ class ShearStressFit:
     def half_interval(self) -> float:
         """Half the 95 % interval of sigma_f [Pa], with Student's t where errors are estimated.
 
-        The degrees of freedom of the sum are those of Welch and Satterthwaite.
+        Each part has its own t, and the two are added in quadrature: a common error known from two
+        runs alone, which may agree by chance, counts with the t of one degree of freedom.
         """
-        parts = np.array([self.shear_stress_error_inflated, self.common_error]) ** 4
+        parts = np.array([self.shear_stress_error_inflated, self.common_error])
         freedom = np.array([self.degrees_of_freedom, max(self.common_freedom, 1.0)])
-        total = self.total_error
-        return float(stats.t.ppf(0.975, total**4 / np.sum(parts / freedom)) * total)
+        return float(np.linalg.norm(stats.t.ppf(0.975, freedom) * parts))
 
     @property
     def corrected_shear_stress(self) -> float:

@@ -75,7 +75,8 @@ def mixed_curve(
         _misfit(figure, below, fit, style)
         _speeds(below, curve["sliding_speed"].values)
         axes.set_ylabel(label("friction_coefficient"))
-        axes.set_ylim(0, 1.06 * axes.dataLim.y1)
+        low, high = axes.dataLim.intervaly  # a shear stress that fits nothing may be negative
+        axes.set_ylim(1.2 * low if low < -0.01 * high else 0, 1.06 * high)
         _two_panels(figure, axes, title)
     return figure
 
@@ -132,7 +133,7 @@ def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style) -> None:
         linestyle="none", elinewidth=0.8, capsize=1.8, capthick=0.8,
     )  # fmt: skip
     figure.keep("residual", "measured less model", sliding_speed_m_s=v, residual=off, error=error)
-    axes.set_ylabel("measured −\nmodel")
+    axes.set_ylabel(r"difference $\Delta\mu$")
     axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
     reach = 1.15 * np.nanmax(np.abs(off) + error) or 1.0
     axes.set_ylim(-reach, reach)

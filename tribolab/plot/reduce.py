@@ -39,8 +39,26 @@ def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarr
     (True, np.float64(7.0), np.float64(4321.0))
     """
     x, y = np.asarray(x, float), np.asarray(y, float)
+    chosen = envelope_index(x, y, columns)
+    return (x, y) if chosen.size == x.size else (x[chosen], y[chosen])
+
+
+def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarray:
+    """Return which points of a trace `envelope` keeps, in their order.
+
+    Parameters
+    ----------
+    x, y, columns
+        As for `envelope`.
+
+    Examples
+    --------
+    >>> envelope_index(np.arange(8.0), np.array([0, 5, 1, 0, 0, -2, 0, 0.5]), columns=2)
+    array([0, 1, 5, 7])
+    """
+    x, y = np.asarray(x, float), np.asarray(y, float)
     if x.size <= 2 * columns:
-        return x, y
+        return np.arange(x.size)
     span = x[-1] - x[0]
     # dividing before the product keeps the ratio finite for any span
     place = (x - x[0]) / span if span > 0 else np.linspace(0, 1, x.size)
@@ -56,5 +74,4 @@ def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarr
     highest = first_where(y == np.fmax.reduceat(y, starts)[group])
     empty = lowest == x.size  # NaN equals nothing: the column has no number
     lowest[empty] = highest[empty] = starts[empty]
-    chosen = np.unique(np.r_[lowest, highest])
-    return x[chosen], y[chosen]
+    return np.unique(np.r_[lowest, highest])

@@ -134,6 +134,7 @@ _EMPTY: dict[str, Any] = {
     "omitted": [],
     "segments": [],
     "figures": [],
+    "flagged": [],
 }
 
 

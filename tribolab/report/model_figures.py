@@ -199,7 +199,7 @@ def _profiles(task: ModelFigure) -> tuple[Figure, str]:
 def _sensitivity(task: ModelFigure) -> tuple[Figure, str]:
     (model,) = task.models
     found = _read(task, model, "uncertainty")
-    most = str(found["variation"].values[int(found["largest_change"].argmax())])
+    most = str(found["variation"].values[int(found["largest_change"].values.argmax())])
     figure = _plot().model_sensitivity(
         found, surface=model.surface, surfaces=task.surfaces, title=task.title
     )

@@ -172,7 +172,7 @@ def complete(rows: Sequence[ModelRows]) -> None:
         ]
         earlier = alike[: alike.index(one)]
         reference = earlier[-1] if earlier else None
-        if reference and reference.fit["corrected_shear_stress_Pa"] > 0:
+        if reference and _is_known(reference.fit):
             value, error = (
                 [other.fit[f"corrected_shear_stress_{k}Pa"] for other in (one, reference)]
                 for k in ("", "error_")
@@ -184,6 +184,11 @@ def complete(rows: Sequence[ModelRows]) -> None:
                 "ratio": ratio,
                 "ratio_error": float(abs(ratio) * np.hypot(*parts)),
             }
+
+
+def _is_known(fit: dict[str, Any]) -> bool:
+    """Whether a shear stress stands out from its error: a ratio to another says nothing."""
+    return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
 
 def _kind(one: ModelRows) -> tuple[str, str]:

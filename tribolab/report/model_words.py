@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.labels import speed_text
+from tribolab.plot.labels import number, speed_text
 from tribolab.report.wording import percent
 
 if TYPE_CHECKING:
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 _UNLIKELY = 0.05  # probability under which the order of the residuals' signs is no chance
 _LARGE = 0.10  # of the measured friction: a miss that any reader sees
-_CLOSE = 0.02
+_CLOSE = 0.02  # of the curve's height
+_FAR = 0.3
 
 
 def judgement(fit: xr.Dataset) -> str:
@@ -54,8 +55,8 @@ def judgement(fit: xr.Dataset) -> str:
         parts.append(f"the two differ by more than {percent(_LARGE)} of the friction at {where}")
     side = "above" if off[worst] > 0 else "below"
     parts.append(
-        f"largest at {speed_text(speed[worst])}, where the measurement lies {abs(off[worst]):.2g} "
-        f"{side} the model's {mu[worst] - off[worst]:.3g}"
+        f"largest at {speed_text(speed[worst])}, where the measurement lies "
+        f"{number(abs(off[worst]), 2)} {side} the model's {number(mu[worst] - off[worst])}"
     )
     return "; ".join(parts)
 
@@ -69,9 +70,12 @@ def _verdict(attrs: dict, largest: float) -> str:
         return "the model describes the curve within the errors"
     if attrs["chi_square_p_value"] >= _UNLIKELY:
         return "within the errors, but the residuals follow one another: the shape differs slightly"
+    if largest > _FAR:
+        return f"the model does not describe this curve: off by up to {percent(largest)} of it"
+    chance = ", and not by chance: neighbouring points err alike" if ordered else ""
     if largest < _CLOSE:
-        words = "beyond the small errors of the points, yet the curves are close"
-    else:
-        words = "beyond the errors"
-    order = ", and not by chance: neighbouring points err alike" if ordered else ""
-    return f"measurement and model part {words}{order}"
+        return (
+            f"measurement and model part beyond the small errors of the points{chance}, yet they "
+            f"stay within {percent(_CLOSE)} of the curve's height"
+        )
+    return f"measurement and model part beyond the errors{chance}"

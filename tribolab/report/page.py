@@ -8,6 +8,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -19,22 +21,53 @@ from markupsafe import Markup
 from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
 from tribolab.report.sections import shown_sections
+from tribolab.report.traces import as_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
-_STYLES = ("report.css",)
-_SCRIPTS = ("report.js", "table.js")
+_STYLES = ("uplot.min.css", "report.css")
+_SCRIPTS = ("uplot.min.js", "report.js", "files.js", "table.js", "drawing.js", "chart.js")
+_LICENCES = {"uplot.min.js": "uplot.LICENSE"}
+_MOST_INSIDE = 300  # runs whose details the page holds itself; of more it would take long to open
+_FIGURES_BYTES = 5e6  # of the runs' own figures that are put inside the page
 
 
-def write_page(document: dict[str, Any], folder: Path) -> Path:
-    """Write ``report.html`` into the results folder, with the figures that lie there inside it."""
+@dataclass(frozen=True)
+class PageTrace:
+    """A run's trace for the page.
+
+    Parameters
+    ----------
+    key
+        What the run's own files are called.
+    json
+        From `tribolab.report.traces`.
+    fine
+        File with more points, relative to the results folder; "" if there is none.
+    """
+
+    key: str
+    json: Markup
+    fine: str = ""
+
+
+def write_page(
+    document: dict[str, Any], folder: Path, traces: Mapping[str, PageTrace] | None = None
+) -> Path:
+    """Write ``report.html`` into the results folder, with what it shows inside it.
+
+    Of very many runs the details go to files in ``traces/``, which the page opens when they are
+    asked for.
+    """
     path = folder / "report.html"
-    path.write_text(render(document, folder), encoding="utf-8")
+    path.write_text(render(document, folder, traces), encoding="utf-8")
     return path
 
 
-def render(document: dict[str, Any], folder: Path) -> str:
+def render(
+    document: dict[str, Any], folder: Path, traces: Mapping[str, PageTrace] | None = None
+) -> str:
     """Return the page of a report.
 
     Parameters
@@ -43,34 +76,66 @@ def render(document: dict[str, Any], folder: Path) -> str:
         From `tribolab.report.document.report_document`.
     folder
         Results folder, in which the figures lie.
+    traces
+        Of the runs, by name; those without have a picture in its place.
 
     Returns
     -------
     str
         HTML. Text from files is escaped, and a content security policy forbids every script but
-        the page's own and every request.
+        the page's own and those beside it, and every request to elsewhere.
     """
     environment = _environment(folder)
     style = "".join(asset(name) for name in _STYLES)
-    scripts = [asset(name) for name in _SCRIPTS]
+    scripts = [_script(name) for name in _SCRIPTS]
     hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
     surfaces = document.get("surfaces", [])
     context = document | {
-        "beside": {},
+        "traces": traces or {},
+        "embed_runs": _bytes_of_figures(document["runs"], folder) <= _FIGURES_BYTES,
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
         "left_out": left_out(document["runs"]),
         "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
     }
+    context["beside"] = _put_beside(environment, context, folder)
     return environment.get_template("report.html.j2").render(
         context,
         style=style,
         scripts=scripts,
         sections=shown_sections(context),
         policy=(
-            "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
-            f"style-src '{fingerprint(style)}'; script-src {hashes}"
+            "default-src 'none'; img-src data: 'self' file:; base-uri 'none'; "
+            f"form-action 'none'; style-src '{fingerprint(style)}'; "
+            f"script-src {hashes} 'self' file:"
         ),
     )
+
+
+def _script(name: str) -> str:
+    """Return one of the page's scripts, what is not ours with its licence."""
+    notice = f"/*\n{asset(_LICENCES[name])}*/\n" if name in _LICENCES else ""
+    return notice + asset(name)
+
+
+def _bytes_of_figures(runs: Sequence[dict[str, Any]], folder: Path) -> int:
+    named = [folder / figure["file"] for run in runs for figure in run["figures"]]
+    return sum(path.stat().st_size for path in named if not path.stem.endswith("_trace"))
+
+
+def _put_beside(
+    environment: jinja2.Environment, context: dict[str, Any], folder: Path
+) -> dict[str, str]:
+    """Write the details of very many runs to files, and return these by the runs' names."""
+    if len(context["runs"]) <= _MOST_INSIDE:
+        return {}
+    (folder / "traces").mkdir(exist_ok=True)
+    template, files = environment.get_template("run.html.j2"), {}
+    for index, run in enumerate(context["runs"], start=1):
+        html = template.render(context, run=run, index=index)
+        files[run["name"]] = file = f"traces/run-{index}.js"
+        call = f"report.receive({as_text(f'run-{index}')}, {as_text(html)});\n"
+        (folder / file).write_text(call, encoding="utf-8")
+    return files
 
 
 def _environment(folder: Path) -> jinja2.Environment:
@@ -97,6 +162,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
         "why": judgement.why,
+        "numbers": lambda file: Markup(as_text((folder / file).read_text(encoding="utf-8"))),
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }
     environment.globals |= {

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
+from markupsafe import Markup
 
 from tribolab.campaign.executor import completed
 from tribolab.report import surface_records, tables
@@ -15,10 +16,11 @@ from tribolab.report.curve_figures import curve_record, draw_curves, plan_figure
 from tribolab.report.document import labels, report_document, write_json
 from tribolab.report.model_figures import draw_model
 from tribolab.report.model_part import write_models
-from tribolab.report.page import write_page
+from tribolab.report.page import PageTrace, write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
+from tribolab.report.traces import trace_points
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
@@ -81,7 +83,12 @@ def write_report(
     document["surface_figures"] = drawn
     document |= {"models": models, "model_figures": model_figures}
     write_json(document, folder / "report.json")
-    write_page(document, folder)
+    traces = {
+        name: PageTrace(summary.key, Markup(summary.trace), summary.fine)
+        for name, summary in summaries.items()
+        if summary.trace
+    }
+    write_page(document, folder, traces)
     tell("page", 1, 1)
 
 
@@ -103,7 +110,9 @@ def _error(run: str, where: str, error: BaseException) -> dict[str, str]:
 def _summaries(
     outcome: Outcome, executor: Executor | None, tell: Progress, findings: list[dict[str, str]]
 ) -> dict[str, RunSummary]:
-    tasks = [RunTask(run, Path(outcome.folder)) for run in outcome.runs if run.done]
+    done = [run for run in outcome.runs if run.done]
+    points, fine = trace_points(len(done))
+    tasks = [RunTask(run, Path(outcome.folder), points, fine) for run in done]
     found: dict[str, RunSummary] = {}
     for number, (task, future) in enumerate(completed(executor, summarise_run, tasks)):
         error = future.exception()

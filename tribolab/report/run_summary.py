@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.errors import AnalysisError
 from tribolab.report.figure_files import save_figure
 from tribolab.report.judgement import SURE
 from tribolab.report.tables import friction_table
+from tribolab.report.traces import as_text, flagged_spans, trace
 from tribolab.report.wording import SYMBOLS, UNITS, duration, many, plain_value, span, speeds
 
 if TYPE_CHECKING:
@@ -29,10 +31,20 @@ _SPEED_TOLERANCE = 0.1
 
 @dataclass(frozen=True)
 class RunTask:
-    """A run to describe, and the folder of the results."""
+    """A run to describe, the folder of the results, and how many points its traces may have.
+
+    `points` go into the page, `fine_points` into a file beside it, from which the page zooms.
+    """
 
     run: RunOutcome
     folder: Path
+    points: int = 4000
+    fine_points: int = 0
+
+    @property
+    def key(self) -> str:
+        """What the run's own files are called."""
+        return Path(self.run.data_file).stem
 
 
 @dataclass(frozen=True)
@@ -43,6 +55,9 @@ class RunSummary:
     facts: dict[str, Any]
     table: pd.DataFrame
     findings: tuple[dict[str, str], ...]
+    key: str = ""
+    trace: str = ""  # for the page, as JSON
+    fine: str = ""  # file with more points, relative to the results
 
 
 def summarise_run(task: RunTask) -> RunSummary:
@@ -56,6 +71,7 @@ def summarise_run(task: RunTask) -> RunSummary:
         )
         findings = _findings(task.run.name, run, segments, friction)
         figures = _figures(task, run, segments, friction, findings)
+        packed, fine = _traces(task, run, segments, friction, findings)
     table = friction_table(friction)
     facts = {
         **_of_record(run),
@@ -63,8 +79,11 @@ def summarise_run(task: RunTask) -> RunSummary:
         "omitted": _omitted(segments),
         "segments": table.to_dict("records"),
         "figures": figures,
+        "flagged": flagged_spans(run),
     }
-    return RunSummary(task.run.name, plain_value(facts), table, tuple(findings))
+    return RunSummary(
+        task.run.name, plain_value(facts), table, tuple(findings), task.key, packed, fine
+    )
 
 
 def main_quantity(friction: xr.Dataset) -> str:
@@ -251,7 +270,7 @@ def _figures(
     if main_quantity(friction) == "half_loop":
         drawn += [("half_loop", lambda: plot.half_loop(friction, title=name), _HALF_LOOP)]
     for kind, draw, caption in drawn:
-        file = f"figures/{Path(task.run.data_file).stem}_{kind}.svg"
+        file = f"figures/{task.key}_{kind}.svg"
         alt = f"Run {name}: {_words(friction)} {caption}"
         try:
             saved = save_figure(draw(), task.folder, file, caption, alt)
@@ -263,6 +282,32 @@ def _figures(
             continue
         made.append(saved | {"kind": kind})
     return made
+
+
+def _traces(
+    task: RunTask,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    findings: list[dict[str, str]],
+) -> tuple[str, str]:
+    """Return the trace for the page, and the file that a finer one was written to, if any."""
+    try:
+        coarse = trace(run, segments, friction, task.points)
+        if coarse["complete"] or task.fine_points <= task.points:
+            return as_text(coarse), ""
+        file = f"traces/{task.key}.js"
+        (task.folder / "traces").mkdir(exist_ok=True)
+        finer = as_text(trace(run, segments, friction, task.fine_points))
+        call = f"report.receive({as_text(task.key)}, {finer});\n"
+        (task.folder / file).write_text(call, encoding="utf-8")
+    except AnalysisError as error:  # recorded, as above
+        text = f"no trace to show: {error}"
+        findings.append(
+            {"severity": "error", "run": task.run.name, "where": "trace", "message": text}
+        )
+        return "", ""
+    return as_text(coarse), file
 
 
 _TRACE = (

@@ -117,6 +117,13 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"surfaces, from their scans: at most {text} from the truth; "
             f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
         )
+    fits = compared.shear_stress
+    if len(fits):
+        lines.append(
+            f"shear stresses, fitted with the scanned spectra: at most "
+            f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
+            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals"
+        )
     count = compared.paper.status.value_counts()
     lines.append(
         f"against the paper: {len(compared.paper)} numbers, "

@@ -1,0 +1,118 @@
+"""How large the report of many runs is, and how soon Chromium shows it.
+
+Simulates one small campaign, repeats what its report says of a run until there are as many runs
+as asked for, and opens the page in headless Chromium:
+
+    python tests/benchmarks/bench_report.py 200 2000
+
+Prints, for each number of runs, how large the page is and what lies beside it for zooming, how long
+until it had loaded and was painted (the best of three), and how long sorting, searching and opening
+a run took. The time of drawing every run's figures is not in it.
+"""
+
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+from markupsafe import Markup
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from chromium import chromium  # noqa: E402 - after its folder is known
+
+from tribolab import rig  # noqa: E402 - as above
+from tribolab.io.netcdf import read_netcdf  # noqa: E402 - as above
+from tribolab.report.page import PageTrace, write_page  # noqa: E402 - as above
+from tribolab.report.run import run_campaign  # noqa: E402 - as above
+from tribolab.report.traces import as_text, trace, trace_points  # noqa: E402 - as above
+
+_PAINTED = (
+    "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("
+    "() => done(performance.now()))))"
+)
+
+
+def repeated(document, count):
+    """Return the document with so many runs, and the findings and raw files that go with them."""
+    runs, findings, sources = [], [], []
+    first = document["runs"]
+    for number in range(count):
+        run = first[number % len(first)]
+        name = f"{run['name']}_{number + 1:04d}"
+        runs.append(run | {"name": name})
+        mine = [f for f in document["findings"] if f["run"] == run["name"]]
+        findings += [finding | {"run": name} for finding in mine]
+        sources += [s for s in document["sources"] if s["file"] in run["files"]]
+    return document | {"runs": runs, "findings": findings, "sources": sources}
+
+
+def traces(document, outcome, folder, count):
+    """Return the traces of the document's runs, with the points that so many runs may have."""
+    points, fine_points = trace_points(count)
+    packed, fine_bytes = [], 0
+    for number, run in enumerate(outcome.runs):
+        groups = ("run", "segments", "friction")
+        data = [read_netcdf(outcome.folder / run.data_file, group=group) for group in groups]
+        fine = f"traces/{number}.js"
+        text = f"report.receive({as_text(str(number))}, {as_text(trace(*data, fine_points))});\n"
+        (folder / fine).write_text(text, encoding="utf-8")
+        fine_bytes += len(text)
+        packed.append(PageTrace(str(number), Markup(as_text(trace(*data, points))), fine))
+    runs = document["runs"]
+    chosen = {run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)}
+    return chosen, fine_bytes * count / len(packed)
+
+
+def measure(page_file, profile):
+    """Return the load time [s] and the times of what a reader does [s]."""
+    loads, spent = [], {}
+    with chromium(profile) as browser:
+        for _ in range(3):
+            with browser.page(page_file) as page:
+                loads.append(page.run(_PAINTED) / 1e3)
+        with browser.page(page_file) as page:
+            acts = {
+                "sort": "document.querySelector('#runs-table [data-name=fastest] button').click()",
+                "search": "const f = document.querySelector('input[type=search]');"
+                "f.value = '_0007'; f.dispatchEvent(new Event('input'))",
+                "open a run": "location.hash = '#run-7'; while (!document.querySelector("
+                "'#run-7 canvas')) await new Promise(r => setTimeout(r, 5))",
+            }
+            for name, act in acts.items():
+                script = f"{act}; return (await {_PAINTED}) - t"
+                took = page.run(f"(async () => {{ const t = performance.now(); {script} }})()")
+                spent[name] = took / 1e3
+            assert page.console == [], page.console
+    return min(loads), spent
+
+
+def main(counts):
+    """Print one line per number of runs."""
+    with tempfile.TemporaryDirectory() as place:
+        place = Path(place)
+        file = rig.simulate_campaign(
+            place / "campaign", seed=0, surfaces=["Sb-R"], loads=[31.0], n_repeats=1
+        )
+        outcome = run_campaign(file, jobs=1)
+        document = json.loads((outcome.folder / "report.json").read_text(encoding="utf-8"))
+        for count in counts:
+            folder = place / f"results{count}"
+            (folder / "traces").mkdir(parents=True)
+            (folder / "figures").symlink_to(outcome.folder / "figures")
+            many = repeated(document, count)
+            chosen, fine = traces(many, outcome, folder, count)
+            write_page(many, folder, chosen)
+            size = (folder / "report.html").stat().st_size / 1e6
+            details = sum(f.stat().st_size for f in (folder / "traces").glob("run-*")) / 1e6
+            load, spent = measure(folder / "report.html", place / f"profile{count}")
+            acts = ", ".join(f"{name} {took:.2f} s" for name, took in spent.items())
+            print(
+                f"{count} runs: page {size:.1f} MB; beside it details {details:.0f} MB, finer "
+                f"traces {fine / 1e6:.0f} MB; shown after {load:.2f} s; {acts}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main([int(count) for count in sys.argv[1:]] or [200, 2000])

@@ -1,0 +1,85 @@
+"""A report with a flagged run, a long one and a failed one, and a reader of its page."""
+
+from html.parser import HTMLParser
+
+import numpy as np
+from reporting import made_outcome, made_run
+
+from tribolab.io.netcdf import write_netcdf
+from tribolab.qc.flags import attach
+from tribolab.report.results import write_report
+
+RUNS = [
+    ("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8),
+    ("sb-s_1", "Sb-S", "dry", 31.0, 1.1),
+    ("sb-s_long", "Sb-S", "glycerol", 31.0, 0.9),
+]
+FLAGGED = 1  # index of the run with a flagged sample at 3 s
+LONG = 2, 2500  # index of a run with more samples than the page holds; samples a segment
+
+
+def made(folder):
+    """Write results with a flagged run and a long one."""
+    outcome = made_outcome(
+        folder, RUNS, "Glycerol & PMMA", [("broken", "bad.csv: column 'Fx' has no unit")]
+    )
+    for index, samples in ((FLAGGED, 400), LONG):
+        name, _, _, load, mu = RUNS[index]
+        run, segments, friction = made_run([1e-3, 1e-2], load, mu, seed=9, samples=samples)
+        if index == FLAGGED:
+            flags = np.ones(run.sizes["time"], np.int8)
+            flags[np.searchsorted(run.time.values, 3.0)] = 3
+            run = attach(run, "friction_force", {"spikes": flags}, {"spikes": 14})
+            run.attrs |= {
+                "quality": "suspect",
+                "findings": [
+                    {
+                        "check": "spikes",
+                        "status": "suspect",
+                        "variable": "friction_force",
+                        "message": "1 sample stands out",
+                        "value": 1.0,
+                        "unit": "1",
+                        "cure": "Look at it",
+                    }
+                ],
+            }
+        file = outcome.folder / outcome.runs[index].data_file
+        file.unlink()
+        for group, data in zip(
+            ("run", "segments", "friction"), (run, segments, friction), strict=True
+        ):
+            write_netcdf(data, file, group=group)
+    write_report(outcome)
+    return outcome.folder
+
+
+class Reader(HTMLParser):
+    """Collects the elements of a page, and checks that they are closed in order."""
+
+    VOID = {"meta", "link", "img", "br", "input", "hr", "wbr"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.open, self.text = [], [], []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+    def all(self, tag):
+        return [attrs for name, attrs in self.elements if name == tag]
+
+
+def page_of(folder):
+    return (folder / "report.html").read_text(encoding="utf-8")

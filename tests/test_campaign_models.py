@@ -1,0 +1,242 @@
+"""The whole loop with a model: rig, files, spectrum, curve, fit; reuse, failures, the report."""
+
+import json
+import re
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import tribolab
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.compare.shear_stress import fit_shear_stress
+from tribolab.compare.spectrum_error import shear_stress_shift
+from tribolab.errors import AnalysisError, ConfigError
+from tribolab.friction.repeatability import repeatability
+from tribolab.io.netcdf import read_netcdf
+from tribolab.report.model_words import judgement
+from tribolab.report.results import write_report
+from tribolab.report.truth_shear_stress import compare_shear_stress
+from tribolab.rig import Protocol, Rig, simulate_campaign
+from tribolab.studies import xu2026
+
+SPEEDS = (1e-5, 1e-4, 4.64e-4, 2.15e-3)
+SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("loop") / "campaign"
+    rig = Rig(Protocol(speeds=SPEEDS))
+    file = simulate_campaign(folder, 5, small=True, surfaces=("Sb-S",), n_scans=2, rig=rig)
+    # without the dry runs: they have no model
+    text = re.sub(
+        r'\n\[\[run\]\]\nfiles = "[^"]*_dry_.*?(?=\n\[|\Z)', "", file.read_text(), flags=re.S
+    )
+    file.write_text(text, "utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def outcome(campaign):
+    folder = campaign.parent / "first"
+    folder.mkdir()
+    made = process(load_campaign(campaign), folder)
+    write_report(made)
+    return made
+
+
+def changed(campaign, extra, name):
+    """Write the campaign file again with a table more, and an empty folder for its results."""
+    file = campaign.with_name(f"{name}.toml")
+    file.write_text(campaign.read_text("utf-8") + extra, "utf-8")
+    folder = campaign.parent / name
+    folder.mkdir()
+    return load_campaign(file), folder
+
+
+@pytest.mark.slow
+def test_the_shear_stress_that_went_in_comes_back(outcome):
+    """Within 10 % with the scanned spectrum and 5 % with the true one, and within the intervals."""
+    (model,) = outcome.models
+    true = dict(xu2026.surface("Sb-S").shear_stress)[31.0]
+    (row,) = compare_shear_stress(outcome, outcome.folder.parent).to_dict("records")
+    assert row["true_Pa"] == true
+    assert abs(row["relative_difference"]) < 0.10
+    assert row["found_low_Pa"] < true < row["found_high_Pa"]
+    root = read_netcdf(outcome.folder / model.data_file)
+    fit = fit_shear_stress(
+        read_netcdf(outcome.folder / f"data/{model.curve}.nc"),
+        xu2026.contact,
+        xu2026.psd("Sb-S"),
+        1.4,
+        310.0,
+        common_error=root.attrs["repeatability"] / np.sqrt(2),
+        common_freedom=root.attrs["freedom"],
+    )
+    assert fit.shear_stress == pytest.approx(true, rel=0.05)
+    assert abs(fit.shear_stress - true) < fit.half_interval
+
+
+@pytest.mark.slow
+def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
+    (model,) = outcome.models
+    assert model.parts == ("curve", "fit", "profiles", "factors", "uncertainty")
+    file = outcome.folder / model.data_file
+    curve, fit, profiles = (read_netcdf(file, part) for part in ("curve", "fit", "profiles"))
+    assert curve.sizes["sliding_speed"] == 33
+    np.testing.assert_allclose(curve.sliding_speed[[0, -1]], [1e-9, 0.1], rtol=1e-12)
+    assert abs(curve.load_balance).max() < 1e-8
+    miss = fit.friction_coefficient - fit.friction_coefficient_model
+    np.testing.assert_allclose(miss, fit.friction_coefficient_residual, atol=1e-12)
+    carried = (profiles.contact_pressure + profiles.fluid_pressure).values
+    for x, p in zip(profiles.x.values, carried, strict=True):  # the load, by the trapezium
+        assert np.trapezoid(p, x) == pytest.approx(310.0, rel=2e-3)
+    low, high = shear_stress_shift(read_netcdf(file, "uncertainty"))
+    assert -0.5 < low < 0 < high < 0.5
+
+
+@pytest.mark.slow
+def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
+    folder = outcome.folder
+    report = json.loads((folder / "report.json").read_text())
+    jsonschema.validate(report, json.loads(SCHEMA.read_text()))
+    (record,) = report["models"]
+    stress = read_netcdf(folder / record["data_file"], "fit").attrs["shear_stress_Pa"]
+    table = pd.read_csv(folder / "tables/shear_stress.csv")
+    assert record["fit"]["shear_stress_Pa"] == table.shear_stress_Pa[0] == stress
+    assert len(pd.read_csv(folder / "tables/stribeck_model.csv")) == 33
+    kinds = [figure["kind"] for figure in report["model_figures"]]
+    assert kinds == ["curve", "shear_stress", "effect", "factors", "profiles", "sensitivity"]
+    page = (folder / "report.html").read_text("utf-8")
+    assert "model beside measurement" in page
+    assert record["fit"]["judgement"].split(";")[0] in page
+    assert not [f for f in report["findings"] if f["severity"] == "error"]
+
+
+@pytest.mark.slow
+def test_what_is_the_same_is_taken_over_and_what_changed_is_not(campaign, outcome):
+    same, folder = changed(campaign, "", "same")
+    again = process(same, folder, previous=outcome.folder)
+    assert [model.reused for model in again.models] == [True]
+    other, folder = changed(
+        campaign, '\n[model]\nrough_body = "moving"\nuncertainty = "none"\n', "other"
+    )
+    anew = process(other, folder, previous=outcome.folder)
+    assert [(m.reused, "uncertainty" in m.parts) for m in anew.models] == [(False, False)]
+    assert all(run.reused for run in anew.runs)
+
+
+def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, monkeypatch):
+    text = campaign.read_text("utf-8")
+    file = campaign.with_name("radius.toml")
+    file.write_text(re.sub(r"radius = .*\n", "", text), "utf-8")
+    folder = campaign.parent / "radius"
+    folder.mkdir()
+    made = process(load_campaign(file), folder, previous=outcome.folder)
+    (model,) = made.models
+    assert (model.status, model.reason) == ("skipped", "[contact] wants radius")
+    assert all(curve.done for curve in made.curves)
+
+    off, folder = changed(campaign, "\n[model]\ncompute = false\n", "off")
+    assert process(off, folder, previous=outcome.folder).models == ()
+
+    def refuse(*given, **more):
+        raise AnalysisError("at 1 m/s: no film was found; take more cells")
+
+    monkeypatch.setattr("tribolab.lubrication.stribeck.stribeck_curve", refuse)
+    other, folder = changed(campaign, "\n[model]\npoints = 9\n", "failing")
+    made = process(other, folder, previous=outcome.folder)
+    (model,) = made.models
+    assert (model.status, model.data_file) == ("failed", "")
+    assert model.reason == "at 1 m/s: no film was found; take more cells"
+    assert all(curve.done for curve in made.curves)
+    write_report(made)
+    (found,) = pd.read_csv(folder / "tables/findings.csv").query("severity == 'fail'").message
+    assert found == f"no model: {model.reason}"
+
+
+def test_speeds_that_are_not_in_order_are_refused_with_the_line(campaign):
+    with pytest.raises(ConfigError, match=r"slowest and fastest: 1 m/s is not below 0\.1 m/s"):
+        changed(campaign, '\n[model]\nslowest = "1 m/s"\n', "order")
+
+
+def test_repeatability_is_pooled_over_conditions():
+    rng = np.random.default_rng(1)
+    levels = [1 + 0.01 * rng.standard_normal(2) for _ in range(400)]
+    spread, freedom = repeatability([*levels, np.array([1.0])])
+    assert freedom == 400
+    assert spread == pytest.approx(0.01, rel=0.1)
+    assert repeatability([np.array([1.0])]) == (0.0, 0)
+
+
+def curve_of_one_factor(factor):
+    """A measured curve that is the model's times a factor, without scatter."""
+    speed = np.array(SPEEDS)
+    curve = tribolab.stribeck_curve(xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0, 1e6, speed)
+    mu = factor * curve.friction_coefficient.values
+    data = {"friction_coefficient": mu, "friction_coefficient_sem": 1e-3 * mu}
+    coords = {"sliding_speed": speed}
+    return xr.Dataset({k: ("sliding_speed", v) for k, v in data.items()}, coords), curve
+
+
+def test_an_error_that_all_points_share_is_in_the_error_bar():
+    """A curve one common error too high is fitted one common error too high."""
+    measured, curve = curve_of_one_factor(1.02)
+    bare = tribolab.stribeck_curve(
+        xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0, 0.0, curve.sliding_speed.values
+    )
+    given = (measured, xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0)
+    fit = fit_shear_stress(*given, curve=bare, common_error=0.02, common_freedom=10)
+    assert fit.shear_stress - 1e6 == pytest.approx(fit.common_error, rel=0.03)
+    assert fit.half_interval > 2 * fit.common_error
+    alone = fit_shear_stress(*given, curve=bare)
+    assert alone.shear_stress == fit.shear_stress
+    assert alone.half_interval < alone.shear_stress - 1e6 < fit.half_interval
+
+
+def described(residual, **attrs):
+    """Fit group of a curve whose model misses it by `residual`."""
+    residual = np.asarray(residual, dtype=float)
+    speed = np.geomspace(1e-6, 1e-2, residual.size)
+    known = {
+        "shear_stress_Pa": 1e6,
+        "chi_square_p_value": 0.5,
+        "runs_p_value": 0.5,
+        "valid_speed_low_m_s": speed[0],
+        "valid_speed_high_m_s": speed[-1],
+    }
+    data = {
+        "friction_coefficient": 1 + residual,
+        "friction_coefficient_residual": residual,
+        "used": np.ones(residual.size),
+    }
+    data = {name: ("sliding_speed", values) for name, values in data.items()}
+    return xr.Dataset(data, {"sliding_speed": speed}, known | attrs)
+
+
+def test_the_words_follow_the_residuals():
+    good = judgement(described([0.001, -0.002, 0.001, -0.001, 0.002]))
+    assert good.startswith("the model describes the curve within the errors")
+    assert "largest at 1 mm/s" not in good
+    bad = judgement(
+        described(
+            [0.2, 0.15, 0.01, -0.01, -0.02],
+            chi_square_p_value=1e-9,
+            runs_p_value=0.01,
+            valid_speed_low_m_s=1e-4,
+            valid_speed_high_m_s=1e-2,
+        )
+    )
+    assert "part beyond the errors, and not by chance" in bad
+    assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
+    assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad
+    assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
+    far = judgement(described([0.9, 0.8, -0.01, -0.02], chi_square_p_value=0.0))
+    assert far.startswith("the model does not describe this curve: off by up to 47 %")
+    none = judgement(described([0.5] * 4, shear_stress_Pa=-1.0))
+    assert "not positive" in none

@@ -1,0 +1,71 @@
+"""Shear stresses fitted to a simulated campaign, against those that the rig was given."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome
+
+COLUMNS = [
+    *("curve", "surface", "medium", "normal_force_N"),
+    *("found_Pa", "found_low_Pa", "found_high_Pa", "true_Pa"),
+    *("relative_difference", "within_interval"),
+]
+
+
+def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
+    """Compare the fitted shear stresses of a simulated campaign with the rig's.
+
+    Parameters
+    ----------
+    outcome
+        Results whose tables lie in ``outcome.folder``.
+    folder
+        The simulated campaign's folder.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row per fit whose curve follows the model in the rig: found with its 95 % interval, true,
+        relative difference, and 1 where the truth lies within the interval.
+    """
+    from tribolab.rig import read_truth
+
+    path = Path(outcome.folder) / "tables" / "shear_stress.csv"
+    if not path.is_file():
+        return pd.DataFrame(columns=COLUMNS)
+    true = {
+        (run["surface"], run["medium"], run["normal_force_N"]): run["law"]["shear_stress"]
+        for run in read_truth(folder).facts["runs"].values()
+        if "shear_stress" in run["law"]
+    }
+    rows: list[dict[str, Any]] = []
+    for fit in pd.read_csv(path).to_dict("records"):
+        known = true.get((fit["surface"], fit["medium"], fit["normal_force_N"]))
+        if known is None:
+            continue
+        low, high = fit["shear_stress_low_Pa"], fit["shear_stress_high_Pa"]
+        rows.append(
+            {name: fit[name] for name in COLUMNS[:4]}
+            | {
+                "found_Pa": fit["shear_stress_Pa"],
+                "found_low_Pa": low,
+                "found_high_Pa": high,
+                "true_Pa": known,
+                "relative_difference": fit["shear_stress_Pa"] / known - 1,
+                "within_interval": int(low <= known <= high),
+            }
+        )
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def write_truth_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
+    """Compare as `compare_shear_stress`, and write ``tables/truth_shear_stress.csv``."""
+    table = compare_shear_stress(outcome, folder)
+    place = Path(outcome.folder) / "tables" / "truth_shear_stress.csv"
+    table.to_csv(place, index=False, float_format="%.9g", lineterminator="\n")
+    return table
