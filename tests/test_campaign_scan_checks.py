@@ -186,7 +186,7 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     [surface] = json.loads((results / "report.json").read_text("utf-8"))["surfaces"]
     assert surface["quality"] == "fail"
     page = (results / "report.html").read_text("utf-8")
-    assert page.count('<s>Sb-R</s> <span class="chip fail">scans: fail</span>') == 2
+    assert page.count('<s>Sb-R</s> <span class="chip fail">scans: fail</span>') == 3
     assert "Sb-R%20(bad%20scans)" in page or "Sb-R (bad scans)" in page
     campaign.write_text(text + '\n[qc]\nfail_on = "never"\n', "utf-8")
     assert CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"]).exit_code == 0

@@ -185,7 +185,8 @@ def surface_styles(surfaces: Iterable[str]) -> dict[str, SurfaceStyle]:
     chosen: dict[str, SurfaceStyle] = {}
     free = 0
     for name in dict.fromkeys(surfaces):
-        fixed = _FIXED.get(name.strip().lower())
+        # what is said of a surface in brackets does not change its colour
+        fixed = _FIXED.get(name.partition(" (")[0].strip().lower())
         chosen[name] = fixed or _OTHERS[free % len(_OTHERS)]
         free += fixed is None
     return chosen
