@@ -12,7 +12,7 @@ import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
-from reporting import made_curve, made_outcome, made_run
+from reporting import made_curve, made_outcome, made_run, write_groups
 
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf

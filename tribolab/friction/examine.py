@@ -70,7 +70,7 @@ def examine(
         return "too short for a spectrum"
     most = int(1 / (found.frequency * PER_PERIOD * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
-    wanted = (QUIET * noise / max(found.swing, 1e-300)) ** 2
+    wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     part = Record(record.time[: MOST * size], record.values[: MOST * size], *record[2:])
     view = coarse(part, size)
