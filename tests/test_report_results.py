@@ -12,7 +12,7 @@ import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
-from reporting import made_curve, made_outcome, made_run
+from reporting import made_curve, made_outcome, made_run, write_groups
 
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
@@ -160,7 +160,8 @@ def test_every_figure_named_is_there_and_described_with_numbers(outcome, report)
     figures = report["figures"] + [f for run in report["runs"] for f in run["figures"]]
     assert len(figures) == 2 * 5 + 3 + 1  # per run, per surface, Sb-R with Sb-S at 31 N
     on_disk = {f"figures/{path.name}" for path in (outcome.folder / "figures").iterdir()}
-    assert {figure[kind] for figure in figures for kind in ("file", "data")} == on_disk
+    every = figures + report["sliding_figures"]
+    assert {figure[kind] for figure in every for kind in ("file", "data")} == on_disk
     for figure in figures:
         assert any(character.isdigit() for character in figure["alt"])
         assert "µ from" in figure["alt"]

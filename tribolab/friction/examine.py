@@ -14,7 +14,8 @@ from tribolab.friction.waveform import Waveform, describe_waveform
 
 PER_PERIOD = 48  # samples in a period that events are sought in, at least; more is averaged ...
 QUIET = 50.0  # ... until the noise is so many times smaller than the swing
-MOST = 1 << 19  # samples that events are sought in: tens of thousands of periods
+MOST = 1 << 17  # samples that events are sought in: thousands of periods
+DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
 STEPS = 1.5  # quantisation steps
 
 
@@ -62,7 +63,7 @@ def examine(
     if np.ptp(record.values) <= 1e-12 * abs(record.values[0]):
         return "the signal is constant"
     noise, spikes = noise_level(record.values[: 1 << 17]), 0
-    if n <= 2 * MOST:
+    if n <= DESPIKED:
         kept, spikes = without_spikes(record.values, noise)
         record = record._replace(values=kept)
     found = oscillation(record)
@@ -70,11 +71,11 @@ def examine(
         return "too short for a spectrum"
     most = int(1 / (found.frequency * PER_PERIOD * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
-    wanted = (QUIET * noise / max(found.swing, 1e-300)) ** 2
+    wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     part = Record(record.time[: MOST * size], record.values[: MOST * size], *record[2:])
     view = coarse(part, size)
-    step = quantisation_step(record.values)
+    step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
         limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
     )

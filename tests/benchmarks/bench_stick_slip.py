@@ -1,0 +1,74 @@
+"""Stick-slip of a trace of ten million samples against one batched FFT of the same trace.
+
+    python tests/benchmarks/bench_stick_slip.py
+
+Prints the ratio of times (best of five, interleaved), and the peak of memory over the trace's size.
+The FFT transforms the trace once in stretches of 8192 samples, with no window and no sum.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import tracemalloc
+
+import numpy as np
+import xarray as xr
+from scipy import fft
+
+from tribolab.friction.stick_slip import stick_slip
+
+_STRETCH = 8192
+
+
+def make(samples: int, period: float) -> tuple[xr.Dataset, xr.Dataset]:
+    """One segment of sawtooth stick-slip with noise; its period in samples."""
+    rng = np.random.default_rng(0)
+    place = np.arange(samples, dtype=float)
+    values = 1 + 0.2 * (place / period % 1.0)
+    values += 0.01 * rng.standard_normal(samples)
+    moments = place * 1e-3
+    run = xr.Dataset({"friction_coefficient": ("time", values)}, {"time": moments})
+    ends = {"start": 0, "trimmed_start": 0, "stop": -1, "trimmed_stop": -1}
+    data = {name: ("segment", moments[[at]]) for name, at in ends.items()}
+    data |= {"sliding_speed": ("segment", [1e-4]), "direction": ("segment", np.int8([1]))}
+    return run, xr.Dataset(data, {"segment": [0]})
+
+
+def batched(values: np.ndarray) -> np.ndarray:
+    """Transform the whole trace once, in stretches."""
+    count = values.size // _STRETCH
+    return fft.rfft(values[: count * _STRETCH].reshape(count, _STRETCH), axis=1)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--samples", type=int, default=10_000_000)
+    samples = parser.parse_args().samples
+    for period in (40.0, 2500.0):
+        run, segments = make(samples, period)
+        values = run["friction_coefficient"].values
+        times = {"stick_slip": [], "FFT": []}
+        for _ in range(5):
+            for name, work in (
+                ("FFT", lambda values=values: batched(values)),
+                ("stick_slip", lambda run=run, segments=segments: stick_slip(run, segments)),
+            ):
+                began = time.perf_counter()
+                found = work()
+                times[name].append(time.perf_counter() - began)
+        ours, other = min(times["stick_slip"]), min(times["FFT"])
+        tracemalloc.start()
+        found = stick_slip(run, segments)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        print(
+            f"{samples:.0e} samples, {period:g} in a period ({found['waveform'].item()}): "
+            f"{ours:.3f} s, {ours / other:.2f} times one batched FFT ({other:.3f} s); "
+            f"peak memory {peak / values.nbytes:.2f} times the trace"
+        )
+
+
+if __name__ == "__main__":
+    main()
