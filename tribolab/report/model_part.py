@@ -25,8 +25,8 @@ def write_models(
     for model in outcome.models:
         where = f"model {model.name.removeprefix('model_')}"
         findings += [
-            {"severity": severity, "run": "", "where": where, "message": message}
-            for severity, message in model.findings
+            {"severity": f.severity, "run": "", "where": where, "message": f.message}
+            for f in model.findings
         ]
         if not model.done:
             continue

@@ -165,8 +165,8 @@ def _surfaces(outcome: Outcome, findings: list[dict[str, str]]) -> dict[str, Sur
     for surface in outcome.surfaces:
         where = f"surface {surface.name}"
         findings += [
-            {"severity": severity, "run": "", "where": where, "message": message}
-            for severity, message, _ in surface.findings
+            {"severity": f.severity, "run": "", "where": where, "message": f.message}
+            for f in surface.findings
         ]
         if not surface.done:
             continue

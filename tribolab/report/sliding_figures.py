@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.labels import speed_text
+from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import save_figure
 from tribolab.report.sliding import CurveSlip, condition
+from tribolab.report.wording import span, with_error
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from tribolab.campaign.outcome import Outcome
     from tribolab.plot.stick_slip import Trace
 
@@ -99,7 +102,18 @@ def _traces(
     figure = plot.slip_traces(stack[:_MOST_TRACES], names)
     stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in surface.lower()) or "runs"
     file = f"figures/slip_traces_{stem}.svg"
-    return [save_figure(figure, folder, file, caption, title) | {"kind": "traces"}]
+    alt = f"{title}. " + "; ".join(_in_words(trace) for trace in stack[:_MOST_TRACES]) + "."
+    return [save_figure(figure, folder, file, caption, alt) | {"kind": "traces"}]
+
+
+def _in_words(trace: Trace) -> str:
+    """Say what a trace shows: how much friction varies about its mean."""
+    one = trace.friction.isel(segment=trace.segment)
+    for name, what, unit in (("friction_coefficient", "µ", ""), ("friction_force", "F", " N")):
+        if name in one:
+            error = float(one[f"{name}_std"]) if f"{name}_std" in one else None
+            return f"{trace.label}: {what} = {with_error(float(one[name]), error, unit)}"
+    return trace.label
 
 
 def _spectra(shown: dict[str, CurveSlip], folder: Path) -> list[dict[str, str]]:
@@ -117,7 +131,10 @@ def _spectra(shown: dict[str, CurveSlip], folder: Path) -> list[dict[str, str]]:
         "noise exceeds anywhere in one spectrum of a thousand. Blue: the strongest oscillation."
     )
     figure = plot.slip_spectra(chosen)
-    record = save_figure(figure, folder, "figures/slip_spectra.svg", caption, caption)
+    alt = "Spectra of friction. " + "; ".join(
+        f"{label}: {_strongest(slip, segment)}" for label, (slip, segment) in chosen.items()
+    )
+    record = save_figure(figure, folder, "figures/slip_spectra.svg", caption, alt + ".")
     return [record | {"kind": "spectra"}]
 
 
@@ -129,15 +146,44 @@ def _events(shown: dict[str, CurveSlip], folder: Path) -> list[dict[str, str]]:
         return []
     caption = "Events of one run of each condition, all speeds: share of events below a value."
     figure = plot.slip_events(slips)
-    record = save_figure(figure, folder, "figures/slip_events.svg", caption, caption)
+    alt = "Share of events below a value. " + "; ".join(
+        f"{label}: {slip.sizes['event']} events, drops of µ from {span(slip['event_drop'].values)}"
+        for label, slip in slips.items()
+        if slip.sizes.get("event", 0)
+    )
+    record = save_figure(figure, folder, "figures/slip_events.svg", caption, alt + ".")
     return [record | {"kind": "events"}]
 
 
 def _map(found: Sequence[CurveSlip], folder: Path) -> list[dict[str, str]]:
     from tribolab import plot
 
-    curves = {condition(one.outcome): one.curve for one in reversed(found)}
+    curves = {
+        condition(one.outcome): one.curve
+        for one in reversed(found)
+        if one.curve.sizes["sliding_speed"]
+    }
+    if not curves:
+        return []
     caption = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
     figure = plot.waveform_map(curves)
-    record = save_figure(figure, folder, "figures/slip_map.svg", caption, caption)
+    alt = "Waveform at every speed. " + "; ".join(
+        f"{label}: {_modes(curve)}" for label, curve in reversed(curves.items())
+    )
+    record = save_figure(figure, folder, "figures/slip_map.svg", caption, alt + ".")
     return [record | {"kind": "map"}]
+
+
+def _strongest(slip: xr.Dataset, segment: int) -> str:
+    """Say which oscillation of a segment stands out of the noise."""
+    frequency = float(slip["dominant_frequency"][segment])
+    if not np.isfinite(frequency):
+        return "no oscillation stands out"
+    return f"an oscillation at {number(frequency)} Hz stands out"
+
+
+def _modes(curve: xr.Dataset) -> str:
+    """Count the speeds of each waveform."""
+    names, counts = np.unique(curve["waveform"].values.astype(str), return_counts=True)
+    said = [f"{name} at {count}" for name, count in zip(names, counts, strict=True)]
+    return ", ".join(said) + " of the speeds"
