@@ -84,6 +84,11 @@ class Draft(NamedTuple):
             if FILL_IN in line
         }
 
+    def _repr_html_(self) -> str:
+        from tribolab.io.draft_show import draft_html
+
+        return draft_html(self)
+
     def first_rows(self, number: int = _SHOWN) -> dict[str, np.ndarray]:
         """Return the first rows in SI, by quantity."""
         if self.understood is None:

@@ -16,14 +16,13 @@ import numpy as np
 
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import known_fault
-from tribolab.rig.files import force_file, motion_file, scan_file
+from tribolab.rig.files import FIRST_DAY, scan_file, write_run
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
 from tribolab.studies import xu2026
 
-_FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 Law = Callable[[np.ndarray], np.ndarray]
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 
@@ -189,7 +188,7 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 def _date(made: int) -> dt.datetime:
     """When a run began: eight a day."""
     day, turn = divmod(made, 8)
-    return _FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
+    return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
 
 def _run_all(
@@ -250,9 +249,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
         law=job.law,
         faults=job.faults,
     )
-    raw = job.folder / "raw/friction"
-    (raw / f"{name}_force.csv").write_bytes(force_file(run.force_log, job.date))
-    (raw / f"{name}_motion.csv").write_bytes(motion_file(run.motion_log, job.date))
+    write_run(run, job.folder / "raw/friction", job.date)
     table = run.segments.to_csv(index=False, lineterminator="\n", float_format="%.10g")
     (job.folder / "truth" / f"{name}.csv").write_text(table, encoding="utf-8", newline="\n")
     return name, run.facts

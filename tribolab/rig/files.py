@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import datetime as dt
 from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from tribolab.studies import xu2026
+
+if TYPE_CHECKING:
+    from tribolab.rig.runs import SimulatedRun
+
+FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
@@ -92,6 +99,42 @@ def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
         (log.set_speed.values * 1e3, 5),
     ]
     return head.encode() + fixed_table(columns, ";")
+
+
+def write_run(
+    run: SimulatedRun, folder: str | Path = ".", date: dt.datetime = FIRST_DAY
+) -> tuple[Path, Path]:
+    """Write a simulated run as its two loggers do: a force log and a motion log.
+
+    Parameters
+    ----------
+    run
+        From `simulate_run`.
+    folder
+        Where to; made if it is not there.
+    date
+        When the run began, for the files' first lines.
+
+    Returns
+    -------
+    tuple of pathlib.Path
+        The force log, which `tribolab.read` takes, and the motion log beside it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4,)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [file.name for file in write_run(rig.simulate_run("Sb-R", "dry", rig=short), folder)]
+    ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_01_motion.csv']
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    force, motion = (folder / f"{run.name}_{log}.csv" for log in ("force", "motion"))
+    force.write_bytes(force_file(run.force_log, date))
+    motion.write_bytes(motion_file(run.motion_log, date))
+    return force, motion
 
 
 def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
