@@ -138,7 +138,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     >>> draft.kind, [c.quantity for c in draft.understood.columns]
     ('run', ['time', 'friction_force', 'position'])
     >>> draft.to_fill_in
-    {27: 'the unit of \'Weg\' (position), e.g. "m"'}
+    {28: 'the unit of \'Weg\' (position), e.g. "m"'}
     """
     file = peek(path)
     if file.format != "text":
