@@ -85,7 +85,22 @@ class Findings:
         return {status: found.count(status) for status in STATUSES}
 
     def _repr_html_(self) -> str:
-        return self.table.to_html(index=False)
+        """Objections and notes in full; everything that was asked, folded away."""
+        import html
+
+        import pandas as pd
+
+        rows = self.table.drop(columns="name").assign(noted=[row["noted"] for row in self.rows])
+        told = rows[rows.status.isin(("suspect", "fail", "error")) | rows.noted]
+        rows = rows.drop(columns="noted")
+        with pd.option_context("display.max_colwidth", None):
+            short = told[["check", "status", "variable", "message", "cure"]].to_html(index=False)
+            long = rows.to_html(index=False, na_rep="")
+        counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)
+        return (
+            f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(told) else ''}"
+            f"<details><summary>everything that was asked: {counted}</summary>{long}</details>"
+        )
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
