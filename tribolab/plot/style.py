@@ -106,9 +106,11 @@ class PaperFigure(Figure):
         """Remember the numbers that were drawn; `figure_data` hands them out."""
         self._numbers.append({"panel": panel, "series": series, **columns})
 
-    def _repr_mimebundle_(self, include=None, exclude=None) -> dict[str, bytes]:
-        # goes before the coarser picture that the inline backend of pyplot makes of any Figure
-        return {"image/png": self._repr_png_()}
+    def _ipython_display_(self) -> None:
+        # the inline backend of pyplot would show any Figure at half this resolution
+        from IPython.display import display
+
+        display({"image/png": self._repr_png_()}, raw=True)
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()

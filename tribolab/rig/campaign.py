@@ -16,7 +16,7 @@ import numpy as np
 
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import known_fault
-from tribolab.rig.files import FIRST_DAY, scan_file, write_run
+from tribolab.rig.files import FIRST_DAY, write_run, write_scans
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
@@ -234,9 +234,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
     if not job.number:
         stem = c.surface.lower()
         data = scans(c.surface, job.scans, seed=_generator(job.seed, stem))
-        for number, height in enumerate(data.height.values, start=1):
-            path = job.folder / "raw/profiles" / f"{stem}_{number}.csv"
-            path.write_bytes(scan_file(data.x.values, height))
+        write_scans(data, job.folder / "raw/profiles")
         return stem, {}
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
     run = simulate_run(

@@ -148,3 +148,33 @@ def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
         "x [mm],z [um]\n"
     )
     return head.encode() + fixed_table([(x * 1e3, 4), (height * 1e6, 3)], ",")
+
+
+def write_scans(scans: xr.Dataset, folder: str | Path = ".", surface: str = "") -> list[Path]:
+    """Write simulated scans as the stylus instrument exports them, a file for each.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (profile, x), from `tribolab.rig.scans`.
+    folder
+        Where to; made if it is not there.
+    surface
+        First part of the files' names; by default the surface's name.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [file.name for file in write_scans(rig.scans("Sb-R", 2, length=1e-3), folder)]
+    ['sb-r_1.csv', 'sb-r_2.csv']
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    stem = surface or str(scans.attrs["surface"]).lower()
+    files = []
+    for number, height in enumerate(scans["height"].values, start=1):
+        files.append(folder / f"{stem}_{number}.csv")
+        files[-1].write_bytes(scan_file(scans["x"].values, height))
+    return files
