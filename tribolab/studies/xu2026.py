@@ -33,7 +33,13 @@ STAND_IN = (
 
 @dataclass(frozen=True)
 class System:
-    """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4)."""
+    """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
+
+    Examples
+    --------
+    >>> f"{System().nominal_pressure(31.0) / 1e3:.1f} kPa"
+    '41.7 kPa'
+    """
 
     radius: float = 0.07  # m
     length: float = 0.10  # m
@@ -61,7 +67,13 @@ class System:
 
 @dataclass(frozen=True)
 class Profilometer:
-    """The stylus instrument, a Surftest SJ-410 (Sec. 3)."""
+    """The stylus instrument, a Surftest SJ-410 (Sec. 3).
+
+    Examples
+    --------
+    >>> round(Profilometer().scan_length / Profilometer().pitch)
+    50000
+    """
 
     tip_radius: float = 2e-6  # m
     pitch: float = 0.5e-6  # m
@@ -87,6 +99,11 @@ class Surface:
     shear_stress
         Fitted sigma_f [Pa] by normal force [N] in glycerol (Sec. 7), for the area without
         adhesion.
+
+    Examples
+    --------
+    >>> surfaces["Sb-S"].area_ratio_glycerol / surfaces["Sb-S"].area_ratio > 1.7
+    True
     """
 
     name: str
