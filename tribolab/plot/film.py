@@ -91,7 +91,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
             tidy(axes, letter)
         panels[0].set_ylim(0, 4e6 * centre)  # the gap outside grows without end
         for axes in panels[1:]:
-            axes.set_ylim(0, 1.18 * axes.dataLim.y1)
+            axes.set_ylim(0, 1.18 * axes.dataLim.y1 or 1)  # smooth bodies do not touch
         margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.32)
         handles, texts = panels[0].get_legend_handles_labels()
         figure.legend(

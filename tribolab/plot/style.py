@@ -302,6 +302,13 @@ def svg(figure: Figure) -> str:
 def save(figure: Figure, path: str | Path) -> Path:
     """Write the figure as SVG, or as any format that matplotlib knows by the file's ending.
 
+    Parameters
+    ----------
+    figure
+        What one of the functions of `tribolab.plot` returned.
+    path
+        The file; its folder must be there.
+
     Examples
     --------
     >>> import tempfile

@@ -174,6 +174,11 @@ def stick_slip(surface: str, medium: str) -> StickSlip:
     shorter at 3 than at 1 um/s, and gone at 10 um/s. The paper prints no numbers: wavelengths and
     drops are assumptions, and so is the fading of the dry sawtooth above 0.1 mm/s.
 
+    Parameters
+    ----------
+    surface, medium
+        As for `friction_law`.
+
     Examples
     --------
     >>> stick_slip("Smooth", "dry").form, stick_slip("Sb-R", "dry").form

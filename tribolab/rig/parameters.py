@@ -190,6 +190,11 @@ class Clocks:
 class Rig:
     """Everything together.
 
+    Parameters
+    ----------
+    protocol, scatter, force_cell, encoder, loggers, clocks
+        What is run, what is real, and what measures it.
+
     Examples
     --------
     >>> quiet = Rig(Protocol(speeds=(1e-4,)), force_cell=ForceCell(noise=0.0, flicker=0.0, hum=0.0))

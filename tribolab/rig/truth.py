@@ -23,6 +23,16 @@ class Truth:
         law, offsets and clocks under ``facts["runs"][name]``.
     segments
         For each run's name the table of its constant-speed segments.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = rig.simulate_campaign(Path(folder) / "demo", small=True, surfaces=["Sb-R"])
+    ...     truth = read_truth(file.parent)
+    >>> sorted(truth.segments) == sorted(truth.facts["runs"]), len(truth.segments)
+    (True, 4)
     """
 
     facts: dict[str, Any]

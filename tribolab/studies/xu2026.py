@@ -35,6 +35,19 @@ STAND_IN = (
 class System:
     """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
 
+    Parameters
+    ----------
+    radius, length
+        Of the cylinder [m].
+    youngs_modulus, poisson_ratio
+        E [Pa] and nu [1] of the rubber.
+    viscosity
+        Of glycerol [Pa s].
+    loads
+        Normal forces [N].
+    lowest_speed, highest_speed
+        Ends of the sliding speeds [m/s].
+
     Examples
     --------
     >>> f"{System().nominal_pressure(31.0) / 1e3:.1f} kPa"
@@ -68,6 +81,13 @@ class System:
 @dataclass(frozen=True)
 class Profilometer:
     """The stylus instrument, a Surftest SJ-410 (Sec. 3).
+
+    Parameters
+    ----------
+    tip_radius, pitch, scan_length
+        Of the stylus, between points, and of a scan [m].
+    scans
+        Number of scans of a cylinder.
 
     Examples
     --------
