@@ -18,14 +18,13 @@ import numpy as np
 
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import known_fault
-from tribolab.rig.files import force_file, motion_file, scan_file
+from tribolab.rig.files import FIRST_DAY, write_run, write_scans
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
 from tribolab.studies import xu2026
 
-_FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 Law = Callable[[np.ndarray], np.ndarray]
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 
@@ -196,7 +195,7 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 def _date(made: int) -> dt.datetime:
     """When a run began: eight a day."""
     day, turn = divmod(made, 8)
-    return _FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
+    return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
 
 def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
@@ -238,9 +237,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
     if not job.number:
         stem = c.surface.lower()
         data = scans(c.surface, job.scans, seed=_generator(job.seed, stem))
-        for number, height in enumerate(data.height.values, start=1):
-            path = job.folder / "raw/profiles" / f"{stem}_{number}.csv"
-            path.write_bytes(scan_file(data.x.values, height))
+        write_scans(data, job.folder / "raw/profiles")
         return stem, {}
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
     run = simulate_run(
@@ -253,9 +250,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
         law=job.law,
         faults=job.faults,
     )
-    raw = job.folder / "raw/friction"
-    (raw / f"{name}_force.csv").write_bytes(force_file(run.force_log, job.date))
-    (raw / f"{name}_motion.csv").write_bytes(motion_file(run.motion_log, job.date))
+    write_run(run, job.folder / "raw/friction", job.date)
     table = run.segments.to_csv(index=False, lineterminator="\n", float_format="%.10g")
     (job.folder / "truth" / f"{name}.csv").write_text(table, encoding="utf-8", newline="\n")
     return name, run.facts
