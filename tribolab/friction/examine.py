@@ -104,9 +104,7 @@ def examine(
     return Examined(found, events, form, hysteresis, noise, spikes / n, force)
 
 
-def noise_excess(
-    record: Record, found: Oscillation, events: Events, hysteresis: float
-) -> float:
+def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis: float) -> float:
     """By how much the noise makes the mean drop look larger.
 
     Parameters
@@ -127,11 +125,12 @@ def noise_excess(
 
     Notes
     -----
-    Turning points are picked where the noise adds to them. How much that is depends on the form, on
-    the noise and on how often it is sampled, so it is seen by doing it again: noise drawn from the
-    background's spectrum is laid on the cycles that were found, and cycles are sought once more. Harmonics may have been
-    taken for noise: what is left beside straight lines from turn to turn says how much there is.
-    Noise slower than half the oscillation's frequency moves peaks and valleys alike and is left out.
+    Turning points are picked where the noise adds to them. How much that is depends on the form,
+    on the noise and on how often it is sampled, so it is seen by doing it again: noise drawn from
+    the background's spectrum is laid on the cycles that were found, and cycles are sought once
+    more. Harmonics may have been taken for noise: what is left beside straight lines from turn to
+    turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
+    valleys alike and is left out.
     """
     n = record.values.size
     frequency = np.fft.rfftfreq(n, record.spacing)
