@@ -18,7 +18,7 @@ SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is
 FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
 BELOW = 2.0  # times that friction lies below a uniform slip's
 WEAKER = 1.5  # times that drops differ between speeds
-FALLS = 0.05  # relative; less of a fall between two speeds is none
+FALLS = 0.10  # relative; less of a fall between two speeds is none
 FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
 
 
