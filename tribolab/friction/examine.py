@@ -132,7 +132,8 @@ def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis:
     turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
     valleys alike and is left out.
     """
-    n = record.values.size
+    events = Events(*(part[:_AGAIN] for part in events))  # so many tell, however long the record
+    n = int(np.searchsorted(record.time, events.stop[-1])) + 1
     frequency = np.fft.rfftfreq(n, record.spacing)
     density = np.interp(frequency, found.bands, found.background)
     density[frequency < 0.5 * found.frequency] = 0.0
@@ -141,7 +142,7 @@ def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis:
     inside = np.searchsorted(record.time, time[0])
     rng = np.random.default_rng(0)
     for _ in range(_ROUNDS):
-        drops, rests = [np.zeros(0)], [np.zeros(0)]
+        drops, rests = [np.zeros(0)], []
         for _ in range(int(np.clip(_AGAIN / events.drop.size, 1, 32))):
             draw = rng.standard_normal((2, height.size))
             noise = np.fft.irfft(height * (draw[0] + 1j * draw[1]), n)
@@ -149,10 +150,10 @@ def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis:
             again = find_events(time, noisy, hysteresis)
             drops.append(again.drop)
             if again.drop.size:
-                rests.append([_cycles(time, noisy, again)[2]])
-        if not (rests := np.concatenate(rests)).size:
+                rests.append(_cycles(time, noisy, again)[2])
+        if not sum(rests) > 0:  # no cycles are left, or no noise was laid on them
             return 0.0
-        height *= min(rest / rests.mean(), 1.0)
+        height *= min(rest * len(rests) / sum(rests), 1.0)
     return float(np.concatenate(drops).mean() - events.drop.mean())
 
 
