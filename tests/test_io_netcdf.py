@@ -97,7 +97,7 @@ def test_groups_share_a_file_and_text_variables_survive(tmp_path):
 
 def test_several_groups_are_read_at_once_and_travel_to_other_processes(tmp_path):
     file = tmp_path / "all.nc"
-    parts = {"run": example_run(100), "second": example_run(5)}
+    parts = {"run": example_run(100), "second": example_run(60)}
     for name, data in parts.items():
         write_netcdf(data, file, group=name)
     read = pickle.loads(pickle.dumps(read_groups(file, ["second", "run"])))

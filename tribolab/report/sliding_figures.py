@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.friction.waveform import CLASSES
 from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition
@@ -104,7 +105,8 @@ def _lowest(found: Sequence[CurveSlip]) -> list[CurveSlip]:
 
 
 def _moves(one: CurveSlip) -> bool:
-    return any(slip.sizes.get("event", 0) for slip in one.slips.values())
+    """Whether stick-slip is claimed at any speed; a segment that stands alone is no claim."""
+    return "waveform" in one.curve and bool((one.curve["waveform"] != CLASSES[0]).any())
 
 
 def _slow_segments(one: CurveSlip) -> tuple[str, list[int]]:
