@@ -126,7 +126,6 @@ def slip_traces(
                 xycoords=("axes fraction", "data"),
                 va="center",
                 fontsize=6.5,
-                color=colour,
                 annotation_clip=False,
             )
             figure.keep("traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
@@ -184,14 +183,15 @@ def slip_spectra(slips: Mapping[str, tuple[xr.Dataset, int]]) -> PaperFigure:
     across = 2 if len(slips) == 4 else min(len(slips), 3)
     down = -(-len(slips) // across)
     with paper_style():
-        figure = new_figure(DOUBLE_MM, 12.0 + 58.0 * down)
+        figure = new_figure(DOUBLE_MM, 15.0 + 58.0 * down)
         grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 15, wspace=0.3, hspace=0.62)
+        margins(figure, 15, 3, 11, 18, wspace=0.3, hspace=0.62)
         for axes, (label, (slip, number)) in zip(grid.flat, slips.items(), strict=False):
             _spectrum(figure, axes, label, slip, number)
         for axes in grid.flat[len(slips) :]:
             axes.remove()
-        grid.flat[0].legend(loc="lower left", fontsize=6)
+        handles, words = grid.flat[0].get_legend_handles_labels()
+        figure.legend(handles, words, loc="upper center", ncols=3, fontsize=6.5)
     return figure
 
 

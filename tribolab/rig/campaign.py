@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import json
 import shutil
 import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -62,6 +64,7 @@ def simulate_campaign(
     faults: str | Sequence[str] = (),
     progress: Callable[[str, int, int], None] | None = None,
     jobs: int = 1,
+    executor: Executor | None = None,
 ) -> Path:
     """Write a campaign as the virtual rig measures it: every surface at every load, in repeats.
 
@@ -87,6 +90,8 @@ def simulate_campaign(
         Called as ``progress(stage, done, total)``.
     jobs
         Number of processes.
+    executor
+        Any `concurrent.futures.Executor` to work in, instead of `jobs`.
 
     Returns
     -------
@@ -133,7 +138,9 @@ def simulate_campaign(
             (aside / room).mkdir(parents=True)
         work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
         work = _deal([faults] if isinstance(faults, str) else faults, work)
-        facts = _run_all(work, jobs, progress)
+        pool = contextlib.nullcontext(executor) if executor else _processes(jobs)
+        with pool as working:
+            facts = _run_all(work, working, progress)
         _write_facts(aside, seed, rig, names, facts)
         (aside / "campaign.toml").write_text(
             campaign_text(names, conditions), encoding="utf-8", newline="\n"
@@ -191,36 +198,32 @@ def _date(made: int) -> dt.datetime:
     return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
 
+def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
+    if jobs <= 1:
+        return contextlib.nullcontext()
+    import multiprocessing
+
+    # spawn: a forked child would inherit locks of the parent's threads
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
+
+
 def _run_all(
-    work: list[_Job], jobs: int, progress: Callable[[str, int, int], None] | None
+    work: list[_Job],
+    pool: Executor | None,
+    progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, dict[str, Any]]:
     """Do the jobs here or in other processes; facts of the runs, in the order of the jobs."""
-    facts: dict[str, dict[str, Any]] = {}
-
-    def collect(results: Iterable[tuple[str, dict[str, Any]]]) -> None:
-        for done, (name, fact) in enumerate(results, start=1):
-            if fact:
-                facts[name] = fact
-            if progress:
-                progress("simulate", done, len(work))
-
+    do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
-
-    def with_laws(laws: Iterable[Law]) -> list[_Job]:
-        known = dict(zip(conditions, laws, strict=True))
-        return [replace(job, law=known.get(job.condition)) for job in work]
-
-    if jobs <= 1:
-        collect(map(_do, with_laws(map(_law, conditions))))
-    else:
-        import multiprocessing
-        from concurrent.futures import ProcessPoolExecutor
-
-        # spawn: a forked child would inherit locks of the parent's threads
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-            # laws first: repeats share one, wherever each of them is simulated
-            collect(pool.map(_do, with_laws(pool.map(_law, conditions))))
+    # laws first: repeats share one, wherever each of them is simulated
+    laws = dict(zip(conditions, do(_law, conditions), strict=True))
+    work = [replace(job, law=laws.get(job.condition)) for job in work]
+    facts: dict[str, dict[str, Any]] = {}
+    for done, (name, fact) in enumerate(do(_do, work), start=1):
+        if fact:
+            facts[name] = fact
+        if progress:
+            progress("simulate", done, len(work))
     return facts
 
 
