@@ -26,7 +26,7 @@ _PUBLIC = {
     "write_netcdf": "tribolab.io.netcdf",
     "find_segments": "tribolab.friction.segments",
     "friction_coefficient": "tribolab.friction.coefficient",
-    "half_loops": "tribolab.friction.coefficient",
+    "half_loops": "tribolab.friction.half_loops",
     "stick_slip": "tribolab.friction.stick_slip",
     "stick_slip_curve": "tribolab.friction.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
@@ -133,7 +133,8 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.errors import TribolabError
-    from tribolab.friction.coefficient import friction_coefficient, half_loops
+    from tribolab.friction.coefficient import friction_coefficient
+    from tribolab.friction.half_loops import half_loops
     from tribolab.friction.segments import find_segments
     from tribolab.friction.slip_curve import stick_slip_curve
     from tribolab.friction.stick_slip import stick_slip

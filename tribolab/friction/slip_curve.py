@@ -72,6 +72,16 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     ------
     AnalysisError
         If there is no run.
+
+    Examples
+    --------
+    >>> from tribolab.friction.segments import find_segments
+    >>> from tribolab.friction.stick_slip import stick_slip
+    >>> from tribolab.rig import simulate_trace
+    >>> run = simulate_trace("sawtooth", wavelength=22e-6, samples=1000, speed=1e-5)
+    >>> curve = stick_slip_curve([stick_slip(run, find_segments(run))])
+    >>> curve.waveform.item(), f"{1e6 * curve.dominant_wavelength.item():.0f} um"
+    ('sawtooth stick-slip', '22 um')
     """
     if not slips:
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")

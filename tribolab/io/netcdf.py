@@ -59,6 +59,15 @@ def write_netcdf(
     Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
     dicts and lists among the attributes become JSON text behind the mark ``json:``. The file is
     sealed (see `tribolab.io.seal`).
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_netcdf(run.assign_attrs(checked=True), Path(folder) / "run.nc", "run")
+    ...     read_netcdf(path, "run").attrs["checked"]
+    True
     """
     path = Path(path)
     mode = mode or ("a" if group and path.exists() else "w")
@@ -99,6 +108,14 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
     -----
     A file that carries no seal, or is not what it was when it was sealed, is tried in another
     process first.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_netcdf(write_netcdf(run, Path(folder) / "run.nc")).identical(run)
+    True
     """
     return read_groups(path, [group])[group]
 

@@ -54,6 +54,18 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
     -------
     matplotlib.figure.Figure
         Three panels over x; the flat slides to +x, so the inlet is on the left.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psd = xu2026.psd("Sb-S", points=301)
+    >>> films = [
+    ...     tl.film_profile(xu2026.contact, psd, "1.4 Pa s", "310 N/m", v, cells=100)
+    ...     for v in ("10 um/s", "1 mm/s")
+    ... ]
+    >>> tl.plot.figure_data(film_profiles(films)).series.unique().tolist()
+    ['10 µm/s', '1 mm/s']
     """
     if isinstance(profiles, xr.Dataset):
         profiles = [profiles.isel(sliding_speed=n) for n in range(profiles.sliding_speed.size)]
@@ -79,7 +91,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
             tidy(axes, letter)
         panels[0].set_ylim(0, 4e6 * centre)  # the gap outside grows without end
         for axes in panels[1:]:
-            axes.set_ylim(0, 1.18 * axes.dataLim.y1)
+            axes.set_ylim(0, 1.18 * axes.dataLim.y1 or 1)  # smooth bodies do not touch
         margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.32)
         handles, texts = panels[0].get_legend_handles_labels()
         figure.legend(
@@ -108,6 +120,16 @@ def lubrication_factors(
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> table = tl.flow_factors(xu2026.psd("Sb-S", points=301))
+    >>> over = table.rms_roughness * np.geomspace(0.3, 3, 5)
+    >>> figure = lubrication_factors({"Sb-S": table.dataset(over)})
+    >>> tl.plot.figure_data(figure).pressure_flow_factor.dropna().round(2).tolist()
+    [0.0, 0.09, 0.35, 0.61, 0.8]
     """
     chosen = colours(list(factors), surfaces)
     with paper_style():

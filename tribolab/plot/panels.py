@@ -70,6 +70,17 @@ def strokes(
     ------
     AnalysisError
         If there is no segment to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> run = rig.simulate_run("Sb-S", "dry", rig=short).noise_free
+    >>> segments = tl.find_segments(run)
+    >>> friction = tl.friction_coefficient(run, segments)
+    >>> tl.plot.figure_data(strokes(run, segments, friction)).panel.unique().tolist()
+    ['100 µm/s', '1 mm/s']
     """
     signal = main_signal(run, friction)
     parts = find_strokes(run, segments)

@@ -99,9 +99,11 @@ class Findings:
         columns = ["check", "status", "variable", "message", "cure"]
         told = self.table.assign(status=self.table["status"].where(~noted, "note"))[columns]
         told = told[objections | noted]
-        every = self.table.drop(columns="name").fillna("")
         look = {"text-align": "left", "vertical-align": "top"}
-        short, long = (rows.style.hide().set_properties(**look).to_html() for rows in (told, every))
+        short, long = (
+            rows.style.hide().format(na_rep="", escape="html").set_properties(**look).to_html()
+            for rows in (told, self.table.drop(columns="name"))
+        )
         counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)
         return (
             f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(told) else ''}"
