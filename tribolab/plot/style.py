@@ -106,6 +106,12 @@ class PaperFigure(Figure):
         """Remember the numbers that were drawn; `figure_data` hands them out."""
         self._numbers.append({"panel": panel, "series": series, **columns})
 
+    def _ipython_display_(self) -> None:
+        # the inline backend of pyplot would show any Figure at half this resolution
+        from IPython.display import display
+
+        display({"image/png": self._repr_png_()}, raw=True)
+
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
         with paper_style():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.errors import AnalysisError
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, flagged_spans, trace
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import RunOutcome
 
-# Neither matplotlib's settings nor the netCDF library stand being used by two threads.
-_ALONE = threading.Lock()
 _SPEED_TOLERANCE = 0.1
 
 
@@ -62,14 +59,12 @@ class RunSummary:
 
 def summarise_run(task: RunTask) -> RunSummary:
     """Open a run's data file, draw its figures into the results, and collect its numbers."""
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.netcdf import read_groups
 
     path = task.folder / task.run.data_file
-    with _ALONE:
-        run, segments, friction, slip = (
-            read_netcdf(path, group=group)
-            for group in ("run", "segments", "friction", "stick_slip")
-        )
+    with DRAWING:
+        parts = read_groups(path, ("run", "segments", "friction", "stick_slip"))
+        run, segments, friction, slip = parts.values()
         findings = _findings(task.run.name, run, segments, friction)
         figures = _figures(task, run, segments, friction, findings)
         packed, fine = _traces(task, run, segments, friction, findings)
