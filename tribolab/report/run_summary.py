@@ -166,8 +166,6 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
     detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
     if not over_speed:
         detail = f"in {moving.sum()} of {many(kind.size, 'segment')}"
-    elif moving.size > moving.sum() > 0:
-        detail += f", {speeds(curve['sliding_speed'].values[moving].tolist())}"
     if names[1:]:
         detail += f"; also {', '.join(names[1:])}"
     return {"class": names[0], "detail": detail}
