@@ -35,6 +35,7 @@ def test_a_notebook_runs_without_error_or_warning(path, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(PROJECT), before])))
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))  # what a notebook writes goes with the test
     place = tmp_path / "work"
     place.mkdir()
     notebook = nbformat.read(path, as_version=4)
