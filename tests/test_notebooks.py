@@ -63,3 +63,8 @@ def test_a_notebook_is_kept_without_outputs(path):
     assert {cell.execution_count for cell in code} == {None}
     assert "widgets" not in notebook.metadata
     assert notebook.metadata.kernelspec.name == "python3"
+
+
+@named
+def test_the_readme_lists_the_notebook(path):
+    assert f"(notebooks/{path.name})" in (PROJECT / "README.md").read_text(encoding="utf-8")

@@ -80,3 +80,8 @@ def test_a_checkout_finds_its_schemas_from_anywhere(tmp_path):
     folder, names, _ = told_from(PROJECT, tmp_path)
     assert Path(folder) == PROJECT / "raw_data_schema" == schema_folder()
     assert "linear_slider" in names
+
+
+def test_the_citation_names_this_version():
+    text = (PROJECT / "README.md").read_text(encoding="utf-8")
+    assert f"version = {{{tribolab.__version__}}}" in text
