@@ -8,7 +8,8 @@ import xarray as xr
 from tribolab.studies import xu2026
 
 Groups = dict[str, xr.Dataset]
-MEDIA = {"dry": 64e-3, "glycerol": 51e-3}  # work of adhesion [J/m2] as the paper rounds it
+# Work of adhesion [J/m2] as the paper rounds it and goes on with.
+MEDIA = {row.condition: row.si for row in xu2026.published if row.quantity == "work_of_adhesion"}
 PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, in App. B
 _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
 # m/s; rounded, so that none stands twice, a last digit apart

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, RunOutcome
     from tribolab.plot.stick_slip import Trace
 
+# Several figures show the same data, and none of them changes it.
+_KEPT = 64
 SURFACES = tuple(xu2026.surfaces)
 ROUGH = tuple(name for name in SURFACES if name != "Smooth")
 
@@ -49,9 +52,7 @@ class PaperData:
 
     def read(self, kind: str, surface: str, group: str) -> xr.Dataset:
         """Read a group of a task's data file."""
-        from tribolab.io.netcdf import read_netcdf
-
-        return read_netcdf(data_file(self.folder, kind, surface), group=group)
+        return _read(data_file(self.folder, kind, surface), group)
 
     def dry(self, group: str) -> dict[str, xr.Dataset]:
         """Read a group of the dry contact of every surface."""
@@ -76,7 +77,6 @@ class PaperData:
 
     def trace(self, surface: str, medium: str, speed: float) -> Trace:
         """Read the forward stroke at the lowest force whose speed is nearest to a speed [m/s]."""
-        from tribolab.io.netcdf import read_netcdf
         from tribolab.plot import Trace
 
         run = next(
@@ -85,11 +85,17 @@ class PaperData:
             if (run.surface, run.medium, run.normal_force) == (surface, medium, self.forces[0])
         )
         parts = [
-            read_netcdf(self.folder / run.data_file, group=group)
-            for group in ("run", "segments", "friction")
+            _read(self.folder / run.data_file, group) for group in ("run", "segments", "friction")
         ]
         v = parts[1]["sliding_speed"].values
         off = np.abs(np.log(v / speed)) + (parts[1]["direction"].values < 0)
         segment = int(np.nanargmin(off))
         label = f"{surface}, {medium}, {speed_text(float(f'{v[segment]:.2g}'))}"
         return Trace(label, *parts, segment, surface)
+
+
+@functools.lru_cache(_KEPT)
+def _read(path: Path, group: str) -> xr.Dataset:
+    from tribolab.io.netcdf import read_netcdf
+
+    return read_netcdf(path, group=group)
