@@ -8,6 +8,7 @@ import shutil
 import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -63,6 +64,7 @@ def simulate_campaign(
     faults: str | Sequence[str] = (),
     progress: Callable[[str, int, int], None] | None = None,
     jobs: int = 1,
+    executor: Executor | None = None,
 ) -> Path:
     """Write a campaign as the virtual rig measures it: every surface at every load, in repeats.
 
@@ -87,7 +89,9 @@ def simulate_campaign(
     progress
         Called as ``progress(stage, done, total)``.
     jobs
-        Number of processes.
+        Number of processes, if no executor is given.
+    executor
+        Any `concurrent.futures.Executor` to work in.
 
     Returns
     -------
@@ -134,7 +138,7 @@ def simulate_campaign(
             (aside / room).mkdir(parents=True)
         work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
         work = _deal([faults] if isinstance(faults, str) else faults, work)
-        facts = _run_all(work, jobs, progress)
+        facts = _run_all(work, jobs, executor, progress)
         _write_facts(aside, seed, rig, names, facts)
         (aside / "campaign.toml").write_text(
             campaign_text(names, conditions), encoding="utf-8", newline="\n"
@@ -193,7 +197,10 @@ def _date(made: int) -> dt.datetime:
 
 
 def _run_all(
-    work: list[_Job], jobs: int, progress: Callable[[str, int, int], None] | None
+    work: list[_Job],
+    jobs: int,
+    executor: Executor | None,
+    progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, dict[str, Any]]:
     """Do the jobs here or in other processes; facts of the runs, in the order of the jobs."""
     facts: dict[str, dict[str, Any]] = {}
@@ -211,7 +218,10 @@ def _run_all(
         known = dict(zip(conditions, laws, strict=True))
         return [replace(job, law=known.get(job.condition)) for job in work]
 
-    if jobs <= 1:
+    # laws first: repeats share one, wherever each of them is simulated
+    if executor is not None:
+        collect(executor.map(_do, with_laws(executor.map(_law, conditions))))
+    elif jobs <= 1:
         collect(map(_do, with_laws(map(_law, conditions))))
     else:
         import multiprocessing
@@ -220,7 +230,6 @@ def _run_all(
         # spawn: a forked child would inherit locks of the parent's threads
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-            # laws first: repeats share one, wherever each of them is simulated
             collect(pool.map(_do, with_laws(pool.map(_law, conditions))))
     return facts
 

@@ -42,7 +42,9 @@ class Laboratory:
     seed: int = 0
 
 
-def simulate(laboratory: Laboratory, folder: Path, jobs: int, progress: Progress) -> Campaign:
+def simulate(
+    laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
+) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
     from tribolab.campaign.config import load_campaign
     from tribolab.rig import Protocol, Rig, simulate_campaign
@@ -55,7 +57,7 @@ def simulate(laboratory: Laboratory, folder: Path, jobs: int, progress: Progress
         n_scans=laboratory.scans,
         rig=Rig(protocol=Protocol(speeds=laboratory.speeds)),
         progress=progress,
-        jobs=jobs,
+        executor=executor,
     )
     return load_campaign(file)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.campaign.executor import completed, default_jobs, workers
+from tribolab.campaign.executor import completed, workers
 from tribolab.campaign.staging import staged
 from tribolab.report.page import framed
 from tribolab.report.paper import laboratory as lab
@@ -73,13 +73,12 @@ def reproduce(
         If `output` holds something else, or cannot be written.
     """
     laboratory = laboratory or lab.Laboratory()
-    jobs = default_jobs() if jobs is None else jobs
     place = Path(output).resolve()
     tell = progress or (lambda stage, done, total: None)
     with staged(place) as folder:
         (folder / "figures").mkdir()
-        campaign = lab.simulate(laboratory, folder, jobs, tell)
         with workers(jobs) as pool:
+            campaign = lab.simulate(laboratory, folder, pool, tell)
             outcome, scans = lab.analyse(campaign, folder, pool, tell)
             table, fits = _computed(outcome, scans, pool, tell)
             data = PaperData(folder, outcome.runs, outcome.curves, fits)
