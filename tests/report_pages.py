@@ -3,9 +3,8 @@
 from html.parser import HTMLParser
 
 import numpy as np
-from reporting import made_outcome, made_run
+from reporting import made_outcome, made_run, write_groups
 
-from tribolab.io.netcdf import write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.report.results import write_report
 
@@ -46,10 +45,7 @@ def made(folder):
             }
         file = outcome.folder / outcome.runs[index].data_file
         file.unlink()
-        for group, data in zip(
-            ("run", "segments", "friction"), (run, segments, friction), strict=True
-        ):
-            write_netcdf(data, file, group=group)
+        write_groups(file, run, segments, friction)
     write_report(outcome)
     return outcome.folder
 

@@ -9,7 +9,8 @@ from made_runs import strokes, with_friction
 from real_runs import actuator, paper, reciprocating, rock
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient import friction_coefficient, half_loops
+from tribolab.friction.coefficient import friction_coefficient
+from tribolab.friction.half_loops import half_loops
 from tribolab.friction.offsets import wander
 from tribolab.friction.segments import find_segments
 

@@ -1,5 +1,7 @@
 """What is written as netCDF comes back the same."""
 
+import pickle
+
 import netCDF4
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io.netcdf import CHUNK, read_netcdf, write_netcdf
+from tribolab.io.netcdf import CHUNK, read_groups, read_netcdf, write_netcdf
 
 ATTRIBUTES = st.dictionaries(
     st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),
@@ -91,6 +93,19 @@ def test_groups_share_a_file_and_text_variables_survive(tmp_path):
     assert tl.read(file).identical(run)
     with pytest.raises(ReadError, match="no group 'friction'; there are run, segments"):
         read_netcdf(file, group="friction")
+
+
+def test_several_groups_are_read_at_once_and_travel_to_other_processes(tmp_path):
+    file = tmp_path / "all.nc"
+    parts = {"run": example_run(100), "second": example_run(60)}
+    for name, data in parts.items():
+        write_netcdf(data, file, group=name)
+    read = pickle.loads(pickle.dumps(read_groups(file, ["second", "run"])))
+    assert list(read) == ["second", "run"]
+    assert all(read[name].identical(parts[name]) for name in parts)
+    assert list(read_groups(file, ["no", "run"], optional=True)) == ["run"]
+    with pytest.raises(ReadError, match="no group 'no'"):
+        read_groups(file, ["run", "no"])
 
 
 def test_an_empty_table_comes_back_empty(tmp_path):

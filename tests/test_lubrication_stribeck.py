@@ -151,6 +151,12 @@ def test_the_order_of_speeds_and_what_else_is_asked_change_nothing():
     )
 
 
+def test_two_speeds_that_only_rounding_tells_apart_are_both_solved():
+    twins = np.array([1e-5, 1e-3, np.nextafter(1e-3, 1), 1e-2])
+    mu = stribeck_curve(CONTACT, None, 1.4, 310.0, "0 Pa", twins).friction_coefficient
+    assert float(mu[2]) == pytest.approx(float(mu[1]), rel=1e-9)
+
+
 def test_a_negative_speed_is_the_mirror_image():
     psd = reference_psd("Sb-S")
     both = stribeck_curve(CONTACT, psd, 1.4, 310.0, "0.84 MPa", [-1e-4, 1e-4])

@@ -12,13 +12,14 @@ import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from reporting import made_curve, made_outcome, made_run, write_groups
 
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.report.results import write_report
-from tribolab.report.run_summary import RunTask, summarise_run
+from tribolab.report.run_summary import RunTask, stick_slip_of, summarise_run
 from tribolab.report.traces import as_text, flagged_spans, trace
 from tribolab.report.wording import plain_value, with_error
 
@@ -237,6 +238,45 @@ def test_run_without_segments_is_suspect_and_has_a_trace(tmp_path):
     assert report["findings"][0]["severity"] == "suspect"
     assert [figure["kind"] for figure in report["runs"][0]["figures"]] == ["trace"]
     assert report["runs"][0]["sliding_speed_min_m_s"] is None
+
+
+def test_the_table_of_runs_says_which_stick_slip_at_how_many_speeds(tmp_path, report):
+    def sawing(run, segments, friction):
+        inside = run["time"] < segments["stop"].values[1]
+        saw = 0.3 * 31.0 * ((run["position"] / 50e-6) % 1.0)
+        run["friction_force"] += (saw * np.sign(run["sliding_velocity"])).where(inside, 0.0)
+        return run, segments, friction
+
+    made = replace(_one(tmp_path, sawing), curves=())
+    write_report(made)
+    sawn = json.loads((made.folder / "report.json").read_text())
+    valid(sawn)
+    assert sawn["runs"][0]["stick_slip"] == {
+        "class": "sawtooth stick-slip",
+        "detail": "at 1 of 3 speeds",
+    }
+    page = (made.folder / "report.html").read_text()
+    assert "sawtooth stick-slip<br><small>at 1 of 3 speeds</small>" in page
+    quiet = {"class": "smooth sliding", "detail": ""}
+    # the run that failed has none
+    assert [run["stick_slip"] for run in report["runs"]] == [quiet] * len(RUNS) + [None]
+
+
+def test_a_run_without_speeds_counts_segments_and_one_too_short_is_not_evaluated():
+    slip = made_slip(["smooth sliding", "irregular", "irregular", "not evaluated"], [np.nan] * 4)
+    assert stick_slip_of(slip) == {"class": "irregular", "detail": "in 2 of 3 segments"}
+    slip = made_slip(["irregular"] * 3, [1e-6, 2e-6, 4e-6])
+    assert stick_slip_of(slip) == {"class": "irregular", "detail": "at 3 of 3 speeds"}
+    slip = made_slip(["not evaluated"], [1e-6])
+    assert stick_slip_of(slip) == {"class": "not evaluated", "detail": ""}
+
+
+def made_slip(kinds, speeds):
+    names = ("drop", "dominant_wavelength", "dominant_frequency", "fall_share", "harmonic_content")
+    data = {name: ("segment", np.ones(len(kinds))) for name in names}
+    data["waveform"] = "segment", np.array(kinds, dtype=object)
+    data["instrument"] = "segment", np.array([""] * len(kinds), dtype=object)
+    return xr.Dataset(data | {"sliding_speed": ("segment", np.array(speeds))})
 
 
 def test_run_without_load_is_told_by_its_half_loops(tmp_path):

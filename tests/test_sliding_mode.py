@@ -89,8 +89,12 @@ def test_stick_slip_with_macroscopic_adhesion_is_suspected_and_not_claimed(saw):
     assert found.verdict == SUSPECTED
     assert "suspected" in found.text
     assert "may also vanish" in found.paragraph
-    sides = {piece.topic: piece.side for piece in found.evidence}
-    assert sides["traces"] == sides["adhesion"] == "for"
+    sides = [(piece.topic, piece.side) for piece in found.evidence]
+    assert ("traces", "for") in sides and ("adhesion", "for") in sides
+    assert ("adhesion", "against") in sides
+    sure = Mode(work_of_adhesion=0.02, work_of_adhesion_range=(0.01, 0.04))
+    sides = [(p.topic, p.side) for p in sliding_mode(curve(plateau), None, saw, sure).evidence]
+    assert ("adhesion", "against") not in sides
     assert any("plateau reaches" in p.text and p.side == "for" for p in found.evidence)
     assert found.decide
 
@@ -118,6 +122,16 @@ def test_a_model_that_fits_is_called_sufficient_and_one_that_misses_is_not(quiet
     assert good.numbers["model_misfit"] < 1e-12
     assert "sufficient" in good.text and "not sufficient" not in good.text
     assert "not sufficient" in sliding_mode(curve(mu), modelled(1e-8), quiet, known).text
+
+
+def test_friction_that_falls_with_speed_speaks_for_the_rig_and_one_that_does_not_against_it(saw):
+    # the traces of `saw` oscillate from 1 to 4 um/s
+    for slope, side, words in ((-0.2, "against", "own spring would look alike"), (0.0, "for", "")):
+        measured = curve(2.6 * (SPEEDS / 1e-6) ** slope)
+        found = sliding_mode(measured, None, saw, Mode(work_of_adhesion=0.02))
+        said = [p for p in found.evidence if "where the traces oscillate" in p.text]
+        assert [p.side for p in said] == [side]
+        assert words in said[0].text
 
 
 def test_uniform_slip_needs_the_papers_friction_of_order_ten(saw):

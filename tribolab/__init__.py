@@ -21,15 +21,18 @@ __version__ = "0.1.0"
 # `import tribolab` costs nothing.
 _PUBLIC = {
     "read": "tribolab.io.runs",
+    "draft_dialect": "tribolab.io.draft",
     "read_netcdf": "tribolab.io.netcdf",
     "write_netcdf": "tribolab.io.netcdf",
     "find_segments": "tribolab.friction.segments",
     "friction_coefficient": "tribolab.friction.coefficient",
-    "half_loops": "tribolab.friction.coefficient",
+    "half_loops": "tribolab.friction.half_loops",
     "stick_slip": "tribolab.friction.stick_slip",
     "stick_slip_curve": "tribolab.friction.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
+    "check_scans": "tribolab.qc.scan_checks",
+    "check_scan_set": "tribolab.qc.scan_sets",
     "read_scans": "tribolab.io.scans",
     "read_results": "tribolab.io.scan_results",
     "remove_form": "tribolab.surface.form",
@@ -50,6 +53,8 @@ _PUBLIC = {
     "SurfaceEnergies": "tribolab.contact.work_of_adhesion",
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
+    "film_profile": "tribolab.lubrication.stribeck",
+    "flow_factors": "tribolab.lubrication.factors",
     "fit_shear_stress": "tribolab.compare.shear_stress",
     "sliding_mode": "tribolab.compare.sliding_mode",
     "model_uncertainty": "tribolab.compare.model_uncertainty",
@@ -66,6 +71,7 @@ _PUBLIC = {
 __all__ = [
     "__version__",
     "read",
+    "draft_dialect",
     "read_netcdf",
     "write_netcdf",
     "find_segments",
@@ -75,6 +81,8 @@ __all__ = [
     "stick_slip_curve",
     "measured_stribeck_curve",
     "check",
+    "check_scans",
+    "check_scan_set",
     "read_scans",
     "read_results",
     "remove_form",
@@ -95,6 +103,8 @@ __all__ = [
     "SurfaceEnergies",
     "work_of_adhesion_spread",
     "stribeck_curve",
+    "film_profile",
+    "flow_factors",
     "fit_shear_stress",
     "sliding_mode",
     "model_uncertainty",
@@ -123,17 +133,22 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.errors import TribolabError
-    from tribolab.friction.coefficient import friction_coefficient, half_loops
+    from tribolab.friction.coefficient import friction_coefficient
+    from tribolab.friction.half_loops import half_loops
     from tribolab.friction.segments import find_segments
     from tribolab.friction.slip_curve import stick_slip_curve
     from tribolab.friction.stick_slip import stick_slip
     from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.io.draft import draft_dialect
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read
     from tribolab.io.scan_results import read_results
     from tribolab.io.scans import read_scans
-    from tribolab.lubrication.stribeck import stribeck_curve
+    from tribolab.lubrication.factors import flow_factors
+    from tribolab.lubrication.stribeck import film_profile, stribeck_curve
     from tribolab.qc.run_checks import check
+    from tribolab.qc.scan_checks import check_scans
+    from tribolab.qc.scan_sets import check_scan_set
     from tribolab.report.run import run_campaign
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus

@@ -88,25 +88,13 @@ def demo(
         tribolab demo /tmp/look
     """
     with _reported(debug):
-        from tribolab.campaign.executor import default_jobs
-        from tribolab.report.demo import compare, write
-        from tribolab.report.run import run_campaign
+        from tribolab.report.demo import run_demo
         from tribolab.report.terminal import truth_lines
-        from tribolab.rig import simulate_campaign
 
-        campaign = folder / "campaign.toml"
-        compared = []
         with progress_bars(quiet) as progress:
-            if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
-                simulate_campaign(folder, jobs=jobs or default_jobs(), progress=progress)
-            outcome = run_campaign(
-                campaign,
-                jobs=jobs,
-                progress=progress,
-                finish=lambda outcome: compared.append(write(outcome, folder)),
-            )
+            outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
         code = _show(outcome)
-        for line in truth_lines(compared[0] if compared else compare(outcome, folder), outcome):
+        for line in truth_lines(compared, outcome):
             typer.echo(line)
     raise typer.Exit(code)
 

@@ -7,7 +7,17 @@ from collections.abc import Iterable
 
 
 class TribolabError(Exception):
-    """Base of every error that tribolab raises on purpose."""
+    """Base of every error that tribolab raises on purpose.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> try:
+    ...     tl.read("nothing.csv")
+    ... except tl.TribolabError as error:
+    ...     print(error)
+    nothing.csv: there is no such file (any more)
+    """
 
 
 class ReadError(TribolabError):

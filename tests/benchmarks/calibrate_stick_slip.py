@@ -1,6 +1,6 @@
 """Fit the coefficients of the waveform's class to traces of the virtual rig, and print them.
 
-    python tests/benchmarks/calibrate_stick_slip.py --traces 1500
+    python tests/benchmarks/calibrate_stick_slip.py --traces 6000
 
 Seeds begin at 1 000 000, where no test and no table draws any. The last fifth is not fitted; how
 often its classes are right, and how often those called with 90 % are, is printed.
@@ -74,7 +74,7 @@ def fit(kind: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def main() -> None:
     """Draw, fit, judge, print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--traces", type=int, default=1500)
+    parser.add_argument("--traces", type=int, default=6000)
     wanted = parser.parse_args().traces
     drawn = [one for one in (draw(_SEED + k) for k in range(wanted)) if one is not None]
     kind = np.array([one[0] for one in drawn])

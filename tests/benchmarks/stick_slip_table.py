@@ -3,9 +3,14 @@
     python tests/benchmarks/stick_slip_table.py --seeds 20
 
 For each condition: share of traces whose dominant wavelength lies within 5 %, and mean drop within
-10 %, of what was drawn; share whose class is right. Amplitude is half a drop over the standard
-deviation of all noise (half of its variance slow, correlated over 1 % of the stroke). Then the
-share of steady traces on which nothing is claimed, and detection against amplitude.
+10 %, of the same stroke's without noise; share whose class is right. Truth is what the part that
+is looked at holds, drops of half the nominal one and more. Amplitude is half a drop over the
+standard deviation of all noise (half of its variance slow, correlated over 1 % of the stroke). Then
+the share of steady traces on which nothing is claimed, and detection against amplitude.
+
+An irregular wave has no dominant wavelength but a mean distance between drops, and a drop near the
+half may count or not: of ten cycles one more or less is ten per cent. What counts there is whether
+the mean over the seeds is right.
 """
 
 from __future__ import annotations
@@ -14,6 +19,7 @@ import argparse
 
 import numpy as np
 
+from tribolab.friction.events import turning_points
 from tribolab.friction.segments import find_segments
 from tribolab.friction.stick_slip import stick_slip
 from tribolab.rig.traces import simulate_trace
@@ -24,24 +30,41 @@ CLASS = {
     "rounded": "sinus-like oscillation",
     "irregular": "irregular",
 }
+DROP = 0.2
 _SHAPES = {"10 periods": (10, 4000), "25 periods": (25, 4000), "100 periods": (100, 4000)}
 
 
+def true_wave(run, segments) -> tuple[float, float]:
+    """Mean distance between drops [m] and mean drop, of a trace without noise."""
+    ends = segments["trimmed_start"].item(), segments["trimmed_stop"].item()
+    part = run.sel(time=slice(*ends))
+    time, values = part["time"].values, part["friction_coefficient"].values
+    turns = turning_points(values, DROP / 2)[1:-1]
+    falls = np.diff(values[turns]) < 0
+    peaks = turns[:-1][falls]
+    if peaks.size < 2:
+        return np.nan, np.nan
+    distance = np.diff(time[peaks]).mean() * run["sliding_velocity"].values[0]
+    return distance, -np.diff(values[turns])[falls].mean()
+
+
 def look(form: str, strength: float, seed: int, periods: float, samples: int, red: float = 0.5):
-    """Make one trace and look at it: class right, relative errors of wavelength and drop."""
-    run = simulate_trace(
-        form,
-        noise=0.1 / strength,
-        red=red,
-        periods=periods / 0.8,  # a tenth is trimmed off at either end
-        samples=samples,
-        jitter=0.02,
-        seed=seed,
-    )
-    found = stick_slip(run, find_segments(run)).isel(segment=0)
-    wavelength = found["dominant_wavelength"].item() / run.attrs["wavelength_m"] - 1
-    drop = found["drop"].item() / run.attrs["drop"] - 1
-    return found["waveform"].item() == CLASS[form], wavelength, drop
+    """Make one trace: is the class right, errors of wavelength and drop, is anything claimed."""
+    stroke = {
+        "red": red,
+        "periods": periods / 0.8,  # a tenth is trimmed off at either end
+        "samples": samples,
+        "jitter": 0.02,
+        "seed": seed,
+    }
+    run = simulate_trace(form, noise=DROP / 2 / strength, drop=DROP, **stroke)
+    segments = find_segments(run)
+    found = stick_slip(run, segments).isel(segment=0)
+    true = true_wave(simulate_trace(form, noise=0.0, drop=DROP, **stroke), segments)
+    wavelength = found["dominant_wavelength"].item() / true[0] - 1
+    drop = found["drop"].item() / true[1] - 1
+    kind = found["waveform"].item()
+    return kind == CLASS[form], wavelength, drop, kind != CLASS["none"]
 
 
 def main() -> None:
@@ -55,7 +78,7 @@ def main() -> None:
         for name, (periods, samples) in _SHAPES.items():
             for strength in (3.0, 10.0):
                 rows = np.array([look(form, strength, s, periods, samples) for s in seeds], float)
-                right, wave, drop = rows.T
+                right, wave, drop, _ = rows.T
                 seen = f"{np.mean(np.abs(wave) < 0.05):10.0%} {np.mean(np.abs(drop) < 0.1):11.0%}"
                 typical = f"{np.nanmean(wave):+12.1%} {np.nanmean(drop):+7.1%}"
                 what = f"{form}, {name}, amplitude {strength:g} noise"
@@ -67,12 +90,14 @@ def main() -> None:
         for red in (0.0, 0.3, 0.6, 0.9)
     ]
     print(f"steady: nothing claimed on {np.mean(quiet):.1%} of {len(quiet)}")
-    print("share seen as its class, against amplitude over noise (25 periods)")
+    print("share seen at all, and as its class, against amplitude over noise (25 periods)")
     strengths = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0)
-    print(" " * 12 + "".join(f"{s:7g}" for s in strengths))
+    print(" " * 22 + "".join(f"{s:7g}" for s in strengths))
     for form in ("sawtooth", "rounded", "irregular"):
-        shares = [np.mean([look(form, x, s, 25, 4000)[0] for s in seeds]) for x in strengths]
-        print(f"{form:12s}" + "".join(f"{share:7.0%}" for share in shares))
+        rows = np.array([[look(form, x, s, 25, 4000) for s in seeds] for x in strengths], float)
+        for words, column in (("at all", 3), ("as its class", 0)):
+            shares = rows[:, :, column].mean(axis=1)
+            print(f"{form:10s}{words:12s}" + "".join(f"{share:7.0%}" for share in shares))
 
 
 if __name__ == "__main__":

@@ -315,7 +315,7 @@ class Campaign(Table):
 
 
 def load_campaign(path: str | Path) -> Campaign:
-    """Read and check a campaign file.
+    r"""Read and check a campaign file.
 
     Parameters
     ----------
@@ -331,6 +331,20 @@ def load_campaign(path: str | Path) -> Campaign:
     ------
     ConfigError
         If anything in it is wrong: the message has the file, the line, the key and the cure.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (Path(folder) / "raw").mkdir()
+    ...     _ = (Path(folder) / "raw" / "one.csv").write_text("")
+    ...     file = Path(folder) / "campaign.toml"
+    ...     _ = file.write_text(
+    ...         '[campaign]\nname = "one"\n[medium.glycerol]\nviscosity = "1.4 Pa s"\n'
+    ...         '[[run]]\nfiles = "*.csv"\nmedium = "glycerol"\n'
+    ...     )
+    ...     load_campaign(file).medium["glycerol"].viscosity
+    1.4
     """
     import tomllib
 

@@ -18,6 +18,7 @@ SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is
 FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
 BELOW = 2.0  # times that friction lies below a uniform slip's
 WEAKER = 1.5  # times that drops differ between speeds
+FALLS = 0.10  # relative; less of a fall between two speeds is none
 FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
 
 
@@ -72,15 +73,45 @@ def adhesion(known: Mode) -> Evidence | None:
     if bounds is not None:
         span = f" (between {1e3 * bounds[0]:.2g} and {1e3 * bounds[1]:.2g})"
     if work > 0:
-        sure = bounds is None or bounds[0] > 0
-        text = f"adhesion reaches the macroscopic scale, {value}{span}"
-        if not sure:
-            text += "; within its bounds it may also vanish"
-        return Evidence(FOR, text, "adhesion")
+        return Evidence(FOR, f"adhesion reaches the macroscopic scale, {value}{span}", "adhesion")
     text = f"{value}{span}: no macroscopic instability can be driven by adhesion"
     if bounds is not None and bounds[1] > 0:
         text = f"{value}{span}: adhesion is not expected to reach the macroscopic scale, but may"
     return Evidence(AGAINST, text, "adhesion")
+
+
+def doubt(known: Mode) -> Evidence | None:
+    """Whether adhesion may vanish within its bounds."""
+    bounds = known.work_of_adhesion_range
+    if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
+        return None
+    text = "within its bounds γ_eff(1) may also vanish, and no such mode would be possible"
+    return Evidence(AGAINST, text, "adhesion")
+
+
+def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
+    """Whether friction falls with speed where the traces oscillate, as stick-slip of a rig needs.
+
+    A spring that pulls a body over friction that falls with speed sticks and slips by itself,
+    whatever the interface does; its wavelength is fixed, too.
+    """
+    if slip is None or not slip.sizes.get("sliding_speed", 0):
+        return None
+    moving = _moving(slip)["sliding_speed"].values
+    if moving.size == 0:
+        return None
+    speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values
+    part = (speed > 0.9 * moving.min()) & (speed < 1.1 * moving.max())
+    if part.sum() < 2:
+        return None
+    speed, mu = speed[part], mu[part]
+    words = f"µ = {friction_text(mu[0])} at {speed_text(speed[0])}"
+    words += f", {friction_text(mu[-1])} at {speed_text(speed[-1])}"
+    if mu[-1] < (1 - FALLS) * mu[0]:
+        text = f"friction falls with speed where the traces oscillate ({words}): stick-slip of the "
+        return Evidence(AGAINST, text + "rig's own spring would look alike", "curve")
+    text = f"friction hardly falls where the traces oscillate ({words}): a spring alone, which "
+    return Evidence(FOR, text + "needs a fall to stick and slip, hardly explains it", "curve")
 
 
 def strength(slip: xr.Dataset | None) -> Evidence | None:
@@ -127,8 +158,9 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
     if off < SUFFICIENT:
         text = "the mixed-lubrication model is sufficient: its curve misses the measured one by"
         return Evidence(AGAINST, f"{text} {percent_text(off)} of the largest friction", "curve")
-    text = "the mixed-lubrication model does not describe the measured curve: it misses by"
-    return Evidence(FOR, f"{text} {percent_text(off)} of the largest friction", "curve")
+    text = "flow and load sharing alone do not explain the measured curve: the mixed-lubrication"
+    text += f" model misses it by {percent_text(off)} of the largest friction"
+    return Evidence(FOR, text, "curve")
 
 
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:

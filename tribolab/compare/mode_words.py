@@ -24,7 +24,7 @@ def speed_text(speed: float) -> str:
     ('2.15 µm/s', '10 mm/s', '3 nm/s')
     """
     for unit, factor in (("mm/s", 1e3), ("µm/s", 1e6)):
-        if speed * factor >= 0.9995:
+        if speed * factor >= 0.95:  # a measured speed stands beside the set one
             return f"{speed * factor:.3g} {unit}"
     return f"{speed * 1e9:.3g} nm/s"
 

@@ -148,7 +148,9 @@ def sliding_mode(
         for one in (
             evidence.traces(slip),
             evidence.adhesion(known),
+            evidence.doubt(known),
             evidence.strength(slip),
+            evidence.weakening(curve, slip),
             evidence.plateau(numbers, model),
             evidence.misfit(numbers),
             evidence.uniform_slip(numbers, known),

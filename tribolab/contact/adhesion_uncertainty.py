@@ -62,6 +62,15 @@ def adhesion_uncertainty(
     monotonic curve of area over work of adhesion, solved at 15 values or more. A liquid that wets
     (negative work of adhesion) gives the area without adhesion. The spread is that of the inputs;
     that Eqs. (11), (13) and (14) are approximations is not in it.
+
+    Examples
+    --------
+    >>> from tribolab.studies import xu2026
+    >>> psd = xu2026.psd("Sb-S", points=301)
+    >>> spread = adhesion_uncertainty("0.04 MPa", psd, "2 MPa", samples=20, nodes=60)
+    >>> names = ["contact_area_ratio_low", "contact_area_ratio", "contact_area_ratio_high"]
+    >>> [round(float(spread[name].sel(medium="wet")), 2) for name in names]
+    [0.1, 0.12, 0.12]
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
     over = finite_pressures(pressure)

@@ -89,6 +89,15 @@ def gap_distribution(
     ----------
     .. [1] A. Almqvist, C. Campana, N. Prodanov, B. N. J. Persson, J. Mech. Phys. Solids 59, 2355
        (2011). doi:10.1016/j.jmps.2011.08.004
+
+    Examples
+    --------
+    >>> q, c = [1e3, 1e5, 1e8], [1e-20, 1e-20, 1e-32]
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> gaps = gap_distribution("0.04 MPa", psd, "2 MPa")
+    >>> share = float(gaps.gap_weight.sum() + gaps.contact_area_ratio)
+    >>> round(share, 3), bool(gaps.contact_area_ratio < 0.05)
+    (1.0, True)
     """
     if variant not in ("flow", "plain"):
         raise AnalysisError(f"variant: '{variant}' is none{nearest(variant, ['flow', 'plain'])}")

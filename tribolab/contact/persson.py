@@ -155,6 +155,15 @@ def mean_separation(
        doi:10.1103/PhysRevLett.99.125502
     .. [3] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
        Stribeck curve in hydrophobic soft contacts" (2026).
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> q, c = [1e3, 1e5, 1e8], [1e-20, 1e-20, 1e-32]
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> u = mean_separation("0.04 MPa", psd, "2 MPa")
+    >>> f"{1e6 * u:.2f} um"
+    '54.71 um'
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     slope, weight = slope_quadrature(*spectrum_arrays(psd))

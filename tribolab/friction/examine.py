@@ -10,13 +10,20 @@ from tribolab.friction.events import Events, find_events, without_spikes
 from tribolab.friction.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation import Oscillation, oscillation
 from tribolab.friction.spectra import Record, coarse, make_record
-from tribolab.friction.waveform import Waveform, describe_waveform
+from tribolab.friction.waveform import (
+    Waveform,
+    class_probabilities,
+    describe_waveform,
+    features,
+)
 
 PER_PERIOD = 48  # samples in a period that events are sought in, at least; more is averaged ...
 QUIET = 50.0  # ... until the noise is so many times smaller than the swing
 MOST = 1 << 17  # samples that events are sought in: thousands of periods
 DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
 STEPS = 1.5  # quantisation steps
+_AGAIN = 200  # cycles that tell how much noise adds to them
+_ROUNDS = 2
 
 
 class Limits(NamedTuple):
@@ -80,10 +87,15 @@ def examine(
         limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
     )
     events = find_events(view.time, view.values, hysteresis)
+    if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
+        typical = limits.hysteresis * float(np.mean(events.drop))
+        if typical > hysteresis:
+            hysteresis = typical
+            events = find_events(view.time, view.values, hysteresis)
     lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
     form = describe_waveform(view.values, lag, events)
-    if events.drop.size:
-        excess = noise_excess(found, form.fall_share, 0.5 / view.spacing)
+    if events.drop.size and class_probabilities(features(form, found))[0] < 0.5:
+        excess = noise_excess(view, found, events, hysteresis)
         # of a sine, its power says best how large it is: the noise's has been taken off
         sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
         mean = float(np.mean(events.drop))
@@ -92,27 +104,65 @@ def examine(
     return Examined(found, events, form, hysteresis, noise, spikes / n, force)
 
 
-def noise_excess(found: Oscillation, fall_share: float, highest: float) -> float:
-    """By how much the noise makes a swing look larger, from turn to turn.
+def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis: float) -> float:
+    """By how much the noise makes the mean drop look larger.
 
     Parameters
     ----------
+    record
+        In which the events were found.
     found
         Oscillation with its background.
-    fall_share
-        Part of a cycle that falls.
-    highest
-        Highest frequency that is left in the record [Hz].
+    events
+        Events of the record.
+    hysteresis
+        Smallest swing that counts.
+
+    Returns
+    -------
+    float
+        In the signal's unit.
 
     Notes
     -----
-    Turning points are picked where the noise adds to them: the more so, the rounder the wave. On
-    traces of the virtual rig the excess is (4.5 fall_share - 0.15) times the noise from half the
-    oscillation's frequency on, within 0.5 of the noise.
+    Turning points are picked where the noise adds to them. How much that is depends on the form,
+    on the noise and on how often it is sampled, so it is seen by doing it again: noise drawn from
+    the background's spectrum is laid on the cycles that were found, and cycles are sought once
+    more. Harmonics may have been taken for noise: what is left beside straight lines from turn to
+    turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
+    valleys alike and is left out.
     """
-    f = found.bands
-    part = (f > 0.5 * found.frequency) & (f < highest)
-    if part.sum() < 2:
-        return 0.0
-    noise = float(np.sqrt(np.trapezoid(found.background[part], f[part])))
-    return max(4.5 * fall_share - 0.15, 0.0) * noise
+    events = Events(*(part[:_AGAIN] for part in events))  # so many tell, however long the record
+    n = int(np.searchsorted(record.time, events.stop[-1])) + 1
+    frequency = np.fft.rfftfreq(n, record.spacing)
+    density = np.interp(frequency, found.bands, found.background)
+    density[frequency < 0.5 * found.frequency] = 0.0
+    height = np.sqrt(density * n / (4 * record.spacing))
+    time, cycles, rest = _cycles(record.time, record.values, events)
+    inside = np.searchsorted(record.time, time[0])
+    rng = np.random.default_rng(0)
+    for _ in range(_ROUNDS):
+        drops, rests = [np.zeros(0)], []
+        for _ in range(int(np.clip(_AGAIN / events.drop.size, 1, 32))):
+            draw = rng.standard_normal((2, height.size))
+            noise = np.fft.irfft(height * (draw[0] + 1j * draw[1]), n)
+            noisy = cycles + noise[inside : inside + time.size]
+            again = find_events(time, noisy, hysteresis)
+            drops.append(again.drop)
+            if again.drop.size:
+                rests.append(_cycles(time, noisy, again)[2])
+        if not sum(rests) > 0:  # no cycles are left, or no noise was laid on them
+            return 0.0
+        height *= min(rest * len(rests) / sum(rests), 1.0)
+    return float(np.concatenate(drops).mean() - events.drop.mean())
+
+
+def _cycles(
+    time: np.ndarray, values: np.ndarray, events: Events
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Moments within the events, straight lines from turn to turn, and what is left beside them."""
+    knots = np.append(np.stack([events.start, events.peak], axis=1).ravel(), events.stop[-1])
+    first, last = np.searchsorted(time, knots[[0, -1]])
+    time, values = time[first : last + 1], values[first : last + 1]
+    lines = np.interp(time, knots, values[np.searchsorted(time, knots)])
+    return time, lines, float(np.sqrt(np.mean((values - lines) ** 2)))

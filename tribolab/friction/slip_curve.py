@@ -62,7 +62,7 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     xarray.Dataset
         On dim ``sliding_speed``: ``segments`` that were evaluated, ``segments_oscillating`` among
         them, ``waveform`` (the most frequent of those where more than half of the segments
-        oscillate, else smooth sliding), over those means and ``_std`` of ``drop``,
+        oscillate, else smooth sliding), there means over those and ``_std`` of ``drop``,
         ``dominant_wavelength`` [m], ``dominant_frequency`` [Hz], ``fall_share``,
         ``harmonic_content``, ``period_scatter``, and of all ``oscillation_swing``: a bound of what
         could be hidden where nothing oscillates. Segments whose oscillation is a resonance of the
@@ -72,6 +72,16 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     ------
     AnalysisError
         If there is no run.
+
+    Examples
+    --------
+    >>> from tribolab.friction.segments import find_segments
+    >>> from tribolab.friction.stick_slip import stick_slip
+    >>> from tribolab.rig import simulate_trace
+    >>> run = simulate_trace("sawtooth", wavelength=22e-6, samples=1000, speed=1e-5)
+    >>> curve = stick_slip_curve([stick_slip(run, find_segments(run))])
+    >>> curve.waveform.item(), f"{1e6 * curve.dominant_wavelength.item():.0f} um"
+    ('sawtooth stick-slip', '22 um')
     """
     if not slips:
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")
@@ -114,11 +124,13 @@ def _column(slips: Sequence[xr.Dataset], name: str) -> np.ndarray:
 
 def _row(group: np.ndarray, kind: np.ndarray, columns: dict[str, np.ndarray]) -> dict:
     moving = group[kind[group] != STEADY]
-    waveform = STEADY
+    waveform, count = STEADY, moving.size
     if moving.size > 0.5 * group.size:
         names, counts = np.unique(kind[moving].astype(str), return_counts=True)
         waveform = str(names[np.argmax(counts)])
-    row = {"segments": group.size, "segments_oscillating": moving.size, "waveform": waveform}
+    else:  # what few segments show is not what the contact does
+        moving = moving[:0]
+    row = {"segments": group.size, "segments_oscillating": count, "waveform": waveform}
     for name in _MEANS:
         values = columns[name][moving]
         values = values[np.isfinite(values)]

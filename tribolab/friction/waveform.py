@@ -93,17 +93,17 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([5.22, -6.00, 0.67, 0.11])
+INTERCEPT = np.array([4.12, -5.11, 0.52, 0.46])
 COEFFICIENTS = {
-    "prominence": np.array([-0.37, -0.14, 0.44, 0.07]),
-    "significance": np.array([-0.20, 0.68, 0.27, -0.75]),
-    "strength": np.array([-1.56, -1.68, 2.01, 1.22]),
-    "share": np.array([-3.08, 0.91, 1.69, 0.47]),
-    "harmonics": np.array([0.48, 1.39, -2.49, 0.62]),
-    "asymmetry": np.array([-9.83, 17.32, -9.57, 2.08]),
-    "reversal": np.array([-0.46, -0.10, -0.03, 0.59]),
-    "skewness": np.array([1.31, -1.46, 0.75, -0.59]),
-    "scatter": np.array([1.79, 0.72, -2.74, 0.23]),
+    "prominence": np.array([-0.23, -0.40, 0.60, 0.03]),
+    "significance": np.array([-0.22, 0.65, 0.29, -0.72]),
+    "strength": np.array([-1.02, -1.59, 1.58, 1.03]),
+    "share": np.array([-2.63, 0.24, 1.85, 0.54]),
+    "harmonics": np.array([0.11, 1.83, -2.73, 0.79]),
+    "asymmetry": np.array([-10.55, 18.12, -7.97, 0.40]),
+    "reversal": np.array([-0.50, -0.03, -0.04, 0.58]),
+    "skewness": np.array([1.11, -1.23, 0.80, -0.68]),
+    "scatter": np.array([4.15, -1.28, -2.90, 0.04]),
 }
 
 

@@ -84,6 +84,11 @@ class Draft(NamedTuple):
             if FILL_IN in line
         }
 
+    def _repr_html_(self) -> str:
+        from tribolab.io.draft_show import draft_html
+
+        return draft_html(self)
+
     def first_rows(self, number: int = _SHOWN) -> dict[str, np.ndarray]:
         """Return the first rows in SI, by quantity."""
         if self.understood is None:
@@ -133,7 +138,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     >>> draft.kind, [c.quantity for c in draft.understood.columns]
     ('run', ['time', 'friction_force', 'position'])
     >>> draft.to_fill_in
-    {27: 'the unit of \'Weg\' (position), e.g. "m"'}
+    {28: 'the unit of \'Weg\' (position), e.g. "m"'}
     """
     file = peek(path)
     if file.format != "text":

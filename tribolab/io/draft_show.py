@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shlex
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from tribolab.io.draft import Draft
 from tribolab.io.draft_columns import DraftColumn
 from tribolab.quantities import quantity
 
+_PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # of raw cells that are shown side by side
 
 
@@ -43,6 +45,15 @@ def print_draft(draft: Draft, console: Console) -> None:
         console.print("guessed, so look at it:")
         for guess in draft.guesses:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
+
+
+def draft_html(draft: Draft) -> str:
+    """Return what `print_draft` prints, and what is to be filled in, for a notebook."""
+    page = Console(record=True, file=io.StringIO(), width=110, force_jupyter=False, highlight=False)
+    print_draft(draft, page)
+    for line, what in draft.to_fill_in.items():
+        page.print(f"fill in line {line} of the TOML: {escape(what)}", soft_wrap=True)
+    return page.export_html(inline_styles=True, code_format=_PRE)
 
 
 def print_next(draft: Draft, written: Path, console: Console) -> None:

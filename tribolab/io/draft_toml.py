@@ -34,7 +34,7 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
-    parts += [_time_table(understood), _speed_table(understood.kind, used)]
+    parts += [_time_table(understood), _speed_table(understood.kind, columns)]
     numbers = understood.numbers
     parts += [_column(column, numbers[:, column.place - 1]) for column in used]
     wanted = [column for column in columns if column.fill_in]
@@ -104,12 +104,16 @@ def _time_table(understood: Understood) -> str:
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
-def _speed_table(kind: str, used: list[DraftColumn]) -> str:
-    names = {column.quantity for column in used}
+def _speed_table(kind: str, columns: list[DraftColumn]) -> str:
+    names = {column.quantity for column in columns if column.used}
     if kind == "run" and "sliding_velocity" in names:
         return ""
     source = "position" if kind == "run" and "position" in names else "none"
-    return f'[speed]\nsource = "{source}"\n'
+    lines = ["[speed]", f'source = "{source}"']
+    waiting = {column.quantity for column in columns if column.fill_in}
+    if source == "none" and kind == "run" and waiting & {"position", "sliding_velocity"}:
+        lines.append('# "position" or "column", once that column (below) has its unit')
+    return "\n".join(lines) + "\n"
 
 
 def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:

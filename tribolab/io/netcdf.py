@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
+
+if TYPE_CHECKING:
+    import netCDF4
 
 CHUNK = 65_536  # samples; a default chunk would be the whole array
 _COMPRESSION = 2
@@ -56,6 +59,15 @@ def write_netcdf(
     Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
     dicts and lists among the attributes become JSON text behind the mark ``json:``. The file is
     sealed (see `tribolab.io.seal`).
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_netcdf(run.assign_attrs(checked=True), Path(folder) / "run.nc", "run")
+    ...     read_netcdf(path, "run").attrs["checked"]
+    True
     """
     path = Path(path)
     mode = mode or ("a" if group and path.exists() else "w")
@@ -96,6 +108,36 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
     -----
     A file that carries no seal, or is not what it was when it was sealed, is tried in another
     process first.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_netcdf(write_netcdf(run, Path(folder) / "run.nc")).identical(run)
+    True
+    """
+    return read_groups(path, [group])[group]
+
+
+def read_groups(
+    path: str | Path, groups: Iterable[str | None], *, optional: bool = False
+) -> dict[str | None, xr.Dataset]:
+    """Read several groups of a file, which is opened but once; as `read_netcdf` does it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    groups
+        Their names; None stands for the root.
+    optional
+        Whether groups that the file has not are passed over.
+
+    Raises
+    ------
+    ReadError
+        As `read_netcdf`.
     """
     path = Path(path)
     if not path.is_file():
@@ -105,35 +147,44 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
             try_out(path)
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
-    return _load(path, group)
+    return _load(path, list(groups), optional)
 
 
-def _load(path: Path, group: str | None) -> xr.Dataset:
+def _load(
+    path: Path, groups: Sequence[str | None], optional: bool = False
+) -> dict[str | None, xr.Dataset]:
     import netCDF4
 
     try:
         with netCDF4.Dataset(path) as file:
-            groups = list(file.groups)
-        if group == "run?":
-            group = "run" if "run" in groups else None
-        if group is not None and group not in groups:
-            raise ReadError(
-                f"{path}: there is no group '{group}'; there are {', '.join(groups) or 'none'}"
-            )
-        with xr.open_dataset(
-            path, group=group, engine="netcdf4", decode_times=False, mask_and_scale=False
-        ) as opened:
-            data = opened.load()
-        data.attrs = _decoded(data.attrs)
-        for name in data.variables:
-            data[name].attrs = _decoded(data[name].attrs)
-            data[name].encoding = {}
-        data.encoding = {}
-        return data
+            there = list(file.groups)
+            found = {}
+            for name in groups:
+                group = ("run" if "run" in there else None) if name == "run?" else name
+                if group is None or group in there:
+                    found[name] = _group(file, group)
+                elif not optional:
+                    raise ReadError(
+                        f"{path}: there is no group '{group}'; there are "
+                        f"{', '.join(there) or 'none'}"
+                    )
+        return found
     except _DAMAGE as error:
         raise ReadError(
             f"{path}: this is not a netCDF file that can be read: {brief(error)}"
         ) from error
+
+
+def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
+    store = xr.backends.NetCDF4DataStore(file, group=group)
+    data = xr.open_dataset(store, decode_times=False, mask_and_scale=False).load()
+    data.attrs = _decoded(data.attrs)
+    for name in data.variables:
+        data[name].attrs = _decoded(data[name].attrs)
+        data[name].encoding = {}
+    data.encoding = {}
+    data.set_close(None)  # it is in memory: an open file could not travel to another process
+    return data
 
 
 def _storage(variable: xr.DataArray) -> dict[str, Any]:

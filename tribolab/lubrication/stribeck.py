@@ -212,6 +212,13 @@ def film_profile(
         ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
         ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``. The
         attributes hold the proof of the point and the ``flux`` [m2/s].
+
+    Examples
+    --------
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> film = film_profile(contact, None, "1.4 Pa s", "310 N/m", "1 mm/s")
+    >>> f"{1e6 * film.separation.min():.2f} um, {1e-3 * film.pressure.max():.1f} kPa"
+    '5.89 um, 52.3 kPa'
     """
     force = positive(load, "N/m", "load")
     v = float(_speeds(speed, psd).values[0])

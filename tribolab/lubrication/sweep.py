@@ -248,10 +248,9 @@ def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
 def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: float) -> State:
     if not known:
         return start
-    (at, last) = known[-1]
-    if len(known) == 1:
+    (at, last), (before, first) = known[-1], known[0]
+    if at == before:  # one is known, or two speeds that only rounding tells apart
         return last
-    before, first = known[0]
     part = min((aim - at) / (at - before), 3.0)
     growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
     return last.moved(mesh, last.film * (growth - 1), part * (last.constant - first.constant))

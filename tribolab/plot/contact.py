@@ -46,6 +46,23 @@ def contact_area(
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
+    >>> pressure = xr.DataArray(np.geomspace(1e3, 1e6, 7), dims="pressure")
+    >>> areas = {
+    ...     name: xr.Dataset(
+    ...         {"contact_area_ratio": tl.contact_area_ratio(pressure, psd, "2 MPa")},
+    ...         {"pressure": pressure},
+    ...     )
+    ...     for name, psd in psds.items()
+    ... }
+    >>> tl.plot.figure_data(contact_area(areas)).series.unique().tolist()
+    ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(contacts), surfaces)
     with paper_style():
@@ -90,6 +107,21 @@ def adhesive_area(
     -------
     matplotlib.figure.Figure
         Dotted: without adhesion; dashed: dry; full and other lines: the other media.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
+    >>> psd, pressure = psds["Sb-S"], np.array([1e4, 1e5])
+    >>> works = xr.DataArray([0.064, 0.051], {"medium": ["dry", "glycerol"]}, "medium")
+    >>> wet = xr.concat([tl.adhesion(pressure, psd, 2e6, w, nodes=60) for w in works], works.medium)
+    >>> bare = wet.isel(medium=0)[["contact_area_ratio_no_adhesion"]]
+    >>> bare = bare.rename(contact_area_ratio_no_adhesion="contact_area_ratio")
+    >>> figure = adhesive_area({"Sb-S": bare}, {"Sb-S": wet})
+    >>> tl.plot.figure_data(figure).series.unique().tolist()
+    ['Sb-S, no adhesion', 'Sb-S, dry', 'Sb-S, glycerol']
     """
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
@@ -133,6 +165,18 @@ def effective_work(
         ``magnification``, by the surface's name, each at one pressure.
     surfaces, title
         As for `contact_area`.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
+    >>> found = {
+    ...     name: tl.adhesion(4e4, psd, 2e6, "64 mJ/m^2", nodes=60).expand_dims(medium=["dry"])
+    ...     for name, psd in psds.items()
+    ... }
+    >>> tl.plot.figure_data(effective_work(found)).series.unique().tolist()
+    ['Sb-S, dry', 'Sb-R, dry']
     """
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
@@ -169,6 +213,15 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
         ``gap_density`` [1/m] (gap) by the surface's name, each at one pressure.
     surfaces, title
         As for `contact_area`.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
+    >>> found = {name: tl.gap_distribution("0.04 MPa", psd, "2 MPa") for name, psd in psds.items()}
+    >>> tl.plot.figure_data(gaps(found)).series.unique().tolist()
+    ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(distributions), surfaces)
     with paper_style():
@@ -210,6 +263,18 @@ def line_pressure(
         x [m] and pressure [Pa] of the smooth contact.
     surfaces, title
         As for `contact_area`.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psds = {name: xu2026.psd(name, points=301) for name in ("Sb-S", "Sb-R")}
+    >>> lines = {
+    ...     name: tl.rough_line_contact("310 N/m", xu2026.contact, psd, points=101)
+    ...     for name, psd in psds.items()
+    ... }
+    >>> tl.plot.figure_data(line_pressure(lines)).series.unique().tolist()
+    ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(lines), surfaces)
     with paper_style():

@@ -64,6 +64,19 @@ def stribeck(
     ------
     AnalysisError
         If there is no finite point to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> run = rig.simulate_run("Sb-S", "dry", rig=short).noise_free
+    >>> segments = tl.find_segments(run)
+    >>> friction = tl.friction_coefficient(run, segments)
+    >>> curve = tl.measured_stribeck_curve([friction]).assign_attrs(surface="Sb-S", medium="dry")
+    >>> figure = stribeck(measured=curve)
+    >>> tl.plot.figure_data(figure).friction_coefficient.round(3).tolist()
+    [1.907, 1.934]
     """
     curves, models = _listed(measured), _listed(model)
     name = _quantity(curves + models)
@@ -244,6 +257,17 @@ def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
     ------
     AnalysisError
         If no stroke has a partner.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> run = rig.simulate_run("Sb-S", "dry", rig=short).noise_free
+    >>> segments = tl.find_segments(run)
+    >>> friction = tl.friction_coefficient(run, segments)
+    >>> tl.plot.figure_data(half_loop(friction)).half_loop_N.round(1).tolist()
+    [59.2, 60.1]
     """
     if "half_loop" not in friction or "pair" not in friction:
         raise AnalysisError("the friction result has no 'half_loop' and 'pair', so no pairs")

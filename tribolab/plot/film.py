@@ -39,14 +39,14 @@ _FRICTION = (
 )
 
 
-def film_profiles(profiles: xr.Dataset, *, title: str = "") -> PaperFigure:
+def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "") -> PaperFigure:
     """Draw separation, contact and fluid pressure across the contact at several speeds.
 
     Parameters
     ----------
     profiles
         ``x``, ``separation`` [m], ``contact_pressure``, ``fluid_pressure`` [Pa] over
-        (sliding_speed, point).
+        (sliding_speed, point); or several results of `tribolab.film_profile`, each over (x).
     title
         Text above the figure.
 
@@ -54,18 +54,31 @@ def film_profiles(profiles: xr.Dataset, *, title: str = "") -> PaperFigure:
     -------
     matplotlib.figure.Figure
         Three panels over x; the flat slides to +x, so the inlet is on the left.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psd = xu2026.psd("Sb-S", points=301)
+    >>> films = [
+    ...     tl.film_profile(xu2026.contact, psd, "1.4 Pa s", "310 N/m", v, cells=100)
+    ...     for v in ("10 um/s", "1 mm/s")
+    ... ]
+    >>> tl.plot.figure_data(film_profiles(films)).series.unique().tolist()
+    ['10 µm/s', '1 mm/s']
     """
-    speeds = profiles["sliding_speed"].values
+    if isinstance(profiles, xr.Dataset):
+        profiles = [profiles.isel(sliding_speed=n) for n in range(profiles.sliding_speed.size)]
     with paper_style():
         figure = new_figure(DOUBLE_MM, _HEIGHT)
         panels = figure.subplots(1, 3)
-        widest = 0.0
-        for rank, v in enumerate(speeds):
-            one = profiles.isel(sliding_speed=rank)
-            x = 1e3 * one["x"].values
+        widest = centre = 0.0
+        for rank, one in enumerate(profiles):
+            v, x = float(one["sliding_speed"]), 1e3 * one["x"].values
             total = (one["contact_pressure"] + one["fluid_pressure"]).values
             widest = max(widest, np.abs(x[total > 5e-3 * total.max()]).max())
-            place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(speeds) - 1, 1))
+            place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(profiles) - 1, 1))
+            centre = max(centre, float(one["separation"].values[np.abs(x).argmin()]))
             look = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
             for axes, (name, factor, _) in zip(panels, _PANELS, strict=True):
                 axes.plot(x, factor * one[name].values, **look, label=speed_text(v))
@@ -76,11 +89,9 @@ def film_profiles(profiles: xr.Dataset, *, title: str = "") -> PaperFigure:
             axes.set_xlabel("coordinate $x$ (mm)")
             axes.set_ylabel(text)
             tidy(axes, letter)
-        middle = np.abs(profiles["x"].values).argmin(axis=-1)[..., None]
-        central = np.take_along_axis(profiles["separation"].values, middle, axis=-1)
-        panels[0].set_ylim(0, 4e6 * central.max())  # the gap outside grows without end
+        panels[0].set_ylim(0, 4e6 * centre)  # the gap outside grows without end
         for axes in panels[1:]:
-            axes.set_ylim(0, 1.18 * axes.dataLim.y1)
+            axes.set_ylim(0, 1.18 * axes.dataLim.y1 or 1)  # smooth bodies do not touch
         margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.32)
         handles, texts = panels[0].get_legend_handles_labels()
         figure.legend(
@@ -109,6 +120,16 @@ def lubrication_factors(
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> table = tl.flow_factors(xu2026.psd("Sb-S", points=301))
+    >>> over = table.rms_roughness * np.geomspace(0.3, 3, 5)
+    >>> figure = lubrication_factors({"Sb-S": table.dataset(over)})
+    >>> tl.plot.figure_data(figure).pressure_flow_factor.dropna().round(2).tolist()
+    [0.0, 0.09, 0.35, 0.61, 0.8]
     """
     chosen = colours(list(factors), surfaces)
     with paper_style():

@@ -41,8 +41,9 @@ def mixed_curve(
     Parameters
     ----------
     fit
-        ``friction_coefficient`` with ``_std``, ``_sem`` and ``_model`` (sliding_speed), and
-        ``friction_coefficient_residual``: the group "fit" of a model's data file.
+        ``friction_coefficient`` with ``_sem`` and, where known, ``_std`` (sliding_speed), and
+        ``friction_coefficient_residual`` from `tribolab.fit_shear_stress`: the group "fit" of a
+        model's data file.
     curve
         The model over a wider range of speeds, with its parts.
     uncertainty
@@ -60,6 +61,22 @@ def mixed_curve(
         Above: points with wide pale bars (standard deviation) and narrow ones (standard error),
         the model as a line, its solid part dashed and its viscous part dotted, dry points open.
         Below: measured less model, with the standard errors.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psd, given = xu2026.psd("Sb-S", 301), {"viscosity": 1.4, "load": 310.0, "cells": 100}
+    >>> speed = [1e-6, 1e-5, 1e-4, 1e-3]
+    >>> curve = tl.stribeck_curve(xu2026.contact, psd, shear_stress=8e5, speed=speed, **given)
+    >>> measured = curve[["friction_coefficient"]] * 1.01
+    >>> measured["friction_coefficient_sem"] = 0.01 * measured.friction_coefficient
+    >>> fit = tl.fit_shear_stress(measured, xu2026.contact, psd, **given)
+    >>> residual = fit.curve.friction_coefficient_residual
+    >>> points = measured.assign(friction_coefficient_residual=residual)
+    >>> figure = mixed_curve(points, curve, surface="Sb-S")
+    >>> tl.plot.figure_data(figure).series.unique().tolist()
+    ['model', 'solid', 'viscous', 'measured', 'measured less model']
     """
     style = surface_styles([*surfaces, surface])[surface]
     with paper_style():
@@ -188,6 +205,23 @@ def shear_stress(
     matplotlib.figure.Figure
         Open symbols: effective, for the area without adhesion, with the 95 % interval. Filled:
         corrected for adhesion, with 1.96 standard errors.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> table = pd.DataFrame(
+    ...     {
+    ...         "surface": "Sb-S",
+    ...         "normal_force_N": [31.0, 91.0],
+    ...         "shear_stress_Pa": [0.84e6, 0.78e6],
+    ...         "shear_stress_low_Pa": [0.80e6, 0.75e6],
+    ...         "shear_stress_high_Pa": [0.88e6, 0.81e6],
+    ...         "corrected_shear_stress_Pa": [0.49e6, 0.47e6],
+    ...         "corrected_shear_stress_error_Pa": [0.03e6, 0.03e6],
+    ...     }
+    ... )
+    >>> figure_data(shear_stress(table)).shear_stress_Pa.tolist()
+    [840000.0, 780000.0]
     """
     names = list(dict.fromkeys(table["surface"]))
     styles = surface_styles([*surfaces, *names])
@@ -235,6 +269,16 @@ def friction_factor_effect(
         name.
     surfaces, title
         As for `mixed_curve`.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> curve = tl.stribeck_curve(
+    ...     xu2026.contact, xu2026.psd("Sb-R", 301), 1.4, 310.0, "1 MPa", [1e-4, 1e-3], cells=100
+    ... )
+    >>> tl.plot.figure_data(friction_factor_effect({"Sb-R": curve})).friction.round(3).tolist()
+    [1.011, 0.865, 1.008, 0.838]
     """
     chosen = colours(list(curves), surfaces)
     with paper_style():

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Bbox, TransformedBbox
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.labels import aligned, column, plain, speed_text
+from tribolab.plot.labels import MINUS, aligned, column, number, plain, speed_text
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal
 from tribolab.plot.signals import strokes as find_strokes
@@ -19,7 +25,6 @@ from tribolab.plot.style import (
     MEAN,
     SKY,
     PaperFigure,
-    margins,
     new_figure,
     paper_style,
 )
@@ -65,6 +70,17 @@ def strokes(
     ------
     AnalysisError
         If there is no segment to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> run = rig.simulate_run("Sb-S", "dry", rig=short).noise_free
+    >>> segments = tl.find_segments(run)
+    >>> friction = tl.friction_coefficient(run, segments)
+    >>> tl.plot.figure_data(strokes(run, segments, friction)).panel.unique().tolist()
+    ['100 µm/s', '1 mm/s']
     """
     signal = main_signal(run, friction)
     parts = find_strokes(run, segments)
@@ -81,15 +97,14 @@ def strokes(
     budget = int(np.clip(_POINTS // lines, 30, 300))
     with paper_style():
         figure = new_figure(DOUBLE_MM, height + 19.0)
-        grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 8, wspace=0.085 * across, hspace=5.0 / panel_height)
-        for axes, group in zip(grid.flat, shown, strict=False):
-            _panel(figure, axes, group, signal, friction, budget, narrow=across > 4)
-        for axes in grid.flat[len(shown) :]:
-            axes.remove()
-        for k, axes in enumerate(grid.flat[: len(shown)]):
-            below = k + across < len(shown)
-            axes.tick_params(labelbottom=not below)
+        sheet = _sheet(figure, height + 19.0)
+        wide = (DOUBLE_MM - 18.0) / (across + (across - 1) * 0.085 * across)
+        for k, group in enumerate(shown):
+            row, column_ = divmod(k, across)
+            left = 15.0 + column_ * wide * (1 + 0.085 * across)
+            cell = _Cell(sheet, left, 11.0 + (down - 1 - row) * (panel_height + 5.0), wide)
+            _panel(figure, cell, panel_height, group, signal, friction, budget, across > 4)
+            cell.ticks_below(panel_height, labelled=k + across >= len(shown))
         unit = "" if signal.name == "friction_coefficient" else " (N)"
         word = r"friction coefficient $\mu$" if not unit else r"friction force $F_x$ (N)"
         figure.supylabel(word, x=2.5 / DOUBLE_MM, fontsize=8, va="center")
@@ -102,6 +117,13 @@ def strokes(
             heading += f"  ({len(shown)} of {len(groups)} speeds shown)"
         figure.text(15 / DOUBLE_MM, 1 - 1.6 / (height + 19), heading.strip(), va="top", fontsize=8)
     return figure
+
+
+def _sheet(figure: PaperFigure, height: float) -> Axes:
+    """Axes over the whole figure, in mm: a run may have two dozen panels, and axes are slow."""
+    sheet = figure.add_axes((0, 0, 1, 1), xlim=(0, DOUBLE_MM), ylim=(0, height), autoscale_on=False)
+    sheet.set_axis_off()
+    return sheet
 
 
 def _by_speed(parts: list[Stroke]) -> list[list[Stroke]]:
@@ -131,16 +153,25 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
     return [part for side in sides for part in _evenly(side, _MOST_LINES)]
 
 
-def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int, narrow: bool) -> None:
+def _panel(
+    figure: PaperFigure,
+    cell: _Cell,
+    height: float,
+    group: list[Stroke],
+    signal: Signal,
+    friction: xr.Dataset | None,
+    budget: int,
+    narrow: bool,
+) -> None:
     panel = speed_text(float(np.median([part.speed for part in group])))
     chosen = _chosen(group)
-    every = []
+    every, traces, means = [], [], []
     for part in chosen:
         length = part.distance[-1] or 1.0
         sign = _sign(part, signal, friction)
         x, y = envelope(part.distance / length, sign * signal.values[part.samples], budget)
         colour = _COLOURS[int(np.sign(part.direction))]
-        axes.plot(x, y, color=colour, linewidth=0.5, alpha=0.65, zorder=3)
+        traces.append((x, y, colour))
         numbers = {"distance_over_length": x, column(signal.name): y}
         figure.keep(panel, f"segment {part.number}", **numbers)
         counted = (x >= part.trimmed[0] / length) & (x <= part.trimmed[1] / length)
@@ -149,28 +180,111 @@ def _panel(figure, axes: Axes, group, signal: Signal, friction, budget: int, nar
             mean = float(friction[signal.name][part.number])
             mean = mean if signal.name == "friction_coefficient" else sign * mean
             inner = np.array(part.trimmed) / length
-            axes.plot(inner, [mean, mean], color=MEAN, linewidth=0.9, zorder=5)
+            means.append((inner, np.array([mean, mean])))
     trimmed = np.array([np.array(part.trimmed) / (part.distance[-1] or 1.0) for part in chosen])
-    for a, b in ((0.0, trimmed[:, 0].min()), (trimmed[:, 1].max(), 1.0)):
-        axes.axvspan(a, b, color="#E4E4E4", linewidth=0, zorder=0)
     values = np.concatenate(every)
     values = values[np.isfinite(values)]
-    room = 0.6 if narrow else 0.4  # for the text, of two lines in a narrow panel
+    low, high = 0.0, 1.0
     if values.size:
+        room = 0.6 if narrow else 0.4  # for the text, of two lines in a narrow panel
         low, high = values.min(), values.max()
         span = max(high - low, 0.02 * abs(high)) or 1.0
-        axes.set_ylim((low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + room * span)
-    axes.set_xlim(0, 1)
-    axes.yaxis.set_major_locator(MaxNLocator(3))
-    axes.tick_params(top=False, right=False)
-    axes.set_xticks([0, 0.5, 1], ["0", "0.5", "1"])
+        low, high = (low + high - span) / 2 - 0.15 * span, (low + high + span) / 2 + room * span
+    cell.frame(height, low, high)
+    for a, b in ((0.0, trimmed[:, 0].min()), (trimmed[:, 1].max(), 1.0)):
+        cell.shade(a, b)
+    for x, y, colour in traces:
+        cell.line(x, y, color=colour, linewidth=0.5, alpha=0.65, zorder=3)
+    for x, y in means:
+        cell.line(x, y, color=MEAN, linewidth=0.9, zorder=5)
     left = panel if len(chosen) == len(group) else f"{panel} ({len(chosen)} of {len(group)})"
-    inset = {"textcoords": "offset points", "xycoords": "axes fraction", "va": "top"}
-    axes.annotate(left, (0, 1), xytext=(3, -3), fontsize=7, zorder=6, **inset)
-    text = _mean_text(group, signal, friction)
-    corner, side = ((0, 1), (3, -11.5)) if narrow else ((1, 1), (-3, -3))
-    align = "left" if narrow else "right"
-    axes.annotate(text, corner, xytext=side, ha=align, fontsize=7, zorder=6, **inset)
+    cell.say(left, "left", 1.0)
+    cell.say(_mean_text(group, signal, friction), *(("left", 4.0) if narrow else ("right", 1.0)))
+
+
+class _Cell:
+    """A panel on the sheet: places in it are 0 to 1 across, and values up.
+
+    Parameters
+    ----------
+    sheet
+        From `_sheet`.
+    left, bottom, width
+        Its place [mm].
+    """
+
+    def __init__(self, sheet: Axes, left: float, bottom: float, width: float) -> None:
+        self.sheet, self.left, self.bottom, self.width = sheet, left, bottom, width
+
+    def frame(self, height: float, low: float, high: float) -> None:
+        """Draw the frame and the ticks of the values from `low` to `high`."""
+        self.height, self.low, self.scale = height, low, height / (high - low)
+        self.box = TransformedBbox(
+            Bbox.from_bounds(self.left, self.bottom, self.width, height), self.sheet.transData
+        )
+        self._add(Rectangle((self.left, self.bottom), self.width, height, fill=False, **_EDGE))
+        ticks = MaxNLocator(3).tick_values(low, high)
+        ticks = ticks[(ticks >= low) & (ticks <= high)]
+        for tick, text in zip(ticks, _tick_labels(ticks), strict=True):
+            y = self.bottom + (tick - low) * self.scale
+            self._add(Line2D([self.left, self.left + _TICK], [y, y], **_LINE))
+            self.sheet.text(self.left - 1.2, y, text, ha="right", va="center", fontsize=7)
+
+    def ticks_below(self, height: float, *, labelled: bool) -> None:
+        """Draw the ticks of the places in the stroke."""
+        for place, text in ((0.0, "0"), (0.5, "0.5"), (1.0, "1")):
+            x = self.left + place * self.width
+            self._add(Line2D([x, x], [self.bottom, self.bottom + min(_TICK, height)], **_LINE))
+            if labelled:
+                self.sheet.text(x, self.bottom - 1.2, text, ha="center", va="top", fontsize=7)
+
+    def line(self, x: np.ndarray, y: np.ndarray, **look: Any) -> None:
+        """Draw values over places; what lies outside the frame is cut off."""
+        up = self.bottom + (y - self.low) * self.scale
+        line = Line2D(self.left + x * self.width, up, **look)
+        self._add(line)
+        line.set_clip_box(self.box)
+
+    def shade(self, begin: float, end: float) -> None:
+        """Shade the places from `begin` to `end`."""
+        corner = (self.left + begin * self.width, self.bottom)
+        size = ((end - begin) * self.width, self.height)
+        self._add(Rectangle(corner, *size, color="#E4E4E4", linewidth=0, zorder=0))
+
+    def say(self, text: str, side: str, below: float) -> None:
+        """Write into a corner, so far below the upper edge [mm]."""
+        if text:
+            x = self.left + 1.0 if side == "left" else self.left + self.width - 1.0
+            y = self.bottom + self.height - below
+            self.sheet.text(x, y, text, ha=side, va="top", fontsize=7, zorder=6)
+
+    def _add(self, artist: Artist) -> None:
+        # the sheet's own limits need no look at what is on it
+        self.sheet.add_artist(artist)
+
+
+_TICK = 1.0  # mm
+_LINE = {"color": "#222222", "linewidth": 0.6, "zorder": 4}
+_EDGE = {"edgecolor": "#222222", "linewidth": 0.6, "zorder": 4}
+
+
+def _tick_labels(ticks: np.ndarray) -> list[str]:
+    """Write numbers with as many decimals as their distance asks for."""
+    if len(ticks) < 2:
+        return [number(float(tick)) for tick in ticks]
+    step = float(ticks[1] - ticks[0])
+    decimals = next(
+        (
+            d
+            for d in range(5)
+            if np.isclose(step * 10**d % 1, 0, atol=1e-6)
+            or np.isclose(step * 10**d % 1, 1, atol=1e-6)
+        ),
+        None,
+    )
+    if decimals is None:
+        return [number(float(tick)) for tick in ticks]
+    return [f"{tick + 0.0:.{decimals}f}".replace("-", MINUS) for tick in ticks]
 
 
 def _sign(part: Stroke, signal: Signal, friction) -> float:
@@ -190,13 +304,10 @@ def _mean_text(group: list[Stroke], signal: Signal, friction) -> str:
     means = np.array([float(friction[signal.name][part.number]) for part in group])
     if not np.isfinite(means).any():
         return ""
-    return rf"$\mu$ = {aligned(float(np.nanmean(means)))}"
+    return f"µ = {aligned(float(np.nanmean(means)))}"
 
 
 def _key(figure: PaperFigure, parts: list[Stroke], means: bool, height: float) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     words = {1: "forward", -1: "backward", 0: "direction unknown"}
     seen = sorted({int(np.sign(part.direction)) for part in parts}, reverse=True)
     handles = [Line2D([], [], color=_COLOURS[d], linewidth=0.8, label=words[d]) for d in seen]

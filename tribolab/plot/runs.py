@@ -65,6 +65,18 @@ def trace(
     ------
     AnalysisError
         If the run has neither a friction force nor a friction coefficient.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> run = rig.simulate_run("Sb-S", "dry", rig=short).noise_free
+    >>> segments = tl.find_segments(run)
+    >>> friction = tl.friction_coefficient(run, segments)
+    >>> figure = trace(run, segments, friction, title="Sb-S, dry")
+    >>> tl.plot.figure_data(figure).panel.unique().tolist()
+    ['time', 'motion', 'distance']
     """
     signal = main_signal(run, friction)
     parts = strokes(run, segments)

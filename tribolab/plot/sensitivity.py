@@ -44,6 +44,15 @@ def model_sensitivity(
     matplotlib.figure.Figure
         Bars: the largest change of mu over all speeds, up and down, over the height of the curve,
         for the low and the high end of each range; the longest on top.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
+    >>> spread = tl.model_uncertainty(xu2026.contact, None, speed=[1e-3, 1e-1], cells=100, **given)
+    >>> tl.plot.figure_data(model_sensitivity(spread)).panel.unique().tolist()
+    ['band', 'bars']
     """
     colour = surface_styles([*surfaces, surface])[surface].colour
     v, mu = (uncertainty[name].values for name in ("sliding_speed", "friction_coefficient"))

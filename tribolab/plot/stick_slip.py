@@ -43,6 +43,13 @@ class Trace(NamedTuple):
     """One stroke to draw: what to call it, its run, segments and friction, number of the segment.
 
     `surface` chooses the colour.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> Trace("dry", run, tl.find_segments(run), None, 0, "Smooth").label
+    'dry'
     """
 
     label: str
@@ -76,6 +83,14 @@ def slip_traces(
     ------
     AnalysisError
         If there is nothing to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> figure = slip_traces([Trace("dry", run, tl.find_segments(run), None, 0, "Smooth")])
+    >>> tl.plot.figure_data(figure).series.unique().tolist()
+    ['dry']
     """
     drawn = [(trace, *_distance(trace)) for trace in traces]
     drawn = [one for one in drawn if one[1].size > 1]
@@ -111,7 +126,6 @@ def slip_traces(
                 xycoords=("axes fraction", "data"),
                 va="center",
                 fontsize=6.5,
-                color=colour,
                 annotation_clip=False,
             )
             figure.keep("traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
@@ -155,20 +169,29 @@ def slip_spectra(slips: Mapping[str, tuple[xr.Dataset, int]]) -> PaperFigure:
     ------
     AnalysisError
         If there is nothing to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> slip = tl.stick_slip(run, tl.find_segments(run))
+    >>> tl.plot.figure_data(slip_spectra({"dry": (slip, 0)})).series.unique().tolist()
+    ['psd']
     """
     if not slips:
         raise AnalysisError("there is no spectrum to draw")
     across = 2 if len(slips) == 4 else min(len(slips), 3)
     down = -(-len(slips) // across)
     with paper_style():
-        figure = new_figure(DOUBLE_MM, 12.0 + 58.0 * down)
+        figure = new_figure(DOUBLE_MM, 15.0 + 58.0 * down)
         grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 15, wspace=0.3, hspace=0.62)
+        margins(figure, 15, 3, 11, 18, wspace=0.3, hspace=0.62)
         for axes, (label, (slip, number)) in zip(grid.flat, slips.items(), strict=False):
             _spectrum(figure, axes, label, slip, number)
         for axes in grid.flat[len(slips) :]:
             axes.remove()
-        grid.flat[0].legend(loc="lower left", fontsize=6)
+        handles, words = grid.flat[0].get_legend_handles_labels()
+        figure.legend(handles, words, loc="upper center", ncols=3, fontsize=6.5)
     return figure
 
 
@@ -234,6 +257,14 @@ def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -
     ------
     AnalysisError
         If there is no event.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> slip = tl.stick_slip(run, tl.find_segments(run))
+    >>> len(slip_events({"dry": slip}).axes)
+    3
     """
     shown = {label: slip for label, slip in slips.items() if slip.sizes.get("event", 0)}
     if not shown:
@@ -292,6 +323,14 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
     ------
     AnalysisError
         If there is nothing to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> curve = tl.stick_slip_curve([tl.stick_slip(run, tl.find_segments(run))])
+    >>> tl.plot.figure_data(waveform_map({"dry": curve}))["drop"].round(2).tolist()
+    [0.19]
     """
     if not curves:
         raise AnalysisError("there is no stick-slip to map")
@@ -319,6 +358,9 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
                 [], [], 22, marker=marker, facecolors=filled, edgecolors=colour, label=kind,
                 linewidths=0.7,
             )  # fmt: skip
+        speeds = np.concatenate([curve["sliding_speed"].values for curve in curves.values()])
+        if speeds.size:  # stated, as a single speed has no range of its own
+            axes.set_xlim(speeds.min() / 1.8, 1.8 * speeds.max())
         logarithmic(axes, "x")
         axes.set_yticks(range(len(curves)), [plain(label) for label in curves])
         axes.set_ylim(-0.7, len(curves) - 0.3)

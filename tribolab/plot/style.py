@@ -106,6 +106,12 @@ class PaperFigure(Figure):
         """Remember the numbers that were drawn; `figure_data` hands them out."""
         self._numbers.append({"panel": panel, "series": series, **columns})
 
+    def _ipython_display_(self) -> None:
+        # the inline backend of pyplot would show any Figure at half this resolution
+        from IPython.display import display
+
+        display({"image/png": self._repr_png_()}, raw=True)
+
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
         with paper_style():
@@ -126,6 +132,18 @@ def figure_data(figure: Figure) -> pd.DataFrame:
     pandas.DataFrame
         A row per drawn point; `panel` and `series` say where it stands, the other columns carry
         their unit in the name (``sliding_speed_m_s``).
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> import tribolab as tl
+    >>> curve = xr.Dataset(
+    ...     {"friction_coefficient": ("sliding_speed", [0.3, 0.4])}, {"sliding_speed": [1e-4, 1e-3]}
+    ... )
+    >>> figure_data(tl.plot.stribeck(measured=curve))[["sliding_speed_m_s", "friction_coefficient"]]
+       sliding_speed_m_s  friction_coefficient
+    0             0.0001                   0.3
+    1             0.0010                   0.4
     """
     numbers = [pd.DataFrame(columns) for columns in getattr(figure, "_numbers", [])]
     return pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
@@ -264,6 +282,16 @@ def svg(figure: Figure) -> str:
     """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
 
     Coordinates are rounded to 0.01 pt (4 um on paper), which makes a trace less than half as long.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> import tribolab as tl
+    >>> curve = xr.Dataset(
+    ...     {"friction_coefficient": ("sliding_speed", [0.3, 0.4])}, {"sliding_speed": [1e-4, 1e-3]}
+    ... )
+    >>> svg(tl.plot.stribeck(measured=curve)).strip().endswith("</svg>")
+    True
     """
     buffer = io.StringIO()
     with paper_style():
@@ -272,7 +300,27 @@ def svg(figure: Figure) -> str:
 
 
 def save(figure: Figure, path: str | Path) -> Path:
-    """Write the figure as SVG, or as any format that matplotlib knows by the file's ending."""
+    """Write the figure as SVG, or as any format that matplotlib knows by the file's ending.
+
+    Parameters
+    ----------
+    figure
+        What one of the functions of `tribolab.plot` returned.
+    path
+        The file; its folder must be there.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import xarray as xr
+    >>> import tribolab as tl
+    >>> curve = xr.Dataset(
+    ...     {"friction_coefficient": ("sliding_speed", [0.3, 0.4])}, {"sliding_speed": [1e-4, 1e-3]}
+    ... )
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save(tl.plot.stribeck(measured=curve), Path(folder) / "curve.svg").name
+    'curve.svg'
+    """
     path = Path(path)
     if path.suffix.lower() == ".svg":
         path.write_text(svg(figure), encoding="utf-8")

@@ -46,6 +46,14 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
     ------
     AnalysisError
         If there is no spectrum to draw.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab import rig
+    >>> psd = tl.extrapolate(tl.psd_2d(rig.scans("Sb-R", 2, length=2e-3)))
+    >>> tl.plot.figure_data(spectra({"Sb-R": psd})).series.unique().tolist()
+    ['Sb-R']
     """
     if not psds:
         raise AnalysisError("there is nothing to draw: no spectrum was given")
@@ -99,6 +107,20 @@ def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
         ``storage_modulus``, ``loss_modulus`` [Pa] (angular_frequency).
     title
         Text above the figure.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> numbers = np.array([[1e6, 1e7, 1e8], [1e5, 5e6, 2e7]])
+    >>> table = xr.Dataset(
+    ...     {
+    ...         "storage_modulus": ("angular_frequency", numbers[0]),
+    ...         "loss_modulus": ("angular_frequency", numbers[1]),
+    ...     },
+    ...     {"angular_frequency": [1.0, 1e3, 1e6]},
+    ... )
+    >>> figure_data(modulus(table)).series.unique().tolist()
+    ['storage_modulus', 'loss_modulus']
     """
     omega = table.angular_frequency.values
     with paper_style():
@@ -133,6 +155,16 @@ def viscoelastic(
         has something in brackets behind its name, such as "Smooth (complete contact)", is dashed.
     surfaces, title
         As for `spectra`.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> mu = xr.Dataset(
+    ...     {"friction_coefficient": ("sliding_speed", [0.01, 0.03, 0.02])},
+    ...     {"sliding_speed": [1e-6, 1e-4, 1e-2]},
+    ... )
+    >>> figure_data(viscoelastic({"Sb-R": mu})).friction_coefficient.tolist()
+    [0.01, 0.03, 0.02]
     """
     chosen = colours(list(frictions), surfaces)
     with paper_style():

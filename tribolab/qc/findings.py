@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 FAIL_ON = ("suspect", "fail", "never")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Findings:
     """What every check said about one run or one set of scans.
 
@@ -84,8 +84,31 @@ class Findings:
         found = [result.status for _, result in self.results]
         return {status: found.count(status) for status in STATUSES}
 
+    def __repr__(self) -> str:
+        """Name, status, and a line for each objection."""
+        told = [row for row in self.rows if row["status"] in ("suspect", "fail", "error")]
+        lines = [f"  {row['status']} {row['check']}: {row['message']}" for row in told]
+        return "\n".join([f"{self.name}: {self.status}", *lines])
+
     def _repr_html_(self) -> str:
-        return self.table.to_html(index=False)
+        """Objections and notes; everything that was asked, folded away."""
+        import html
+
+        objections = self.table["status"].isin(("suspect", "fail", "error"))
+        noted = np.array([row["noted"] for row in self.rows], dtype=bool)
+        columns = ["check", "status", "variable", "message", "cure"]
+        told = self.table.assign(status=self.table["status"].where(~noted, "note"))[columns]
+        told = told[objections | noted]
+        look = {"text-align": "left", "vertical-align": "top"}
+        short, long = (
+            rows.style.hide().format(na_rep="", escape="html").set_properties(**look).to_html()
+            for rows in (told, self.table.drop(columns="name"))
+        )
+        counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)
+        return (
+            f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(told) else ''}"
+            f"<details><summary>everything that was asked: {counted}</summary>{long}</details>"
+        )
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:

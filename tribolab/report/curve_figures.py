@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.plot.labels import force_text
 from tribolab.report.document import labels
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.tables import curve_table
 from tribolab.report.wording import many, plain_value, span, speeds
 
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import CurveOutcome
 
-_ALONE = threading.Lock()
 _MOST_IN_ONE = 9  # curves that can be told apart in one figure
 _BARS = (
     "Markers: mean over the strokes; wide pale bars: standard deviation while sliding; narrow bars "
@@ -102,7 +100,7 @@ def draw_curves(task: CurveFigure) -> dict[str, str]:
     """Draw one figure into the results and return its record."""
     from tribolab import plot
 
-    with _ALONE:
+    with DRAWING:
         data = [read_curve(task.folder, curve) for curve in task.curves]
     values = [v for curve in data for v in curve["friction_coefficient"].values.tolist()]
     speed = [v for curve in data for v in curve["sliding_speed"].values.tolist()]
@@ -112,6 +110,6 @@ def draw_curves(task: CurveFigure) -> dict[str, str]:
         f"µ from {span(values)}."
     )
     caption = f"{task.title}. {_BARS}"
-    with _ALONE:
+    with DRAWING:
         figure = plot.stribeck(data, surfaces=task.surfaces, title=task.title)
         return save_figure(figure, task.folder, task.file, caption, alt) | {"kind": task.kind}

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from tribolab.campaign.executor import workers
 from tribolab.report.truth import Comparison, compare_with_truth, write_truth
 from tribolab.report.truth_shear_stress import compare_shear_stress, write_truth_shear_stress
 from tribolab.report.truth_surfaces import compare_surfaces, write_truth_surfaces
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.pipeline import Progress
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,45 @@ class DemoComparison:
     paper: pd.DataFrame
 
 
-def write(outcome: Outcome, folder: Path) -> DemoComparison:
-    """Compare, and write ``truth*.csv`` and ``paper.csv``."""
+def run_demo(
+    folder: Path, *, jobs: int | None = None, progress: Progress | None = None
+) -> tuple[Outcome, DemoComparison]:
+    """Simulate the reference campaign if it is not there yet, analyse it, and compare.
+
+    Parameters
+    ----------
+    folder
+        The campaign's folder.
+    jobs
+        Number of processes; 1 does everything here. By default one per processor.
+    progress
+        Called as ``progress(stage, done, total)``.
+    """
+    from tribolab.report.run import run_campaign
+    from tribolab.rig import simulate_campaign
     from tribolab.studies.comparison import compare_with_paper
 
-    paper = compare_with_paper()
+    campaign = folder / "campaign.toml"
+    compared = []
+    with workers(jobs) as pool:
+        if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
+            simulate_campaign(folder, executor=pool, progress=progress)
+        # begun early: it fills what the stages of the campaign leave idle
+        paper = pool.submit(compare_with_paper) if pool else None
+        outcome = run_campaign(
+            campaign,
+            executor=pool,
+            jobs=None if pool else 1,
+            progress=progress,
+            finish=lambda outcome: compared.append(
+                _write(outcome, folder, paper.result() if paper else compare_with_paper())
+            ),
+        )
+    return outcome, compared[0] if compared else compare(outcome, folder)
+
+
+def _write(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
+    """Compare, and write ``truth*.csv`` and ``paper.csv``."""
     runs, surfaces = write_truth(outcome, folder), write_truth_surfaces(outcome, folder)
     paper.to_csv(_paper_file(outcome), index=False, float_format="%.6g", lineterminator="\n")
     stresses = write_truth_shear_stress(outcome, folder)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+# Matplotlib's fonts and the netCDF library are not made for several threads.
+DRAWING = threading.Lock()
 
 
 def save_figure(figure: Figure, folder: Path, file: str, caption: str, alt: str) -> dict[str, str]:

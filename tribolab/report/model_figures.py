@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.plot.labels import force_text
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.model_records import ModelRows, shear_stress_table
 from tribolab.report.wording import span
 
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import ModelOutcome, Outcome
 
-_ALONE = threading.Lock()
 _MOST_IN_ONE = 9  # surfaces or loads that can be told apart in one figure
 
 
@@ -117,7 +115,7 @@ def _dry(outcome: Outcome, model: ModelOutcome) -> str:
 def draw_model(task: ModelFigure) -> dict[str, str]:
     """Draw one figure into the results and return its record."""
     draw, caption = _KINDS[task.kind]
-    with _ALONE:
+    with DRAWING:
         figure, numbers = draw(task)
         text = f"{task.title}. {caption}"
         alt = f"{task.title}. {numbers} {caption}"

@@ -81,10 +81,10 @@ def model_rows(outcome: Outcome, model: ModelOutcome) -> ModelRows:
         If the file or one of its groups cannot be read.
     """
     from tribolab.compare.spectrum_error import shear_stress_shift
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.netcdf import read_groups
 
     path = Path(outcome.folder) / model.data_file
-    groups = {part: read_netcdf(path, group=part) for part in model.parts}
+    groups = read_groups(path, model.parts)
     rows = ModelRows(model, None, frame(groups["curve"], "sliding_speed"))
     if "fit" in groups:
         attrs = groups["fit"].attrs

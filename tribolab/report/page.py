@@ -182,6 +182,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
         "why": judgement.why,
+        "stem": lambda file: Path(file).stem,
         "numbers": lambda file: Markup(as_text((folder / file).read_text(encoding="utf-8"))),
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }

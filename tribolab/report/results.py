@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from tribolab.report.model_figures import draw_model
 from tribolab.report.model_part import write_models
 from tribolab.report.page import PageTrace, write_page
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
-from tribolab.report.sliding_figures import draw_sliding
+from tribolab.report.sliding_figures import SlipFigure, draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
 from tribolab.report.traces import trace_points
@@ -63,16 +63,18 @@ def write_report(
         findings += summary.findings
     curves, points = _curves(outcome, summaries, findings)
     readable = {curve["name"] for curve in curves}
-    tasks = plan_figures([c for c in outcome.curves if c.name in readable], folder)
-    figures = _drawn(draw_curves, tasks, "curves' figures", executor, tell, findings)
     rows = _surfaces(outcome, findings)
     done = [surface for surface in outcome.surfaces if surface.name in rows]
-    tasks = plan_surface_figures(done, folder)
-    drawn = _drawn(draw_surfaces, tasks, "surfaces' figures", executor, tell, findings)
-    models, tasks = write_models(outcome, findings)
-    model_figures = _drawn(draw_model, tasks, "models' figures", executor, tell, findings)
+    models, model_tasks = write_models(outcome, findings)
+    modes, slip_tasks, slip_rows = _sliding(outcome, readable, rows, findings)
+    planned = {
+        "figures": (draw_curves, plan_figures(_named(outcome, readable), folder)),
+        "surface_figures": (draw_surfaces, plan_surface_figures(done, folder)),
+        "model_figures": (draw_model, model_tasks),
+        "sliding_figures": (draw_sliding, slip_tasks),
+    }
+    drawn = _drawn(planned, executor, tell, findings)
 
-    modes, slip_figures, slip_rows = _sliding(outcome, readable, rows, findings)
     ordered = tables.findings_table(findings)
     _write_tables(outcome, summaries, points, ordered)
     tables.write(tables.together(slip_rows, ["run", "segment"]), folder / "tables/stick_slip.csv")
@@ -81,11 +83,9 @@ def write_report(
         table = surface_records.table(list(rows.values()), name, columns)
         tables.write(table, folder / "tables" / f"{name}.csv")
     records = ordered.to_dict("records")
-    document = report_document(outcome, summaries, curves, figures, records)
+    document = report_document(outcome, summaries, curves, drawn.pop("figures"), records)
     document["surfaces"] = [surface_record(one, rows.get(one.name)) for one in outcome.surfaces]
-    document["surface_figures"] = drawn
-    document["sliding_mode"], document["sliding_figures"] = modes, slip_figures
-    document |= {"models": models, "model_figures": model_figures}
+    document |= {"sliding_mode": modes, "models": models, **drawn}
     write_json(document, folder / "report.json")
     traces = {
         name: PageTrace(summary.key, Markup(summary.trace), summary.fine)
@@ -182,7 +182,7 @@ def _sliding(
     readable: set[str],
     rows: dict[str, SurfaceRows],
     findings: list[dict[str, str]],
-) -> tuple[list[dict[str, Any]], list[dict[str, str]], list[pd.DataFrame]]:
+) -> tuple[list[dict[str, Any]], list[SlipFigure], list[pd.DataFrame]]:
     """Return the sliding modes, their figures and the rows of the table on stick-slip."""
     found: list[sliding.CurveSlip] = []
     for curve in outcome.curves:
@@ -198,30 +198,44 @@ def _sliding(
     try:
         modes = sliding.judge_modes(found, outcome, rows)
         records = [sliding.mode_record(one, modes[one.outcome.name]) for one in found]
-        return records, draw_sliding(found, outcome), table
+        return records, plan_sliding_figures(found, outcome), table
     except Exception as error:  # recorded, as above
         findings.append(_error("", "sliding mode", error))
         return [], [], table
 
 
+def _named(outcome: Outcome, names: set[str]) -> list[CurveOutcome]:
+    return [curve for curve in outcome.curves if curve.name in names]
+
+
 def _drawn(
-    draw: Callable[[Any], dict[str, str]],
-    tasks: Sequence[Any],
-    stage: str,
+    planned: Mapping[str, tuple[Callable[[Any], dict[str, str]], Sequence[Any]]],
     executor: Executor | None,
     tell: Progress,
     findings: list[dict[str, str]],
-) -> list[dict[str, str]]:
-    """Draw figures and return their records, those that cannot be drawn as findings."""
+) -> dict[str, list[dict[str, str]]]:
+    """Draw figures, all in one queue, and return the records of each kind.
+
+    Those that cannot be drawn are findings.
+    """
+    queue = [(draw, task) for draw, tasks in planned.values() for task in tasks]
     drawn: dict[str, dict[str, str]] = {}
-    for number, (task, future) in enumerate(completed(executor, draw, tasks)):
+    for number, ((_, task), future) in enumerate(completed(executor, _draw, queue)):
         error = future.exception()
         if error is None:
             drawn[task.file] = future.result()
         else:  # recorded, as above
             findings.append(_error("", f"figure {task.title}", error))
-        tell(stage, number + 1, len(tasks))
-    return [drawn[task.file] for task in tasks if task.file in drawn]
+        tell("other figures", number + 1, len(queue))
+    return {
+        kind: [drawn[task.file] for task in tasks if task.file in drawn]
+        for kind, (_, tasks) in planned.items()
+    }
+
+
+def _draw(job: tuple[Callable[[Any], dict[str, str]], Any]) -> dict[str, str]:
+    draw, task = job
+    return draw(task)
 
 
 def _write_tables(

@@ -31,7 +31,7 @@ def run_campaign(
     progress: Progress | None = None,
     finish: Callable[[Outcome], None] | None = None,
 ) -> Outcome:
-    """Analyse a campaign and write its results: data, tables, figures and the report.
+    r"""Analyse a campaign and write its results: data, tables, figures and the report.
 
     Parameters
     ----------
@@ -65,6 +65,20 @@ def run_campaign(
         If the campaign file or an option is wrong.
     OutputError
         If the results cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4, 1e-3)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = rig.write_run(rig.simulate_run("Sb-S", "dry", rig=short), Path(folder) / "raw")
+    ...     file = Path(folder) / "campaign.toml"
+    ...     _ = file.write_text('[campaign]\nname = "one"\n[[run]]\nfiles = "*.csv"\n')
+    ...     outcome = run_campaign(file, jobs=1)
+    ...     made = (outcome.folder / "report.html").is_file()
+    >>> made, [(run.name, run.segments, run.quality) for run in outcome.runs]
+    (True, [('sb-s_dry_31N_01', 4, 'pass')])
     """
     from tribolab.report.results import write_report
 

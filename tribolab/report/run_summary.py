@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.errors import AnalysisError
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, flagged_spans, trace
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import RunOutcome
 
-# Neither matplotlib's settings nor the netCDF library stand being used by two threads.
-_ALONE = threading.Lock()
 _SPEED_TOLERANCE = 0.1
 
 
@@ -62,13 +59,12 @@ class RunSummary:
 
 def summarise_run(task: RunTask) -> RunSummary:
     """Open a run's data file, draw its figures into the results, and collect its numbers."""
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.netcdf import read_groups
 
     path = task.folder / task.run.data_file
-    with _ALONE:
-        run, segments, friction = (
-            read_netcdf(path, group=group) for group in ("run", "segments", "friction")
-        )
+    with DRAWING:
+        parts = read_groups(path, ("run", "segments", "friction", "stick_slip"))
+        run, segments, friction, slip = parts.values()
         findings = _findings(task.run.name, run, segments, friction)
         figures = _figures(task, run, segments, friction, findings)
         packed, fine = _traces(task, run, segments, friction, findings)
@@ -76,6 +72,7 @@ def summarise_run(task: RunTask) -> RunSummary:
     facts = {
         **_of_record(run),
         **_of_friction(friction),
+        "stick_slip": stick_slip_of(slip),
         "omitted": _omitted(segments),
         "segments": table.to_dict("records"),
         "figures": figures,
@@ -142,6 +139,36 @@ def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
         "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
         "highlights": _highlights(speed, value, std, _values(friction, f"{name}_sem", value.size)),
     }
+
+
+def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
+    """Return the class of waveform of a run and where it is seen, for the table of runs.
+
+    Parameters
+    ----------
+    slip
+        From `tribolab.friction.stick_slip.stick_slip`.
+    """
+    from tribolab.friction.slip_curve import STEADY, stick_slip_curve
+    from tribolab.friction.slip_table import NOT_EVALUATED
+
+    curve = stick_slip_curve([slip])
+    over_speed = bool(curve.sizes["sliding_speed"])
+    kind = (curve if over_speed else slip)["waveform"].values.astype(str)
+    kind = kind[kind != NOT_EVALUATED]
+    if not kind.size:
+        return {"class": NOT_EVALUATED, "detail": ""}
+    moving = kind != STEADY
+    if not moving.any():
+        return {"class": STEADY, "detail": ""}
+    names, counts = np.unique(kind[moving], return_counts=True)
+    names = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
+    detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
+    if not over_speed:
+        detail = f"in {moving.sum()} of {many(kind.size, 'segment')}"
+    if names[1:]:
+        detail += f"; also {', '.join(names[1:])}"
+    return {"class": names[0], "detail": detail}
 
 
 def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:

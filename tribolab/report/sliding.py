@@ -64,7 +64,7 @@ def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
         If a data file cannot be read.
     """
     from tribolab.friction.slip_curve import stick_slip_curve
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.netcdf import read_groups, read_netcdf
 
     folder = Path(outcome.folder)
     files = {run.name: run.data_file for run in outcome.runs if run.done}
@@ -76,8 +76,7 @@ def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
     model, stress = None, None
     for one in outcome.models:
         if one.curve == curve.name and one.done and "fit" in one.parts:
-            model = read_netcdf(folder / one.data_file, group="curve")
-            fit = read_netcdf(folder / one.data_file, group="fit")
+            model, fit = read_groups(folder / one.data_file, ("curve", "fit")).values()
             stress = float(fit.attrs["corrected_shear_stress_Pa"])
     measured = read_netcdf(folder / curve.data_file)
     over_speed = stick_slip_curve(list(slips.values()))

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.friction.waveform import CLASSES
 from tribolab.plot.labels import number, speed_text
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition
 from tribolab.report.wording import span, with_error
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
     from tribolab.campaign.outcome import Outcome
     from tribolab.plot.stick_slip import Trace
@@ -24,8 +27,21 @@ _MOST_TRACES = 8
 _MOST_SPECTRA = 6
 
 
-def draw_sliding(found: Sequence[CurveSlip], outcome: Outcome) -> list[dict[str, str]]:
-    """Draw what the traces show: dry against wet by surface, spectra, events, and the map.
+@dataclass(frozen=True)
+class SlipFigure:
+    """One figure to draw into a results folder; it may travel to another process."""
+
+    kind: str
+    file: str
+    title: str
+    caption: str
+    folder: Path
+    surfaces: tuple[str, ...]
+    shown: tuple[Any, ...]
+
+
+def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[SlipFigure]:
+    """Plan what shows the traces: dry against wet by surface, spectra, events, and the map.
 
     Parameters
     ----------
@@ -34,18 +50,47 @@ def draw_sliding(found: Sequence[CurveSlip], outcome: Outcome) -> list[dict[str,
     outcome
         What the campaign came to.
     """
-    folder, records = Path(outcome.folder), []
-    names = [surface.name for surface in outcome.surfaces]
+    names = tuple(surface.name for surface in outcome.surfaces)
     lowest = _lowest(found)
+    planned: list[tuple[str, str, str, str, tuple[Any, ...]]] = []
     for surface in dict.fromkeys(one.outcome.surface for one in lowest):
+        stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in surface.lower()) or "runs"
+        title = f"{surface or 'Runs'}: friction over sliding distance"
+        caption = f"{title}. The slowest speeds of each medium, shifted up to be told apart."
         mine = [one for one in lowest if one.outcome.surface == surface]
-        records += _traces(surface, mine, outcome, names, folder)
-    shown = {condition(one.outcome): one for one in found if _moves(one)}
-    records += _spectra(shown or {condition(one.outcome): one for one in lowest}, folder)
-    if shown:
-        records += _events(shown, folder)
-    records += _map(found, folder)
-    return records
+        shown = _stretches(mine, outcome)
+        planned.append(("traces", f"slip_traces_{stem}", title, caption, shown))
+    moving = [one for one in found if _moves(one)]
+    planned.append(
+        ("spectra", "slip_spectra", "Spectra of friction", _SPECTRA, _slowest(moving or lowest))
+    )
+    events = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in moving)
+    events = tuple((label, slip) for label, slip in events if slip.sizes.get("event", 0))
+    planned.append(("events", "slip_events", "Events", _EVENTS, events))
+    curves = tuple((condition(o.outcome), o.curve) for o in found if o.curve.sizes["sliding_speed"])
+    planned.append(("map", "slip_map", "Waveform at every speed", _MAP, curves))
+    return [
+        SlipFigure(kind, f"figures/{stem}.svg", title, caption, Path(outcome.folder), names, shown)
+        for kind, stem, title, caption, shown in planned
+        if shown
+    ]
+
+
+_SPECTRA = (
+    "Spectra of friction at the slowest speed. Orange: red and white noise, and the power that "
+    "noise exceeds anywhere in one spectrum of a thousand. Blue: the strongest oscillation."
+)
+_EVENTS = "Events of one run of each condition, all speeds: share of events below a value."
+_MAP = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
+
+
+def draw_sliding(task: SlipFigure) -> dict[str, str]:
+    """Draw one figure into the results and return its record."""
+    with DRAWING:
+        figure, words = _KINDS[task.kind](task)
+        alt = f"{task.title}. {words}."
+        record = save_figure(figure, task.folder, task.file, task.caption, alt)
+    return record | {"kind": task.kind}
 
 
 def _lowest(found: Sequence[CurveSlip]) -> list[CurveSlip]:
@@ -60,10 +105,11 @@ def _lowest(found: Sequence[CurveSlip]) -> list[CurveSlip]:
 
 
 def _moves(one: CurveSlip) -> bool:
-    return any(slip.sizes.get("event", 0) for slip in one.slips.values())
+    """Whether stick-slip is claimed at any speed; a segment that stands alone is no claim."""
+    return "waveform" in one.curve and bool((one.curve["waveform"] != CLASSES[0]).any())
 
 
-def _slow_segments(one: CurveSlip) -> list[tuple[str, int]]:
+def _slow_segments(one: CurveSlip) -> tuple[str, list[int]]:
     """Name of the first run, and its forward segments at the slowest speeds."""
     for name, slip in one.slips.items():
         speed = slip["sliding_speed"].values
@@ -74,36 +120,45 @@ def _slow_segments(one: CurveSlip) -> list[tuple[str, int]]:
             if not apart or speed[k] > 1.2 * speed[apart[-1]]:
                 apart.append(int(k))
         if apart:
-            return [(name, k) for k in apart[:_SLOWEST]]
-    return []
+            return name, apart[:_SLOWEST]
+    return "", []
 
 
-def _traces(
-    surface: str, mine: list[CurveSlip], outcome: Outcome, names: list[str], folder: Path
-) -> list[dict[str, str]]:
-    from tribolab import plot
-    from tribolab.io.netcdf import read_netcdf
-
+def _stretches(mine: Sequence[CurveSlip], outcome: Outcome) -> tuple[tuple[str, str, int], ...]:
+    """Medium, data file and segment of what is stacked in one figure."""
     files = {run.name: run.data_file for run in outcome.runs}
-    stack: list[Trace] = []
+    stack = []
     for one in mine:
-        for run, segment in _slow_segments(one):
-            parts = [
-                read_netcdf(folder / files[run], group=group)
-                for group in ("run", "segments", "friction")
-            ]
-            speed = speed_text(float(parts[1]["sliding_speed"][segment]))
-            label = f"{one.outcome.medium or run}, {speed}"
-            stack.append(plot.Trace(label, *parts, segment, surface))
-    if not stack:
-        return []
-    title = f"{surface or 'Runs'}: friction over sliding distance"
-    caption = f"{title}. The slowest speeds of each medium, shifted up to be told apart."
-    figure = plot.slip_traces(stack[:_MOST_TRACES], names)
-    stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in surface.lower()) or "runs"
-    file = f"figures/slip_traces_{stem}.svg"
-    alt = f"{title}. " + "; ".join(_in_words(trace) for trace in stack[:_MOST_TRACES]) + "."
-    return [save_figure(figure, folder, file, caption, alt) | {"kind": "traces"}]
+        run, segments = _slow_segments(one)
+        stack += [(one.outcome.medium or run, files[run], segment) for segment in segments]
+    return tuple(stack[:_MOST_TRACES])
+
+
+def _slowest(found: Sequence[CurveSlip]) -> tuple[tuple[str, xr.Dataset, int], ...]:
+    """Condition with its slowest speed, stick-slip and segment."""
+    chosen = []
+    for one in found[:_MOST_SPECTRA]:
+        run, segments = _slow_segments(one)
+        for segment in segments[:1]:
+            speed = speed_text(float(one.slips[run]["sliding_speed"][segment]))
+            chosen.append((f"{condition(one.outcome)}, {speed}", one.slips[run], segment))
+    return tuple(chosen)
+
+
+def _traces(task: SlipFigure) -> tuple[Figure, str]:
+    from tribolab import plot
+    from tribolab.io.netcdf import read_groups
+
+    stack: list[Trace] = []
+    parts: dict[str, list[xr.Dataset]] = {}
+    surface = task.title.partition(":")[0]
+    for medium, file, segment in task.shown:
+        if file not in parts:
+            groups = read_groups(task.folder / file, ("run", "segments", "friction"))
+            parts[file] = list(groups.values())
+        speed = speed_text(float(parts[file][1]["sliding_speed"][segment]))
+        stack.append(plot.Trace(f"{medium}, {speed}", *parts[file], segment, surface))
+    return plot.slip_traces(stack, task.surfaces), "; ".join(_in_words(trace) for trace in stack)
 
 
 def _in_words(trace: Trace) -> str:
@@ -116,62 +171,29 @@ def _in_words(trace: Trace) -> str:
     return trace.label
 
 
-def _spectra(shown: dict[str, CurveSlip], folder: Path) -> list[dict[str, str]]:
+def _spectra(task: SlipFigure) -> tuple[Figure, str]:
     from tribolab import plot
 
-    chosen = {}
-    for label, one in list(shown.items())[:_MOST_SPECTRA]:
-        for run, segment in _slow_segments(one)[:1]:
-            speed = speed_text(float(one.slips[run]["sliding_speed"][segment]))
-            chosen[f"{label}, {speed}"] = (one.slips[run], segment)
-    if not chosen:
-        return []
-    caption = (
-        "Spectra of friction at the slowest speed. Orange: red and white noise, and the power that "
-        "noise exceeds anywhere in one spectrum of a thousand. Blue: the strongest oscillation."
-    )
-    figure = plot.slip_spectra(chosen)
-    alt = "Spectra of friction. " + "; ".join(
-        f"{label}: {_strongest(slip, segment)}" for label, (slip, segment) in chosen.items()
-    )
-    record = save_figure(figure, folder, "figures/slip_spectra.svg", caption, alt + ".")
-    return [record | {"kind": "spectra"}]
+    figure = plot.slip_spectra({label: (slip, segment) for label, slip, segment in task.shown})
+    said = [f"{label}: {_strongest(slip, segment)}" for label, slip, segment in task.shown]
+    return figure, "; ".join(said)
 
 
-def _events(shown: dict[str, CurveSlip], folder: Path) -> list[dict[str, str]]:
+def _events(task: SlipFigure) -> tuple[Figure, str]:
     from tribolab import plot
 
-    slips = {label: next(iter(one.slips.values())) for label, one in shown.items()}
-    if not any(slip.sizes.get("event", 0) for slip in slips.values()):
-        return []
-    caption = "Events of one run of each condition, all speeds: share of events below a value."
-    figure = plot.slip_events(slips)
-    alt = "Share of events below a value. " + "; ".join(
+    said = [
         f"{label}: {slip.sizes['event']} events, drops of µ from {span(slip['event_drop'].values)}"
-        for label, slip in slips.items()
-        if slip.sizes.get("event", 0)
-    )
-    record = save_figure(figure, folder, "figures/slip_events.svg", caption, alt + ".")
-    return [record | {"kind": "events"}]
+        for label, slip in task.shown
+    ]
+    return plot.slip_events(dict(task.shown)), "; ".join(said)
 
 
-def _map(found: Sequence[CurveSlip], folder: Path) -> list[dict[str, str]]:
+def _map(task: SlipFigure) -> tuple[Figure, str]:
     from tribolab import plot
 
-    curves = {
-        condition(one.outcome): one.curve
-        for one in reversed(found)
-        if one.curve.sizes["sliding_speed"]
-    }
-    if not curves:
-        return []
-    caption = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
-    figure = plot.waveform_map(curves)
-    alt = "Waveform at every speed. " + "; ".join(
-        f"{label}: {_modes(curve)}" for label, curve in reversed(curves.items())
-    )
-    record = save_figure(figure, folder, "figures/slip_map.svg", caption, alt + ".")
-    return [record | {"kind": "map"}]
+    said = [f"{label}: {_modes(curve)}" for label, curve in task.shown]
+    return plot.waveform_map(dict(reversed(task.shown))), "; ".join(said)
 
 
 def _strongest(slip: xr.Dataset, segment: int) -> str:
@@ -187,3 +209,6 @@ def _modes(curve: xr.Dataset) -> str:
     names, counts = np.unique(curve["waveform"].values.astype(str), return_counts=True)
     said = [f"{name} at {count}" for name, count in zip(names, counts, strict=True)]
     return ", ".join(said) + " of the speeds"
+
+
+_KINDS = {"traces": _traces, "spectra": _spectra, "events": _events, "map": _map}

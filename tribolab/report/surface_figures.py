@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.plot.labels import force_text
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.wording import many
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import SurfaceOutcome
 
-_ALONE = threading.Lock()
 _MOST_IN_ONE = 9  # surfaces that can be told apart in one figure
 
 
@@ -74,7 +72,7 @@ def _label(surface: SurfaceOutcome) -> str:
 def draw_surfaces(task: SurfaceFigure) -> dict[str, str]:
     """Draw one figure into the results and return its record."""
     kind = _KINDS[task.kind]
-    with _ALONE:
+    with DRAWING:
         data = _read(task, kind.group)
         note = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
         caption = f"{kind.title}. {note}".strip()

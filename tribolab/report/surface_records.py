@@ -70,11 +70,10 @@ def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
     TribolabError
         If the file or one of its groups cannot be read.
     """
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.netcdf import read_groups
 
     path = folder / surface.data_file
-    parts = [part for part in surface.parts if part != SCANS]
-    groups = {part: read_netcdf(path, group=part) for part in parts}
+    groups = read_groups(path, [part for part in surface.parts if part != SCANS])
     return SurfaceRows(
         surface.name,
         plain_value(_roughness(groups["roughness"], groups["psd"])),

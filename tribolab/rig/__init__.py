@@ -2,6 +2,7 @@
 
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.faults import FAULTS, Fault, inject
+from tribolab.rig.files import write_run, write_scans
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
 from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
@@ -34,4 +35,6 @@ __all__ = [
     "simulate_run",
     "simulate_trace",
     "stick_slip",
+    "write_run",
+    "write_scans",
 ]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import json
 import shutil
 import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,14 +18,13 @@ import numpy as np
 
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import known_fault
-from tribolab.rig.files import force_file, motion_file, scan_file
+from tribolab.rig.files import FIRST_DAY, write_run, write_scans
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
 from tribolab.studies import xu2026
 
-_FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 Law = Callable[[np.ndarray], np.ndarray]
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 
@@ -89,9 +89,9 @@ def simulate_campaign(
     progress
         Called as ``progress(stage, done, total)``.
     jobs
-        Number of processes, if no executor is given.
+        Number of processes.
     executor
-        Any `concurrent.futures.Executor` to work in.
+        Any `concurrent.futures.Executor` to work in, instead of `jobs`.
 
     Returns
     -------
@@ -138,7 +138,9 @@ def simulate_campaign(
             (aside / room).mkdir(parents=True)
         work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
         work = _deal([faults] if isinstance(faults, str) else faults, work)
-        facts = _run_all(work, jobs, executor, progress)
+        pool = contextlib.nullcontext(executor) if executor else _processes(jobs)
+        with pool as working:
+            facts = _run_all(work, working, progress)
         _write_facts(aside, seed, rig, names, facts)
         (aside / "campaign.toml").write_text(
             campaign_text(names, conditions), encoding="utf-8", newline="\n"
@@ -193,44 +195,35 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 def _date(made: int) -> dt.datetime:
     """When a run began: eight a day."""
     day, turn = divmod(made, 8)
-    return _FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
+    return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
+
+
+def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
+    if jobs <= 1:
+        return contextlib.nullcontext()
+    import multiprocessing
+
+    # spawn: a forked child would inherit locks of the parent's threads
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
 
 
 def _run_all(
     work: list[_Job],
-    jobs: int,
-    executor: Executor | None,
+    pool: Executor | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, dict[str, Any]]:
     """Do the jobs here or in other processes; facts of the runs, in the order of the jobs."""
-    facts: dict[str, dict[str, Any]] = {}
-
-    def collect(results: Iterable[tuple[str, dict[str, Any]]]) -> None:
-        for done, (name, fact) in enumerate(results, start=1):
-            if fact:
-                facts[name] = fact
-            if progress:
-                progress("simulate", done, len(work))
-
+    do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
-
-    def with_laws(laws: Iterable[Law]) -> list[_Job]:
-        known = dict(zip(conditions, laws, strict=True))
-        return [replace(job, law=known.get(job.condition)) for job in work]
-
     # laws first: repeats share one, wherever each of them is simulated
-    if executor is not None:
-        collect(executor.map(_do, with_laws(executor.map(_law, conditions))))
-    elif jobs <= 1:
-        collect(map(_do, with_laws(map(_law, conditions))))
-    else:
-        import multiprocessing
-        from concurrent.futures import ProcessPoolExecutor
-
-        # spawn: a forked child would inherit locks of the parent's threads
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-            collect(pool.map(_do, with_laws(pool.map(_law, conditions))))
+    laws = dict(zip(conditions, do(_law, conditions), strict=True))
+    work = [replace(job, law=laws.get(job.condition)) for job in work]
+    facts: dict[str, dict[str, Any]] = {}
+    for done, (name, fact) in enumerate(do(_do, work), start=1):
+        if fact:
+            facts[name] = fact
+        if progress:
+            progress("simulate", done, len(work))
     return facts
 
 
@@ -244,9 +237,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
     if not job.number:
         stem = c.surface.lower()
         data = scans(c.surface, job.scans, seed=_generator(job.seed, stem))
-        for number, height in enumerate(data.height.values, start=1):
-            path = job.folder / "raw/profiles" / f"{stem}_{number}.csv"
-            path.write_bytes(scan_file(data.x.values, height))
+        write_scans(data, job.folder / "raw/profiles")
         return stem, {}
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
     run = simulate_run(
@@ -259,9 +250,7 @@ def _do(job: _Job) -> tuple[str, dict[str, Any]]:
         law=job.law,
         faults=job.faults,
     )
-    raw = job.folder / "raw/friction"
-    (raw / f"{name}_force.csv").write_bytes(force_file(run.force_log, job.date))
-    (raw / f"{name}_motion.csv").write_bytes(motion_file(run.motion_log, job.date))
+    write_run(run, job.folder / "raw/friction", job.date)
     table = run.segments.to_csv(index=False, lineterminator="\n", float_format="%.10g")
     (job.folder / "truth" / f"{name}.csv").write_text(table, encoding="utf-8", newline="\n")
     return name, run.facts

@@ -30,6 +30,12 @@ class Fault:
         ``strike(run, rng) -> (force log, motion log, facts)``; changes nothing in place.
     surface, medium
         The only ones it can happen on; empty: any.
+
+    Examples
+    --------
+    >>> fault = FAULTS["slow_logger"]
+    >>> fault.check, fault.suits("Smooth", "dry"), fault.suits("Sb-R", "dry")
+    ('sampling', True, False)
     """
 
     name: str

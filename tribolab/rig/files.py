@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import datetime as dt
 from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from tribolab.studies import xu2026
+
+if TYPE_CHECKING:
+    from tribolab.rig.runs import SimulatedRun
+
+FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
@@ -94,6 +101,42 @@ def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
     return head.encode() + fixed_table(columns, ";")
 
 
+def write_run(
+    run: SimulatedRun, folder: str | Path = ".", date: dt.datetime = FIRST_DAY
+) -> tuple[Path, Path]:
+    """Write a simulated run as its two loggers do: a force log and a motion log.
+
+    Parameters
+    ----------
+    run
+        From `simulate_run`.
+    folder
+        Where to; made if it is not there.
+    date
+        When the run began, for the files' first lines.
+
+    Returns
+    -------
+    tuple of pathlib.Path
+        The force log, which `tribolab.read` takes, and the motion log beside it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> short = rig.Rig(rig.Protocol(speeds=(1e-4,)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [file.name for file in write_run(rig.simulate_run("Sb-R", "dry", rig=short), folder)]
+    ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_01_motion.csv']
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    force, motion = (folder / f"{run.name}_{log}.csv" for log in ("force", "motion"))
+    force.write_bytes(force_file(run.force_log, date))
+    motion.write_bytes(motion_file(run.motion_log, date))
+    return force, motion
+
+
 def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
     """One profile as the stylus instrument exports it; both in m."""
     pitch, length = (x[1] - x[0]) * 1e6, (x[-1] - x[0]) * 1e3
@@ -105,3 +148,33 @@ def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
         "x [mm],z [um]\n"
     )
     return head.encode() + fixed_table([(x * 1e3, 4), (height * 1e6, 3)], ",")
+
+
+def write_scans(scans: xr.Dataset, folder: str | Path = ".", surface: str = "") -> list[Path]:
+    """Write simulated scans as the stylus instrument exports them, a file for each.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (profile, x), from `tribolab.rig.scans`.
+    folder
+        Where to; made if it is not there.
+    surface
+        First part of the files' names; by default the surface's name.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [file.name for file in write_scans(rig.scans("Sb-R", 2, length=1e-3), folder)]
+    ['sb-r_1.csv', 'sb-r_2.csv']
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    stem = surface or str(scans.attrs["surface"]).lower()
+    files = []
+    for number, height in enumerate(scans["height"].values, start=1):
+        files.append(folder / f"{stem}_{number}.csv")
+        files[-1].write_bytes(scan_file(scans["x"].values, height))
+    return files

@@ -21,7 +21,13 @@ _DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
 
 @dataclass(frozen=True)
 class DryLaw:
-    """Weakly rising friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``."""
+    """Weakly rising friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
+
+    Examples
+    --------
+    >>> DryLaw(level=0.5)(1e-3).round(4).item()
+    0.5075
+    """
 
     level: float
     slope: float = 0.015
@@ -43,6 +49,12 @@ class StribeckLaw:
         The solid part is ``boundary * exp(-(v/transition_speed)^exponent)`` [m/s].
     drag
         The viscous part is ``drag * (v / 1 cm/s)^0.4``.
+
+    Examples
+    --------
+    >>> law = StribeckLaw(boundary=1.4, transition_speed=3e-5, exponent=1.5, drag=0.02)
+    >>> law([1e-6, 1e-4, 1e-2]).round(3).tolist()
+    [1.392, 0.006, 0.02]
     """
 
     boundary: float
@@ -72,6 +84,11 @@ class StickSlip:
         ``drop * (v / 1 um/s) ** -drop_exponent``.
     fade_start, fade_stop
         From the first speed [m/s] on it fades linearly in log v, and from the second on it is gone.
+
+    Examples
+    --------
+    >>> StickSlip("sawtooth", wavelength=22e-6, drop=0.18).at(1e-6)
+    ('sawtooth', 2.2e-05, 0.18)
     """
 
     form: str = "none"
@@ -156,6 +173,16 @@ def stick_slip(surface: str, medium: str) -> StickSlip:
     Dry it is a sawtooth, alike at 1 and 3 um/s; in glycerol rounder and longer, much weaker and
     shorter at 3 than at 1 um/s, and gone at 10 um/s. The paper prints no numbers: wavelengths and
     drops are assumptions, and so is the fading of the dry sawtooth above 0.1 mm/s.
+
+    Parameters
+    ----------
+    surface, medium
+        As for `friction_law`.
+
+    Examples
+    --------
+    >>> stick_slip("Smooth", "dry").form, stick_slip("Sb-R", "dry").form
+    ('sawtooth', 'none')
     """
     if xu2026.surface(surface).name != "Smooth":
         return StickSlip()

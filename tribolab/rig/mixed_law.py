@@ -30,6 +30,12 @@ class MixedLaw:
         sigma_f [Pa] in the real contact area.
     speeds, friction
         The model's curve: speeds [m/s] and friction coefficients, PCHIP over ln v between them.
+
+    Examples
+    --------
+    >>> law = MixedLaw("Sb-S", 31.0, 0.84e6, speeds=(1e-6, 1e-4, 1e-2), friction=(1.4, 0.7, 0.02))
+    >>> law([1e-7, 1e-4]).tolist()
+    [1.4, 0.7]
     """
 
     surface: str

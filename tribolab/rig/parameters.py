@@ -29,6 +29,11 @@ class Protocol:
         steady value, that is gone after `run_in` [m]: 7 % of the shortest stroke.
     relaxation_time, relaxed_part
         At rest the friction force relaxes with this time [s] to this part of its last value.
+
+    Examples
+    --------
+    >>> Protocol(speeds=(1e-5, 1e-4)).stroke
+    0.00045
     """
 
     speeds: tuple[float, ...] = xu2026.SPEEDS
@@ -61,6 +66,11 @@ class Scatter:
         this part of a stroke.
     load_control, load_control_time
         The load controller's error: relative standard deviation and correlation time [s].
+
+    Examples
+    --------
+    >>> Scatter(repeat=0.0).fluctuation  # runs that repeat exactly
+    0.004
     """
 
     repeat: float = 0.01
@@ -86,6 +96,11 @@ class ForceCell:
         Standard deviation of a smooth drift over a run; a fifth of it on the normal force.
     step
         One count of the converter: 16 bit over +-500 N.
+
+    Examples
+    --------
+    >>> f"{ForceCell().step:.4f} N"
+    '0.0153 N'
     """
 
     noise: float = 0.04
@@ -110,6 +125,11 @@ class Encoder:
         Noise at rest and resolution of the velocity [m/s].
     position_noise, position_step
         Noise and resolution of the position [m].
+
+    Examples
+    --------
+    >>> Encoder(velocity_noise=(0.0, 0.0)).position_step
+    1e-07
     """
 
     velocity_noise: tuple[float, float] = (0.01, 0.03)
@@ -131,6 +151,12 @@ class Loggers:
         How the rate grows with the step's speed: 1/2 makes 10 Hz at 1 um/s 1 kHz at 1 cm/s.
     jitter
         Standard deviation of a sample's moment, relative to the sampling interval.
+
+    Examples
+    --------
+    >>> slow = Loggers(force_rate=2.0)
+    >>> slow.force_rate * (1e-2 / 1e-6) ** slow.exponent  # Hz at 1 cm/s
+    200.0
     """
 
     force_rate: float = 10.0
@@ -149,6 +175,11 @@ class Clocks:
         The shift [s] is drawn between plus and minus this.
     largest_rate
         So is the relative difference of the clocks' rates.
+
+    Examples
+    --------
+    >>> Clocks(largest_shift=0.0, largest_rate=0.0).largest_shift  # one clock for both logs
+    0.0
     """
 
     largest_shift: float = 2.0
@@ -157,7 +188,19 @@ class Clocks:
 
 @dataclass(frozen=True)
 class Rig:
-    """Everything together."""
+    """Everything together.
+
+    Parameters
+    ----------
+    protocol, scatter, force_cell, encoder, loggers, clocks
+        What is run, what is real, and what measures it.
+
+    Examples
+    --------
+    >>> quiet = Rig(Protocol(speeds=(1e-4,)), force_cell=ForceCell(noise=0.0, flicker=0.0, hum=0.0))
+    >>> quiet.protocol.speeds, quiet.loggers.force_rate
+    ((0.0001,), 10.0)
+    """
 
     protocol: Protocol = field(default_factory=Protocol)
     scatter: Scatter = field(default_factory=Scatter)

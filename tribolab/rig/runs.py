@@ -47,6 +47,13 @@ class SimulatedRun:
         One row per constant-speed segment; units stand in the columns' names.
     facts
         What was drawn and chosen for this run, ready for JSON.
+
+    Examples
+    --------
+    >>> from tribolab.rig.parameters import Protocol
+    >>> made = simulate_run("Sb-S", "dry", rig=Rig(Protocol(speeds=(1e-4,))))
+    >>> sorted(made.force_log.data_vars), made.segments.direction.tolist()
+    (['friction_force', 'normal_force'], [1, -1])
     """
 
     name: str

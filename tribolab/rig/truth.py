@@ -23,6 +23,16 @@ class Truth:
         law, offsets and clocks under ``facts["runs"][name]``.
     segments
         For each run's name the table of its constant-speed segments.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = rig.simulate_campaign(Path(folder) / "demo", small=True, surfaces=["Sb-R"])
+    ...     truth = read_truth(file.parent)
+    >>> sorted(truth.segments) == sorted(truth.facts["runs"]), len(truth.segments)
+    (True, 4)
     """
 
     facts: dict[str, Any]
@@ -41,6 +51,16 @@ def read_truth(folder: str | Path) -> Truth:
     ------
     ReadError
         If there is no truth in the folder.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tribolab import rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = rig.simulate_campaign(Path(folder) / "demo", small=True, surfaces=["Sb-R"])
+    ...     truth = read_truth(file.parent)
+    >>> truth.segments["sb-r_dry_31N_01"].friction_coefficient.abs().round(3).tolist()[:2]
+    [1.112, 1.112]
     """
     path = Path(folder) / "truth"
     if not (path / "truth.json").is_file():

@@ -140,7 +140,7 @@ _COLUMNS = {
 def read_modulus(
     path: str | Path, sweep: int | None = None, sheet: str | None = None
 ) -> TabulatedModulus:
-    """Read storage and loss modulus from a DMA file, a master curve or one sweep of a raw file.
+    r"""Read storage and loss modulus from a DMA file, a master curve or one sweep of a raw file.
 
     Parameters
     ----------
@@ -163,6 +163,15 @@ def read_modulus(
     ------
     ReadError
         If a column or its unit is missing, or the file has several sweeps and none is chosen.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "pdms.csv"
+    ...     _ = file.write_text("f,E_stor,E_loss\nHz,MPa,MPa\n0.1,1.5,0.1\n10,1.8,0.3\n")
+    ...     read_modulus(file).storage
+    array([1500000., 1800000.])
     """
     path = Path(path)
     table = _find_table(path, sheet)

@@ -33,7 +33,26 @@ STAND_IN = (
 
 @dataclass(frozen=True)
 class System:
-    """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4)."""
+    """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
+
+    Parameters
+    ----------
+    radius, length
+        Of the cylinder [m].
+    youngs_modulus, poisson_ratio
+        E [Pa] and nu [1] of the rubber.
+    viscosity
+        Of glycerol [Pa s].
+    loads
+        Normal forces [N].
+    lowest_speed, highest_speed
+        Ends of the sliding speeds [m/s].
+
+    Examples
+    --------
+    >>> f"{System().nominal_pressure(31.0) / 1e3:.1f} kPa"
+    '41.7 kPa'
+    """
 
     radius: float = 0.07  # m
     length: float = 0.10  # m
@@ -61,7 +80,20 @@ class System:
 
 @dataclass(frozen=True)
 class Profilometer:
-    """The stylus instrument, a Surftest SJ-410 (Sec. 3)."""
+    """The stylus instrument, a Surftest SJ-410 (Sec. 3).
+
+    Parameters
+    ----------
+    tip_radius, pitch, scan_length
+        Of the stylus, between points, and of a scan [m].
+    scans
+        Number of scans of a cylinder.
+
+    Examples
+    --------
+    >>> round(Profilometer().scan_length / Profilometer().pitch)
+    50000
+    """
 
     tip_radius: float = 2e-6  # m
     pitch: float = 0.5e-6  # m
@@ -87,6 +119,11 @@ class Surface:
     shear_stress
         Fitted sigma_f [Pa] by normal force [N] in glycerol (Sec. 7), for the area without
         adhesion.
+
+    Examples
+    --------
+    >>> surfaces["Sb-S"].area_ratio_glycerol / surfaces["Sb-S"].area_ratio > 1.7
+    True
     """
 
     name: str

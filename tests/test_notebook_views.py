@@ -1,0 +1,78 @@
+"""How results show themselves in a notebook."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tribolab as tl
+from tribolab.rig.parameters import Protocol, Rig
+from tribolab.rig.runs import simulate_run
+
+
+@pytest.fixture
+def spiked():
+    force = 1 + 0.01 * np.random.default_rng(0).standard_normal(2000)
+    force[700] = 9.0
+    run = xr.Dataset({"friction_force": ("time", force)}, {"time": np.arange(2000) / 100})
+    return run.assign(sliding_velocity=("time", np.full(2000, 1e-3))).assign_attrs(source="<a>.csv")
+
+
+def test_findings_tell_each_objection_whole_and_fold_the_rest_away(spiked):
+    found = tl.check(spiked)
+    [message] = found.table.query("check == 'spikes'").message
+    shown, rest = found._repr_html_().split("<details>")
+    assert len(message) > 50 and message in shown and "..." not in shown
+    assert shown.count("<tr>") == 2 and rest.count("<tr>") == 1 + len(found.rows)
+    assert "&lt;a&gt;.csv: suspect" in shown and "<a>" not in shown
+    assert repr(found).splitlines() == ["<a>.csv: suspect", f"  suspect spikes: {message}"]
+
+
+def test_findings_without_objection_need_no_table(spiked):
+    shown = tl.check(spiked, skip=["spikes"])._repr_html_().split("<details>")[0]
+    assert shown == "<p><b>&lt;a&gt;.csv: pass</b></p>"
+
+
+def test_a_draft_shows_what_was_understood_and_what_to_fill_in(tmp_path):
+    file = tmp_path / "own.txt"
+    file.write_text("Zeit [s];Reibkraft [N];Weg <x>\n0,0;1,5;0,1\n0,1;1,6;0,2\n")
+    draft = tl.draft_dialect(file)
+    shown = draft._repr_html_()
+    assert "friction_force" in shown and "decimal comma" in shown
+    assert all(f"fill in line {line} of the TOML" in shown for line in draft.to_fill_in)
+    assert "Weg &lt;x&gt;" in shown and "<x>" not in shown
+    text = draft.toml.splitlines()
+    assert text[text.index('source = "none"') + 1].startswith('# "position"')
+
+
+def test_a_figure_is_shown_at_full_resolution_whatever_pyplot_does(monkeypatch):
+    import IPython.display
+
+    shown = []
+    monkeypatch.setattr(IPython.display, "display", lambda data, raw: shown.append((data, raw)))
+    curve = xr.Dataset(
+        {"friction_coefficient": ("sliding_speed", [0.3, 0.4])}, {"sliding_speed": [1e-4, 1e-3]}
+    )
+    tl.plot.stribeck(measured=curve)._ipython_display_()
+    [(data, raw)] = shown
+    width = int.from_bytes(data["image/png"][16:20], "big")  # in the header of every PNG
+    assert raw and width == pytest.approx(86 / 25.4 * 200, abs=1)
+
+
+def test_films_are_drawn_alike_from_a_list_and_from_one_dataset():
+    contact = tl.LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    films = [
+        tl.film_profile(contact, None, "1.4 Pa s", "310 N/m", v, cells=60) for v in (1e-3, 1e-2)
+    ]
+    rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
+    joined = xr.concat(rows, "sliding_speed", combine_attrs="drop_conflicts")
+    one, other = (tl.plot.figure_data(tl.plot.film_profiles(given)) for given in (films, joined))
+    assert one.equals(other)
+
+
+def test_the_logs_of_a_run_are_read_back_by_the_name_of_the_first(tmp_path):
+    run = simulate_run("Sb-S", "dry", rig=Rig(Protocol(speeds=(1e-4, 1e-3))), seed=4)
+    force, motion = tl.rig.write_run(run, tmp_path / "new" / "folder")
+    found = tl.read(force)
+    assert found.attrs["source"] == f"{force.name}; {motion.name}"
+    written = set(run.force_log.friction_force.values.round(3))
+    assert set(found.friction_force.values.round(3)) <= written
