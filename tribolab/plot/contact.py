@@ -341,6 +341,18 @@ def contact_separation(
         surface's name.
     surfaces, title
         As for `contact_area`.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> found = xr.Dataset(
+    ...     {"contact_pressure": ("separation", [2e5, 3e4, 5e3])},
+    ...     {"separation": [1e-6, 2e-6, 3e-6]},
+    ...     {"rms_roughness_m": 1e-6},
+    ... )
+    >>> numbers = figure_data(contact_separation({"Sb-R": found}))
+    >>> numbers.separation_over_rms_roughness.tolist()
+    [1.0, 2.0, 3.0]
     """
     chosen = colours(list(separations), surfaces)
     with paper_style():

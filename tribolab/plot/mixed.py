@@ -313,6 +313,17 @@ def shear_stress_over_speed(
         ``shear_stress`` [Pa] with ``shear_stress_std`` (sliding_speed) by the surface's name.
     surfaces, title
         As for `mixed_curve`.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> values = {"shear_stress": [6e5, 6.1e5], "shear_stress_std": [1e4, 1e4]}
+    >>> curve = xr.Dataset(
+    ...     {name: ("sliding_speed", one) for name, one in values.items()},
+    ...     {"sliding_speed": [1e-5, 1e-3]},
+    ... )
+    >>> figure_data(shear_stress_over_speed({"Sb-S": curve})).shear_stress_Pa.tolist()
+    [600000.0, 610000.0]
     """
     styles = surface_styles([*surfaces, *curves])
     with paper_style():
