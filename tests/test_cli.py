@@ -16,6 +16,7 @@ from campaigns import copied, fingerprint, simulated
 
 import tribolab
 from tribolab import cli
+from tribolab.report.progress import progress_bars
 
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
 
@@ -214,7 +215,7 @@ def test_bars_are_shown_on_a_terminal(tmp_path):
 @pytest.mark.parametrize(("terminal", "quiet"), [(True, True), (False, False)])
 def test_no_bars_in_a_pipe_or_if_told(monkeypatch, terminal, quiet):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal, raising=False)
-    with cli._progress(quiet) as progress:
+    with progress_bars(quiet) as progress:
         assert progress is None
 
 

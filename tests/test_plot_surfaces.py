@@ -76,6 +76,21 @@ def line(width):
     return xr.Dataset({"x": ("point", x), "pressure": ("point", 5e4 * np.exp(-((x / width) ** 2)))})
 
 
+def apart(height):
+    over = np.linspace(0.1, 6, 40)
+    return xr.Dataset(
+        {"contact_pressure": ("separation", 1e5 * np.exp(-1.8 * over))},
+        {"separation": height * over},
+        {"rms_roughness_m": height},
+    )
+
+
+def stress(level):
+    v = np.geomspace(1e-6, 1e-2, 13)
+    values = {"shear_stress": 1e5 * level * v**0.02, "shear_stress_std": 1e4 + 0 * v}
+    return xr.Dataset({k: ("sliding_speed", y) for k, y in values.items()}, {"sliding_speed": v})
+
+
 def friction(level):
     v = np.geomspace(1e-7, 1e-1, 31)
     return xr.Dataset(
@@ -106,6 +121,8 @@ FIGURES = {
         )
     ),
     "viscoelastic": lambda: plot.viscoelastic(each(friction)),
+    "contact_separation": lambda: plot.contact_separation(each(apart, (1e-6, 3e-6, 1e-5))),
+    "shear_stress_over_speed": lambda: plot.shear_stress_over_speed(each(stress)),
 }
 
 
@@ -162,7 +179,9 @@ def test_figure_is_the_same_bytes_again(figure):
     assert plot.svg(figure) == plot.svg(figure)
 
 
-@pytest.mark.parametrize("name", ["spectra", "contact_area", "gaps", "viscoelastic"])
+@pytest.mark.parametrize(
+    "name", ["spectra", "contact_area", "gaps", "viscoelastic", "contact_separation"]
+)
 def test_every_surface_has_its_own_colour_and_name(name):
     [axes] = FIGURES[name]().axes
     named = {

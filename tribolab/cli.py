@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from tribolab.report.progress import progress_bars
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -90,12 +91,38 @@ def demo(
         from tribolab.report.demo import run_demo
         from tribolab.report.terminal import truth_lines
 
-        with _progress(quiet) as progress:
+        with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
         code = _show(outcome)
         for line in truth_lines(compared, outcome):
             typer.echo(line)
     raise typer.Exit(code)
+
+
+@app.command()
+def reproduce(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder of the results; replaced as a whole.")
+    ] = Path("tribolab-paper"),
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Reproduce the reference paper: its figures, and its numbers beside computed ones.
+
+    `paper.html` goes through it section by section and says what was measured by the authors, what
+    is computed here and what is simulated by the virtual rig; `paper.csv` has a row for each of
+    the 58 published numbers, with status and reason. It takes about a minute.
+
+        tribolab reproduce --output /tmp/paper
+    """
+    with _reported(debug):
+        from tribolab.report.paper.reproduce import reproduce as reproduce_paper
+        from tribolab.report.terminal import paper_lines
+
+        with progress_bars(quiet) as progress:
+            made = reproduce_paper(output, jobs=jobs, progress=progress)
+        typer.echo("\n".join(paper_lines(made.folder, made.table)))
 
 
 @app.command()
@@ -135,7 +162,7 @@ def run(
     with _reported(debug):
         from tribolab.report.run import run_campaign
 
-        with _progress(quiet) as progress:
+        with progress_bars(quiet) as progress:
             outcome = run_campaign(
                 campaign, output=output, jobs=jobs, scheduler=scheduler, progress=progress
             )
@@ -176,7 +203,7 @@ def simulate(
         from tribolab.campaign.executor import default_jobs
         from tribolab.rig import simulate_campaign
 
-        with _progress(quiet) as progress:
+        with progress_bars(quiet) as progress:
             campaign = simulate_campaign(
                 folder,
                 seed,
@@ -332,33 +359,6 @@ def _fail(message: str, code: int, debug: bool) -> None:
         raise
     typer.echo(f"tribolab: {message}", err=True)
     raise typer.Exit(code) from None
-
-
-@contextlib.contextmanager
-def _progress(quiet: bool) -> Iterator[Callable[[str, int, int], None] | None]:
-    """Show bars with the time left on a terminal; say nothing in a pipe."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeRemainingColumn,
-    )
-
-    columns = (TextColumn("{task.description:>10}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as bars:
-        stages = {}
-
-        def tell(stage: str, done: int, total: int) -> None:
-            if stage not in stages:
-                stages[stage] = bars.add_task(stage, total=total)
-            bars.update(stages[stage], completed=done, total=total)
-
-        yield tell
 
 
 def _show(outcome: Outcome) -> int:

@@ -84,7 +84,7 @@ def measure(name: str, path: Path, dialect: Path) -> tuple[float, float]:
 def main() -> None:
     """Run all candidates, interleaved, and print the ratios."""
     rows = int(float(sys.argv[1])) if len(sys.argv) > 1 else 10_000_000
-    repeats = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    repeats = int(sys.argv[2]) if len(sys.argv) > 2 else 5
     with tempfile.TemporaryDirectory() as folder:
         path, dialect = Path(folder) / "bench.csv", Path(folder) / "bench.toml"
         write_csv(path, rows)
@@ -99,6 +99,11 @@ def main() -> None:
     best = {name: tuple(map(min, zip(*runs, strict=True))) for name, runs in results.items()}
     for name, (seconds, memory) in best.items():
         print(f"{name:9s} {seconds:7.3f} s  {memory:7.0f} MB peak")
+    rounds = [
+        results["tribolab"][k][0] / min(results["polars"][k][0], results["pandas"][k][0])
+        for k in range(repeats)
+    ]
+    print("time, round by round: " + ", ".join(f"{ratio:.2f}" for ratio in rounds))
     seconds, memory = best["tribolab"]
     faster = min(best["polars"][0], best["pandas"][0])
     print(f"time   tribolab / faster of pandas and polars: {seconds / faster:.2f}  (aim: <= 1.3)")

@@ -2,7 +2,7 @@
 
     python tests/benchmarks/bench_stick_slip.py
 
-Prints the ratio of times (best of five, interleaved), and the peak of memory over the trace's size.
+Prints the ratio of times (best of nine, interleaved), and the peak of memory over the trace's size.
 The FFT transforms the trace once in stretches of 8192 samples, with no window and no sum.
 """
 
@@ -50,7 +50,7 @@ def main() -> None:
         run, segments = make(samples, period)
         values = run["friction_coefficient"].values
         times = {"stick_slip": [], "FFT": []}
-        for _ in range(5):
+        for _ in range(9):
             for name, work in (
                 ("FFT", lambda values=values: batched(values)),
                 ("stick_slip", lambda run=run, segments=segments: stick_slip(run, segments)),

@@ -5,13 +5,19 @@ from __future__ import annotations
 from tribolab.plot.contact import (
     adhesive_area,
     contact_area,
+    contact_separation,
     effective_work,
     gaps,
     line_pressure,
 )
 from tribolab.plot.curves import half_loop, stribeck
 from tribolab.plot.film import film_profiles, lubrication_factors
-from tribolab.plot.mixed import friction_factor_effect, mixed_curve, shear_stress
+from tribolab.plot.mixed import (
+    friction_factor_effect,
+    mixed_curve,
+    shear_stress,
+    shear_stress_over_speed,
+)
 from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
@@ -24,6 +30,7 @@ __all__ = [
     "Trace",
     "adhesive_area",
     "contact_area",
+    "contact_separation",
     "effective_work",
     "envelope",
     "figure_data",
@@ -42,6 +49,7 @@ __all__ = [
     "slip_spectra",
     "slip_traces",
     "shear_stress",
+    "shear_stress_over_speed",
     "spectra",
     "strokes",
     "stribeck",

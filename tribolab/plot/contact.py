@@ -327,3 +327,46 @@ def _area_axes(axes) -> None:
     axes.set_ylim(max(axes.dataLim.y0 / 1.3, _SMALLEST_AREA), 1.3)
     axes.set_xlabel(label("pressure"))
     axes.set_ylabel(label("contact_area_ratio"))
+
+
+def contact_separation(
+    separations: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw the contact pressure over the mean separation in units of the roughness.
+
+    Parameters
+    ----------
+    separations
+        ``contact_pressure`` [Pa] (separation) with the attribute ``rms_roughness_m``, by the
+        surface's name.
+    surfaces, title
+        As for `contact_area`.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> found = xr.Dataset(
+    ...     {"contact_pressure": ("separation", [2e5, 3e4, 5e3])},
+    ...     {"separation": [1e-6, 2e-6, 3e-6]},
+    ...     {"rms_roughness_m": 1e-6},
+    ... )
+    >>> numbers = figure_data(contact_separation({"Sb-R": found}))
+    >>> numbers.separation_over_rms_roughness.tolist()
+    [1.0, 2.0, 3.0]
+    """
+    chosen = colours(list(separations), surfaces)
+    with paper_style():
+        figure, axes = single_axes()
+        for name, found in separations.items():
+            over = found.separation.values / found.attrs["rms_roughness_m"]
+            p = found.contact_pressure.values
+            axes.plot(over, 1e-6 * p, color=chosen[name], linewidth=1.1)
+            columns = {"separation_over_rms_roughness": over, "contact_pressure_Pa": p}
+            figure.keep("contact pressure", name, **columns)
+        name_surfaces(axes, chosen)
+        logarithmic(axes, "y")
+        axes.set_xlim(0, axes.dataLim.x1)
+        axes.set_xlabel(r"mean separation / roughness $\bar u/h_{\mathrm{rms}}$")
+        axes.set_ylabel(r"contact pressure $p_{\mathrm{cont}}$ (MPa)")
+        legend_above(figure, axes, title)
+    return figure

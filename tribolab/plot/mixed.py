@@ -300,3 +300,46 @@ def friction_factor_effect(
         axes.set_ylabel(label("friction_coefficient"))
         legend_above(figure, axes, title)
     return figure
+
+
+def shear_stress_over_speed(
+    curves: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
+) -> PaperFigure:
+    """Draw the shear stress in the real contact over the sliding speed.
+
+    Parameters
+    ----------
+    curves
+        ``shear_stress`` [Pa] with ``shear_stress_std`` (sliding_speed) by the surface's name.
+    surfaces, title
+        As for `mixed_curve`.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> values = {"shear_stress": [6e5, 6.1e5], "shear_stress_std": [1e4, 1e4]}
+    >>> curve = xr.Dataset(
+    ...     {name: ("sliding_speed", one) for name, one in values.items()},
+    ...     {"sliding_speed": [1e-5, 1e-3]},
+    ... )
+    >>> figure_data(shear_stress_over_speed({"Sb-S": curve})).shear_stress_Pa.tolist()
+    [600000.0, 610000.0]
+    """
+    styles = surface_styles([*surfaces, *curves])
+    with paper_style():
+        figure, axes = single_axes()
+        for name, curve in curves.items():
+            v, stress = curve["sliding_speed"].values, curve["shear_stress"].values
+            spread = curve["shear_stress_std"].values
+            axes.errorbar(
+                v, 1e-6 * stress, 1e-6 * np.nan_to_num(spread), color=styles[name].colour,
+                marker=styles[name].marker, markersize=4.2, markerfacecolor="white",
+                linestyle="--", linewidth=0.7, elinewidth=0.8, capsize=1.8, label=plain(name),
+            )  # fmt: skip
+            columns = {"shear_stress_Pa": stress, "shear_stress_std_Pa": spread}
+            figure.keep("shear stress", name, **{column("sliding_speed"): v}, **columns)
+        _speeds(axes, np.array(axes.dataLim.intervalx) * (0.6, 1.7))
+        axes.set_ylim(0, 1.08 * axes.dataLim.y1)
+        axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
+        legend_above(figure, axes, title)
+    return figure

@@ -17,7 +17,7 @@ from tribolab.plot.frame import (
     name_surfaces,
     single_axes,
 )
-from tribolab.plot.labels import column, label
+from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import BLACK, VERMILLION, PaperFigure, paper_style
 
 Surfaces = Mapping[str, xr.Dataset]
@@ -151,7 +151,8 @@ def viscoelastic(
     Parameters
     ----------
     frictions
-        ``friction_coefficient`` (sliding_speed) by the surface's name, each at one pressure.
+        ``friction_coefficient`` (sliding_speed) by the surface's name, each at one pressure. What
+        has something in brackets behind its name, such as "Smooth (complete contact)", is dashed.
     surfaces, title
         As for `spectra`.
 
@@ -170,10 +171,10 @@ def viscoelastic(
         figure, axes = single_axes()
         for name, friction in frictions.items():
             v, mu = friction.sliding_speed.values, friction.friction_coefficient.values
-            axes.plot(v, mu, color=chosen[name], linewidth=1.1)
+            style = "--" if " (" in name else "-"
+            axes.plot(v, mu, color=chosen[name], linestyle=style, linewidth=1.1, label=plain(name))
             columns = {column("sliding_speed"): v, "friction_coefficient": mu}
             figure.keep("viscoelastic friction", name, **columns)
-        name_surfaces(axes, chosen)
         logarithmic(axes, "x")
         axes.set_xlim(v.min(), v.max())
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)

@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
-from tribolab.report.sections import shown_sections
+from tribolab.report.sections import Section, shown_sections
 from tribolab.report.traces import as_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
@@ -85,10 +85,6 @@ def render(
         HTML. Text from files is escaped, and a content security policy forbids every script but
         the page's own and those beside it, and every request to elsewhere.
     """
-    environment = _environment(folder)
-    style = "".join(asset(name) for name in _STYLES)
-    scripts = [_script(name) for name in _SCRIPTS]
-    hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
     surfaces = document.get("surfaces", [])
     context = document | {
         "traces": traces or {},
@@ -97,12 +93,36 @@ def render(
         "left_out": left_out(document["runs"]),
         "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
     }
-    context["beside"] = _put_beside(environment, context, folder)
-    return environment.get_template("report.html.j2").render(
+    context["beside"] = _put_beside(_environment(folder), context, folder)
+    return framed("report.html.j2", context, shown_sections(context), folder)
+
+
+def framed(
+    template: str, context: Mapping[str, Any], sections: Sequence[Section], folder: Path
+) -> str:
+    """Return a page made from a template that extends ``frame.html.j2``.
+
+    Parameters
+    ----------
+    template
+        Its path under ``templates/``.
+    context
+        What the template and its sections show; of it the frame itself takes ``versions`` and the
+        ``status`` of the ``verdict``, the banner's colour.
+    sections
+        What the page has, in order.
+    folder
+        Folder in which the figures lie.
+    """
+    style = "".join(asset(name) for name in _STYLES)
+    scripts = [_script(name) for name in _SCRIPTS]
+    hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
+    page = _environment(folder).get_template(template)
+    return page.render(
         context,
         style=style,
         scripts=scripts,
-        sections=shown_sections(context),
+        sections=sections,
         policy=(
             "default-src 'none'; img-src data: 'self' file:; base-uri 'none'; "
             f"form-action 'none'; style-src '{fingerprint(style)}'; "

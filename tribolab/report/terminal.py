@@ -12,6 +12,8 @@ from rich.table import Table
 from tribolab.campaign.outcome import CurveOutcome, Outcome
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from tribolab.report.demo import DemoComparison
 
 _PIPED_WIDTH = 120
@@ -124,11 +126,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
             f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals"
         )
-    count = compared.paper.status.value_counts()
-    lines.append(
-        f"against the paper: {len(compared.paper)} numbers, "
-        + ", ".join(f"{number} {status}" for status, number in count.items())
-    )
+    lines.append(f"against the paper: {_counted(compared.paper)}")
     tables = shown(results / "tables")
     return [
         *lines,
@@ -139,6 +137,34 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         f"          {tables}/paper.csv     the paper's numbers beside computed ones",
         f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
+    ]
+
+
+def _counted(table: pd.DataFrame) -> str:
+    count = table.status.value_counts()
+    said = ", ".join(f"{number} {status}" for status, number in count.items())
+    return f"{len(table)} numbers, {said}"
+
+
+def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
+    """Say how many of the paper's numbers hold, which differ, and where to look.
+
+    Parameters
+    ----------
+    folder
+        The results of `tribolab.report.paper.reproduce.reproduce`.
+    table
+        Published numbers beside computed ones.
+    """
+    lines = [f"the paper: {_counted(table)}"]
+    for row in table[table.status == "differs"].itertuples():
+        what = f"{row.quantity}, {row.surface}, {row.condition}"
+        lines.append(f"differs: {what}: published {row.published}, computed {row.computed}")
+    return [
+        *lines,
+        "",
+        f"look at   {shown(folder / 'paper.html')}  the page: open it in a browser",
+        f"          {shown(folder / 'paper.csv')}   all numbers, a row each",
     ]
 
 

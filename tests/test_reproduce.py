@@ -1,0 +1,137 @@
+"""The paper reproduced: every number has a status, every figure its words, the page opens."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from chromium import BROWSER, chromium
+from report_pages import Reader
+from typer.testing import CliRunner
+
+from tribolab import cli
+from tribolab.report.paper.figures import COMPUTED, FIGURES, SIMULATED
+from tribolab.report.paper.laboratory import Laboratory
+from tribolab.report.paper.reproduce import reproduce
+from tribolab.studies.verdict import DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
+
+AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
+# one load, three speeds, one profile: as few as still make every figure
+SMALL = Laboratory(loads=(31.0,), speeds=(4.64e-6, 1e-4, 2.15e-3), scans=1)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return reproduce(tmp_path_factory.mktemp("paper") / "out", jobs=1, laboratory=SMALL)
+
+
+@pytest.fixture(scope="module")
+def page(made):
+    return (made.folder / "paper.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_every_published_number_has_a_status_and_a_reason_if_it_does_not_hold(made, shared):
+    table = pd.read_csv(made.folder / "paper.csv", keep_default_na=False)
+    targets = pd.read_csv(shared / "targets.csv")
+    columns = ["quantity", "surface", "condition"]
+    assert table[columns].values.tolist() == targets[columns].values.tolist()
+    assert set(table.status) <= {REPRODUCED, DIFFERS, INCONSISTENT, MEASURED}
+    unlike = table[table.status != REPRODUCED]
+    assert unlike.note.str.split().str.len().min() >= 5
+    computed = table[table.status.isin([REPRODUCED, DIFFERS])]
+    assert (computed.computed != "").all() and (computed.tolerance != "").all()
+
+
+def test_every_figure_is_there_with_its_origin_its_numbers_and_its_words(made, page):
+    said = {image["alt"] for image in Reader(page).all("img")}
+    records = json.loads((made.folder / "paper.json").read_text())["figures"]
+    assert [one["name"] for one in records] == [one.name for one in FIGURES]
+    for one in records:
+        assert (made.folder / one["file"]).read_text().startswith("<?xml")
+        assert len(pd.read_csv(made.folder / one["data"])) >= 2
+        assert one["alt"] in said and re.search(r"\d", one["alt"].removeprefix(one["title"]))
+        assert one["kinds"] and set(one["kinds"]) <= {COMPUTED, SIMULATED}
+
+
+def test_each_number_stands_once_at_its_place(made):
+    rows = json.loads((made.folder / "paper.json").read_text())["numbers"]
+    claimed = [sum(figure.has(row) for figure in FIGURES) for row in rows]
+    assert max(claimed) == 1
+    for figure in FIGURES:
+        assert any(row["figure"] == figure.name for row in rows) == bool(figure.claims)
+
+
+def test_shear_stress_given_to_the_rig_comes_back(made):
+    fits = pd.read_csv(made.folder / "data" / "shear_stress.csv")
+    assert fits.surface.tolist() == ["Sb-S", "Sb-R"]
+    assert fits.printed_shear_stress_Pa.between(
+        fits.shear_stress_low_Pa, fits.shear_stress_high_Pa
+    ).all()
+
+
+def test_page_asks_nothing_of_the_network_and_its_links_lead_somewhere(made, page):
+    reader = Reader(page)
+    ids = [attrs["id"] for _, attrs in reader.elements if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    for tag, attrs in reader.elements:
+        assert attrs.get("src", "data:").startswith("data:"), tag
+    for link in reader.all("a"):
+        target = link["href"]
+        assert target[1:] in ids if target.startswith("#") else (made.folder / target).is_file()
+    policy = next(meta for meta in reader.all("meta") if "http-equiv" in meta)["content"]
+    assert "default-src 'none'" in policy and "unsafe" not in policy
+
+
+@pytest.mark.slow
+def test_page_opens_in_a_browser_without_a_word_or_a_fault(made, tmp_path):
+    if not BROWSER:
+        message = "no chromium was found to open the page with"
+        (pytest.fail if os.environ.get("TRIBOLAB_REQUIRE_BROWSER") else pytest.skip)(message)
+    address = (made.folder / "paper.html").as_uri()
+    with chromium(tmp_path / "profile") as browser:
+        for width, dark in ((1400, False), (400, True)):
+            with browser.page(address, width, 900, dark) as page:
+                sizes = page.run(
+                    "Promise.all(Array.from(document.images, i => { i.loading = 'eager';"
+                    "return i.decode().then(() => i.naturalWidth) }))"
+                )
+                assert len(sizes) == len(FIGURES) and min(sizes) > 200
+                assert page.run("document.documentElement.scrollWidth") <= width
+                page.run(f"{AXE};0")
+                faults = page.run(
+                    "axe.run(document, {resultTypes: ['violations']}).then(found => found"
+                    ".violations.filter(v => ['serious', 'critical'].includes(v.impact))"
+                    ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
+                )
+                assert faults == []
+                page.click("#numbers-table th:nth-child(6) button")
+                status = page.run(
+                    "Array.from(document.querySelectorAll('#numbers-table tbody tr'),"
+                    "row => Number(row.cells[5].dataset.sort || 'NaN')).filter(x => x === x)"
+                )
+                assert status == sorted(status) and len(status) > 40
+                assert page.console == []
+                assert page.requests == [address]
+
+
+def test_a_folder_with_something_else_is_refused_before_any_work(tmp_path):
+    (tmp_path / "thesis.tex").write_text("years of work")
+    done = CliRunner().invoke(cli.app, ["reproduce", "-o", str(tmp_path), "-q"])
+    assert done.exit_code == cli.USAGE
+    assert "thesis.tex" in done.output and "--output" in done.output
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_interrupted_it_leaves_what_was_there(made):
+    before = {path: path.stat().st_mtime_ns for path in made.folder.rglob("*")}
+
+    def stop(stage, done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(made.folder, jobs=1, laboratory=SMALL, progress=stop)
+    assert {path: path.stat().st_mtime_ns for path in made.folder.rglob("*")} == before
+    assert [path.name for path in made.folder.parent.iterdir()] == ["out"]

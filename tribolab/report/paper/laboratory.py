@@ -1,0 +1,91 @@
+"""The virtual rig in place of the paper's laboratory: raw files, and what the pipeline finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.errors import AnalysisError
+from tribolab.studies import xu2026
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.surface_plan import PlannedSurface
+
+Progress = Callable[[str, int, int], None]
+FOLDER = "simulated"
+
+
+@dataclass(frozen=True)
+class Laboratory:
+    """What the virtual rig measures: by default all that the paper measured, each once.
+
+    Parameters
+    ----------
+    loads
+        Normal forces [N] in glycerol; dry the lowest of them.
+    speeds
+        Sliding speeds [m/s]; 3 um/s is among them because the paper shows traces at it.
+    scans
+        Profiles of each surface.
+    seed
+        The same seed gives the same raw files.
+    """
+
+    loads: tuple[float, ...] = xu2026.system.loads
+    speeds: tuple[float, ...] = tuple(sorted({*xu2026.SPEEDS, 3e-6}))
+    scans: int = xu2026.profilometer.scans
+    seed: int = 0
+
+
+def simulate(
+    laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
+) -> Campaign:
+    """Let the rig write its raw files below a folder, and return the campaign."""
+    from tribolab.campaign.config import load_campaign
+    from tribolab.rig import Protocol, Rig, simulate_campaign
+
+    file = simulate_campaign(
+        folder / FOLDER,
+        laboratory.seed,
+        loads=laboratory.loads,
+        n_repeats=1,
+        n_scans=laboratory.scans,
+        rig=Rig(protocol=Protocol(speeds=laboratory.speeds)),
+        progress=progress,
+        executor=executor,
+    )
+    return load_campaign(file)
+
+
+def analyse(
+    campaign: Campaign, folder: Path, executor: Executor | None, progress: Progress
+) -> tuple[Outcome, tuple[PlannedSurface, ...]]:
+    """Take the raw files through the ordinary pipeline.
+
+    Returns
+    -------
+    tuple
+        What came of the runs, whose data files are in ``data/``, and the surfaces with their
+        scans. Contact and models are computed on the stand-in spectra and not here.
+
+    Raises
+    ------
+    AnalysisError
+        If a run failed.
+    """
+    from tribolab.campaign.pipeline import process
+    from tribolab.campaign.surface_plan import plan_surfaces
+
+    runs_only = campaign.model_copy(
+        update={"surface": (), "model": campaign.model.model_copy(update={"compute": False})}
+    )
+    outcome = process(runs_only, folder, executor=executor, progress=progress)
+    if outcome.failed:
+        run = outcome.failed[0]
+        raise AnalysisError(f"the virtual rig's run {run.name} failed: {run.reason}")
+    return replace(outcome, folder=folder), plan_surfaces(campaign, outcome.runs)
