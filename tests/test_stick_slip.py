@@ -175,6 +175,25 @@ def test_a_segment_shorter_than_a_few_periods_claims_nothing():
         assert not stick_slip(run, whole(run))["events"].item() > 2
 
 
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+@pytest.mark.parametrize("size", [1e-8, 1.0, 1e8])
+def test_odd_signals_have_a_defined_answer(size, offset):
+    x = np.arange(600.0)
+    odd = (
+        x,
+        np.exp(x / 600),
+        np.where(x % 7 == 0, 5.0, 0.0),
+        np.where(x < 300, 0.0, 1.0),
+        np.round((x / 31) % 1.0, 1),
+        np.abs(x % 17 - 8.5),
+    )
+    for signal in odd:
+        run = a_run(size * signal + offset)
+        found = stick_slip(run, whole(run)).isel(segment=0)
+        if found["waveform"].item() != "not evaluated":
+            assert np.isfinite(found["oscillation_swing"].item())
+
+
 def test_no_segments_give_an_empty_answer():
     run = a_run(np.ones(100), speed=0.0)
     found = stick_slip(run, find_segments(run))

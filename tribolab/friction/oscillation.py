@@ -190,7 +190,7 @@ def oscillation(record: Record) -> Oscillation | None:
         swing=float(_swing(powers)),
         noise=float(np.sqrt((background * width)[below].sum())),
         share=float(min(variance / max(total, 1e-300), 1.0)),
-        harmonic_content=float(np.sqrt(powers[1:].sum() / max(powers[0], 1e-300))),
+        harmonic_content=float(np.sqrt(powers[1:].sum() / max(powers[0], 1e-9 * variance, 1e-300))),
         bands=middle,
         power=power,
         background=background,
