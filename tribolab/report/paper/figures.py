@@ -51,6 +51,8 @@ class PaperFigure:
         condition.
     wide
         Whether it wants the whole width of the page.
+    told
+        Whether the caption, too, has what it shows in numbers.
     """
 
     name: str
@@ -61,6 +63,7 @@ class PaperFigure:
     draw: Callable[[PaperData], Drawn]
     claims: tuple[tuple[str, str, str], ...] = ()
     wide: bool = False
+    told: bool = False
 
     @property
     def file(self) -> str:
@@ -134,8 +137,9 @@ FIGURES = (
     PaperFigure(
         "dry_shear_stress", "dry", "Dry shear stress over speed", (SIMULATED, COMPUTED),
         "Simulated friction times nominal pressure over the computed dry contact area with "
-        "adhesion; bars: standard deviation while sliding.",
-        drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),),
+        "adhesion; bars: standard deviation while sliding. The ratio is what the rig was given, "
+        "but for the areas, which are computed:",
+        drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), told=True,
     ),
     PaperFigure(
         "dry_traces", "dry", "Dry friction over sliding distance", (SIMULATED,), _SLIP,
@@ -208,8 +212,8 @@ FIGURES = (
     PaperFigure(
         "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
         "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
-        "paper finds no visible effect on Sb-S and a small one on Sb-R.",
-        drawing.friction_factor_effect,
+        "paper finds no visible effect on Sb-S and a small one on Sb-R. Here:",
+        drawing.friction_factor_effect, told=True,
     ),
     PaperFigure(
         "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),
@@ -262,7 +266,8 @@ def draw(task: DrawTask) -> dict[str, Any]:
     with _ALONE:
         figure, said = known.draw(task.data)
         alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
-        record = save_figure(figure, task.data.folder, known.file, known.caption, alt)
+        caption = f"{known.caption} {said}" if known.told else known.caption
+        record = save_figure(figure, task.data.folder, known.file, caption, alt)
     return record | {
         "name": known.name,
         "section": known.section,
