@@ -167,7 +167,8 @@ def test_a_misspelt_check_on_scans_names_the_nearest(tmp_path):
 @pytest.mark.slow
 def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, scans):
     x, heights = scans
-    campaign = copied(simulated(tmp_path / "a", repeats=1, scans=True), tmp_path / "b")
+    made = simulated(tmp_path / "a", repeats=1, scans=True, models=True)
+    campaign = copied(made, tmp_path / "b")
     [file] = scan_files(load_campaign(campaign))
     written(file, holed(heights[0]), x)
     text = campaign.read_text("utf-8")
