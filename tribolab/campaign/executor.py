@@ -56,20 +56,27 @@ def default_jobs() -> int:
 def completed(
     executor: Executor | None, function: Callable[[Any], Any], tasks: Iterable[Any]
 ) -> Iterator[tuple[Any, Future]]:
-    """Yield (task, its finished future) as the tasks end; without executor, here and in order.
+    """Give (task, its finished future) as the tasks end; without executor, here and in order.
 
-    If the caller stops early, what has not begun is cancelled.
+    With an executor the tasks begin at once, whenever the caller asks for what they came to. If
+    it stops asking early, what has not begun is cancelled.
     """
     if executor is None:
-        for task in tasks:
-            future: Future = Future()
-            try:
-                future.set_result(function(task))
-            except Exception as error:  # handed on: whoever asks for the result gets it
-                future.set_exception(error)
-            yield task, future
-        return
-    futures = {executor.submit(function, task): task for task in tasks}
+        return _here(function, tasks)
+    return _as_they_end({executor.submit(function, task): task for task in tasks})
+
+
+def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tuple[Any, Future]]:
+    for task in tasks:
+        future: Future = Future()
+        try:
+            future.set_result(function(task))
+        except Exception as error:  # handed on: whoever asks for the result gets it
+            future.set_exception(error)
+        yield task, future
+
+
+def _as_they_end(futures: dict[Future, Any]) -> Iterator[tuple[Any, Future]]:
     try:
         for future in as_completed(futures):
             yield futures[future], future

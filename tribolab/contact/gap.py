@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -99,8 +99,22 @@ def gap_distribution(
     >>> round(share, 3), bool(gaps.contact_area_ratio < 0.05)
     (1.0, True)
     """
-    if variant not in ("flow", "plain"):
-        raise AnalysisError(f"variant: '{variant}' is none{nearest(variant, ['flow', 'plain'])}")
+    return gap_distributions(pressure, psd, effective_modulus, (variant,), gamma, cutoff)[0]
+
+
+def gap_distributions(
+    pressure: str | ArrayLike | xr.DataArray,
+    psd: xr.Dataset,
+    effective_modulus: str | float,
+    variants: Sequence[Variant] = ("flow", "plain"),
+    gamma: float = 0.45,
+    cutoff: str | float = 1e-9,
+) -> list[xr.Dataset]:
+    """Several variants of `gap_distribution` at once: what they share is computed but once."""
+    for variant in variants:
+        if variant not in ("flow", "plain"):
+            known = nearest(variant, ["flow", "plain"])
+            raise AnalysisError(f"variant: '{variant}' is none{known}")
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     over = labelled(pressure, "pressure")
     values = pressure_values(over).ravel()
@@ -118,6 +132,24 @@ def gap_distribution(
             f"pressure: at {values[closed].min():.4g} Pa the contact is complete, its mean "
             f"separation {mean[closed].max():.2g} m; no gap is left: leave such pressures out"
         )
+    facts = {"gamma": gamma, "cutoff_m": smallest}
+    return [
+        stamp(
+            _distribution(over, mean, openings, area, variant, smallest), variant=variant, **facts
+        )
+        for variant in variants
+    ]
+
+
+def _distribution(
+    over: xr.DataArray,
+    mean: np.ndarray,
+    openings: _Openings,
+    area: np.ndarray,
+    variant: Variant,
+    cutoff: float,
+) -> xr.Dataset:
+    """Spread the openings of each pressure over a grid of gaps, with the mean that is given."""
     if variant == "flow":
         height = openings.height * openings.gap / np.hypot(openings.height, openings.gap)
         openings = openings._replace(height=height)
@@ -125,26 +157,20 @@ def gap_distribution(
     openings = openings._replace(
         gap=openings.gap * scale[:, None], height=openings.height * scale[:, None]
     )
-    gap, step = _grid(openings, smallest)
+    gap, step = _grid(openings, cutoff)
     density = np.stack(
-        [_density(gap, step[0], *(part[i] for part in openings)) for i in range(values.size)]
+        [_density(gap, step[0], *(part[i] for part in openings)) for i in range(mean.size)]
     )
-    grid = ("gap", gap)
     shape, dims = over.shape, over.dims
-    return stamp(
-        xr.Dataset(
-            {
-                "gap_density": ((*dims, "gap"), density.reshape(*shape, -1)),
-                "gap_weight": ((*dims, "gap"), (density * step).reshape(*shape, -1)),
-                "contact_area_ratio": (dims, area.reshape(shape)),
-                "separation": (dims, mean.reshape(shape)),
-                "gap_scale": (dims, scale.reshape(shape)),
-            },
-            coords={**over.coords, "gap": grid},
-        ),
-        variant=variant,
-        gamma=gamma,
-        cutoff_m=smallest,
+    return xr.Dataset(
+        {
+            "gap_density": ((*dims, "gap"), density.reshape(*shape, -1)),
+            "gap_weight": ((*dims, "gap"), (density * step).reshape(*shape, -1)),
+            "contact_area_ratio": (dims, area.reshape(shape)),
+            "separation": (dims, mean.reshape(shape)),
+            "gap_scale": (dims, scale.reshape(shape)),
+        },
+        coords={**over.coords, "gap": ("gap", gap)},
     )
 
 
@@ -270,14 +296,23 @@ def _grid(openings: _Openings, cutoff: float) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
+def _bell(z: np.ndarray) -> np.ndarray:
+    """exp(-z^2/2), in the place of z."""
+    np.multiply(z, z, out=z)
+    np.multiply(z, -0.5, out=z)
+    return np.exp(z, out=z)
+
+
 def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
     """Sum of folded Gaussians at the gaps asked for; the mean density in the first cell."""
     some = share > 0
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
-    a, b = at[1:, None] / height, gap / height
-    bells = np.exp(-((a - b) ** 2) / 2) + np.exp(-((a + b) ** 2) / 2)
-    density = bells @ (share / (np.sqrt(2 * np.pi) * height))
+    a, b, factor = at[1:, None] / height, gap / height, share / (np.sqrt(2 * np.pi) * height)
+    bells = _bell(a - b)
+    a += b
+    bells += _bell(a)
+    density = bells @ factor
     ends = (first + gap) / (np.sqrt(2) * height), (first - gap) / (np.sqrt(2) * height)
     return np.insert(density, 0, share @ (erf(ends[0]) + erf(ends[1])) / (2 * first))

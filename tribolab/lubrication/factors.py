@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.special import erfinv
 
-from tribolab.contact.gap import gap_distribution
+from tribolab.contact.gap import gap_distributions
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
@@ -305,10 +305,7 @@ def _averages(
 ) -> tuple[np.ndarray, ...]:
     """phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
     pressure = pressure_of.pressure(u)
-    flow, plain = (
-        gap_distribution(pressure, psd, 1.0, variant, gamma, cutoff)
-        for variant in ("flow", "plain")
-    )
+    flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff)
     gap, weight = flow["gap"].values, flow["gap_weight"].values
     touching = flow["contact_area_ratio"].values
     # the sums' own mean, so that their error of quadrature cancels in phi - 1

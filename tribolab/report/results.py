@@ -14,6 +14,7 @@ from tribolab.campaign.executor import completed
 from tribolab.report import sliding, surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
+from tribolab.report.figure_files import DRAWING
 from tribolab.report.model_figures import draw_model
 from tribolab.report.model_part import write_models
 from tribolab.report.page import PageTrace, write_page
@@ -58,22 +59,35 @@ def write_report(
 
     findings = [_failure(run) for run in outcome.runs if not run.done]
     findings += [_left_out(run) for run in outcome.runs if run.quality in ("fail", "error")]
-    summaries = _summaries(outcome, executor, tell, findings)
+    # what the others wait for begins first; meanwhile the rows of the tables are read here
+    runs = _RunFigures(outcome, executor)
+    with DRAWING:
+        rows = _surfaces(outcome, findings)
+        models, model_tasks = write_models(outcome, findings)
+    done = [surface for surface in outcome.surfaces if surface.name in rows]
+    early = _Figures(
+        {
+            "surface_figures": (draw_surfaces, plan_surface_figures(done, folder)),
+            "model_figures": (draw_model, model_tasks),
+        },
+        executor,
+    )
+    summaries = runs.collect(tell, findings)
     for summary in summaries.values():
         findings += summary.findings
-    curves, points = _curves(outcome, summaries, findings)
-    readable = {curve["name"] for curve in curves}
-    rows = _surfaces(outcome, findings)
-    done = [surface for surface in outcome.surfaces if surface.name in rows]
-    models, model_tasks = write_models(outcome, findings)
-    modes, slip_tasks, slip_rows = _sliding(outcome, readable, rows, findings)
-    planned = {
-        "figures": (draw_curves, plan_figures(_named(outcome, readable), folder)),
-        "surface_figures": (draw_surfaces, plan_surface_figures(done, folder)),
-        "model_figures": (draw_model, model_tasks),
-        "sliding_figures": (draw_sliding, slip_tasks),
-    }
-    drawn = _drawn(planned, executor, tell, findings)
+    with DRAWING:
+        curves, points = _curves(outcome, summaries, findings)
+        readable = {curve["name"] for curve in curves}
+        modes, slip_tasks, slip_rows = _sliding(outcome, readable, rows, findings)
+    known = [curve for curve in outcome.curves if curve.name in readable]
+    late = _Figures(
+        {
+            "figures": (draw_curves, plan_figures(known, folder)),
+            "sliding_figures": (draw_sliding, slip_tasks),
+        },
+        executor,
+    )
+    drawn = early.collect(tell, findings) | late.collect(tell, findings)
 
     ordered = tables.findings_table(findings)
     _write_tables(outcome, summaries, points, ordered)
@@ -111,21 +125,27 @@ def _error(run: str, where: str, error: BaseException) -> dict[str, str]:
     return {"severity": "error", "run": run, "where": where, "message": text}
 
 
-def _summaries(
-    outcome: Outcome, executor: Executor | None, tell: Progress, findings: list[dict[str, str]]
-) -> dict[str, RunSummary]:
-    done = [run for run in outcome.runs if run.done]
-    points, fine = trace_points(len(done))
-    tasks = [RunTask(run, Path(outcome.folder), points, fine) for run in done]
-    found: dict[str, RunSummary] = {}
-    for number, (task, future) in enumerate(completed(executor, summarise_run, tasks)):
-        error = future.exception()
-        if error is None:
-            found[task.run.name] = future.result()
-        else:  # recorded: the other runs have their place in the report
-            findings.append(_error(task.run.name, "report", error))
-        tell("figures", number + 1, len(tasks))
-    return {run.name: found[run.name] for run in outcome.runs if run.name in found}
+class _RunFigures:
+    """The figures and numbers of the runs, in work."""
+
+    def __init__(self, outcome: Outcome, executor: Executor | None) -> None:
+        done = [run for run in outcome.runs if run.done]
+        points, fine = trace_points(len(done))
+        tasks = [RunTask(run, Path(outcome.folder), points, fine) for run in done]
+        self.names = [run.name for run in done]
+        self.work = completed(executor, summarise_run, tasks)
+
+    def collect(self, tell: Progress, findings: list[dict[str, str]]) -> dict[str, RunSummary]:
+        """Wait for them; those that cannot be shown are findings."""
+        found: dict[str, RunSummary] = {}
+        for number, (task, future) in enumerate(self.work):
+            error = future.exception()
+            if error is None:
+                found[task.run.name] = future.result()
+            else:  # recorded: the other runs have their place in the report
+                findings.append(_error(task.run.name, "report", error))
+            tell("figures", number + 1, len(self.names))
+        return {name: found[name] for name in self.names if name in found}
 
 
 def _curves(
@@ -204,33 +224,38 @@ def _sliding(
         return [], [], table
 
 
-def _named(outcome: Outcome, names: set[str]) -> list[CurveOutcome]:
-    return [curve for curve in outcome.curves if curve.name in names]
+class _Figures:
+    """Figures of several kinds in one queue, in work."""
 
+    def __init__(
+        self,
+        planned: Mapping[str, tuple[Callable[[Any], dict[str, str]], Sequence[Any]]],
+        executor: Executor | None,
+    ) -> None:
+        self.tasks = {kind: tasks for kind, (_, tasks) in planned.items()}
+        queue = [(draw, task) for draw, tasks in planned.values() for task in tasks]
+        self.count = len(queue)
+        self.work = completed(executor, _draw, queue)
 
-def _drawn(
-    planned: Mapping[str, tuple[Callable[[Any], dict[str, str]], Sequence[Any]]],
-    executor: Executor | None,
-    tell: Progress,
-    findings: list[dict[str, str]],
-) -> dict[str, list[dict[str, str]]]:
-    """Draw figures, all in one queue, and return the records of each kind.
+    def collect(
+        self, tell: Progress, findings: list[dict[str, str]]
+    ) -> dict[str, list[dict[str, str]]]:
+        """Wait for them and return the records of each kind.
 
-    Those that cannot be drawn are findings.
-    """
-    queue = [(draw, task) for draw, tasks in planned.values() for task in tasks]
-    drawn: dict[str, dict[str, str]] = {}
-    for number, ((_, task), future) in enumerate(completed(executor, _draw, queue)):
-        error = future.exception()
-        if error is None:
-            drawn[task.file] = future.result()
-        else:  # recorded, as above
-            findings.append(_error("", f"figure {task.title}", error))
-        tell("other figures", number + 1, len(queue))
-    return {
-        kind: [drawn[task.file] for task in tasks if task.file in drawn]
-        for kind, (_, tasks) in planned.items()
-    }
+        Those that cannot be drawn are findings.
+        """
+        drawn: dict[str, dict[str, str]] = {}
+        for number, ((_, task), future) in enumerate(self.work):
+            error = future.exception()
+            if error is None:
+                drawn[task.file] = future.result()
+            else:  # recorded, as above
+                findings.append(_error("", f"figure {task.title}", error))
+            tell("other figures", number + 1, self.count)
+        return {
+            kind: [drawn[task.file] for task in tasks if task.file in drawn]
+            for kind, tasks in self.tasks.items()
+        }
 
 
 def _draw(job: tuple[Callable[[Any], dict[str, str]], Any]) -> dict[str, str]:
