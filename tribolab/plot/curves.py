@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.frame import legend_above
+from tribolab.plot.frame import few_ticks, legend_above
 from tribolab.plot.labels import column, force_text, label, plain
 from tribolab.plot.style import (
     GREY,
@@ -228,9 +228,7 @@ def _scales(axes: Axes, name: str, numbered: bool) -> None:
         room = 1.8 if high / low > 3 else 10.0
         axes.set_xscale("log")
         axes.set_xlim(low / room, high * room)
-        axes.xaxis.set_major_locator(LogLocator(numticks=9))
-        axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        few_ticks(axes.xaxis, low / room, high * room, decades=9)
         axes.set_xlabel(label("sliding_speed"))
     axes.set_ylabel(label(name, "half loop of the friction force" if name == "half_loop" else None))
     low, high = axes.dataLim.intervaly

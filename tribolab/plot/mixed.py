@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.frame import band, colours, legend_above, logarithmic, single_axes
+from tribolab.plot.frame import band, colours, few_ticks, legend_above, logarithmic, single_axes
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     BLACK,
@@ -159,9 +159,7 @@ def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style) -> None:
 def _speeds(axes: Axes, speed: np.ndarray) -> None:
     axes.set_xscale("log")
     axes.set_xlim(speed.min(), speed.max())
-    axes.xaxis.set_major_locator(LogLocator(numticks=9))
-    axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10), numticks=90))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    few_ticks(axes.xaxis, speed.min(), speed.max(), decades=9)
     axes.set_xlabel(label("sliding_speed"))
 
 
