@@ -53,13 +53,18 @@ def brief(error: BaseException, most: int = 300) -> str:
     return text if len(text) <= most else f"{text[:most]} ..."
 
 
+_MOST = 60  # letters of a word; what a damaged file calls a name may have any length
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return a hint naming the known words nearest to `word`, ready to end an error message.
 
     >>> nearest("viscosty", ["viscosity", "radius"])
     "; did you mean 'viscosity'?"
+    >>> len(nearest("Time", ["[" * 100_000]))  # of a damaged file
+    76
     """
-    known = list(known)
+    known = [one if len(one) <= _MOST else f"{one[:_MOST]} ..." for one in known]
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
     if close:
         return "; did you mean " + " or ".join(repr(c) for c in close) + "?"

@@ -175,7 +175,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
     )
     if known.youngs_modulus:
         share = numbers["uniform_stress_Pa"] / known.youngs_modulus
-        text += f", and its shear stress would be {share:.2g} of Young's modulus"
+        text += f", and such a slip would shear the rubber with {share:.2g} of its Young's modulus"
     return Evidence(FOR, text, "stress")
 
 
