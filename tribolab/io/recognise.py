@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 import numpy as np
@@ -12,6 +13,8 @@ from tribolab.io.headers import find_tables, split_row
 from tribolab.io.signature import File
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
+_FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
+_PREAMBLE = 1 << 14  # characters in which the marks of a preamble are sought
 _LINKED = 0.999  # correlation of the same signal in volts and in its unit
 
 
@@ -51,10 +54,9 @@ def _names_missing(rules: Recognise, names: set[str]) -> str | None:
 def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     rules = dialect.recognise
     encoding = "utf-16" if file.head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
-    text = file.head[: 1 << 16].decode(encoding, errors="replace").replace("\r\n", "\n")
-    text = text.removeprefix("\ufeff")
+    text = _text(file.head[: 1 << 16], encoding)
     for pattern in rules.preamble:
-        if not re.search(pattern, text, re.MULTILINE):
+        if not re.search(pattern, text[:_PREAMBLE], re.MULTILINE):
             return f"nothing in it matches '{pattern}'"
     try:
         raw = find_tables(file, dialect)
@@ -73,12 +75,22 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     return None
 
 
+@functools.lru_cache(maxsize=4)  # a dozen dialects look at the same file, one after the other
+def _text(head: bytes, encoding: str) -> str:
+    text = head.decode(encoding, errors="replace").replace("\r\n", "\n")
+    return text.removeprefix("\ufeff")
+
+
 def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
     """Check a table without a header by the number and the kinship of its columns."""
-    lines = [line for line in text.splitlines()[:-1][:_ROWS] if line.strip()]
-    rows = [split_row(line, dialect.text.delimiter) for line in lines]
-    if not rows or any(len(row) != dialect.recognise.columns for row in rows):
-        return f"it does not have {dialect.recognise.columns} columns"
+    columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
+    first = _FIRST_LINE.match(text)[1]  # of most files it tells
+    rows = []
+    if len(split_row(first, delimiter)) == columns:
+        lines = text.splitlines()[:-1][:_ROWS]
+        rows = [split_row(line, delimiter) for line in lines if line.strip()]
+    if not rows or any(len(row) != columns for row in rows):
+        return f"it does not have {columns} columns"
     try:
         numbers = np.array(rows, dtype=float)
     except ValueError:
