@@ -87,6 +87,9 @@ def judge(row: Published, computed: Computed | Measured, own: Own | None = None)
         elif computed.exact:
             reasons.append("the paper's own inputs give the computed number in closed form")
     status = INCONSISTENT if reasons else REPRODUCED if agrees else DIFFERS
+    if agrees and not row.relation and low == high:
+        if abs(computed.value - row.si) > computed.tolerance * abs(row.si):
+            reasons.append("agrees within the last digit that is printed")
     return Verdict(status, "; ".join([*reasons, computed.note] if computed.note else reasons))
 
 
