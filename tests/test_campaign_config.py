@@ -4,10 +4,12 @@ import json
 
 import pytest
 
+from tribolab.campaign import catalogue
 from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema, load_campaign
 from tribolab.campaign.plan import plan
 from tribolab.campaign.toml_lines import line_of
 from tribolab.errors import ConfigError
+from tribolab.io.dialects import known_dialects, load_dialect
 from tribolab.io.schema_folder import schema_folder
 
 WHOLE = """\
@@ -231,6 +233,17 @@ def test_nothing_can_be_changed_after_reading(folder):
 def test_the_published_schema_is_the_models():
     published = json.loads((schema_folder() / SCHEMA_FILE).read_text(encoding="utf-8"))
     assert published == campaign_schema()
+
+
+def test_the_published_page_has_every_key_quantity_and_default():
+    page = (schema_folder() / catalogue.PAGE_FILE).read_text(encoding="utf-8")
+    assert page == catalogue.campaign_page()
+    assert '| `radius` | Radius of the cylinder. | m | `"7 cm"` |  |' in page
+    assert '| `fastest` | Highest sliding speed. | m/s | `"10 cm/s"` | `0.1` |' in page
+    assert "| `min_samples` | Fewest samples in a segment. | integer, ≥ 2 |  | `10` |" in page
+    dialects = [load_dialect(path) for path in known_dialects().values()]
+    for quantity in {column.quantity for dialect in dialects for column in dialect.column}:
+        assert f"\n| `{quantity}` | " in page
 
 
 def test_python_may_give_plain_numbers_in_si():

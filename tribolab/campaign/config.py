@@ -37,7 +37,12 @@ def _si(unit: str, example: str) -> Any:
         except UnitError as error:
             raise ValueError(f"{str(error).removeprefix(': ')} (e.g. {example!r})") from error
 
-    schema = {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": [example]}
+    schema = {
+        "type": "string",
+        "pattern": _NUMBER_WITH_UNIT,
+        "examples": [example],
+        "unit": unit,  # no word of JSON Schema: our own, as in run.schema.json
+    }
     return Annotated[float, BeforeValidator(convert), WithJsonSchema(schema)]
 
 
@@ -127,9 +132,9 @@ class Segments(Table):
     min_duration: _positive_si("s", "0.5 s") | None = None
     """Shorter segments are left out."""
     max_gap: _positive_si("s", "2 s") | None = None
-    """Longest pause between two samples within a segment."""
+    """Longest pause between two samples within a segment; by default a twentieth of it."""
     rest_speed: _positive_si("m/s", "0.1 um/s") | None = None
-    """Speed below which the slider is at rest."""
+    """Speed below which the slider is at rest; by default 1e-5 of the highest."""
 
 
 class Friction(Table):

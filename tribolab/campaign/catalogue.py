@@ -1,0 +1,163 @@
+"""All keys of a campaign file, and what a column may hold, as a page: CAMPAIGN.md."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from tribolab.campaign.config import campaign_schema
+from tribolab.friction.segments import find_segments
+from tribolab.quantities import QUANTITIES
+
+PAGE_FILE = "CAMPAIGN.md"
+_HEAD = """# The campaign file
+
+Every table and key that a campaign file may have. A quantity is text with a unit, any that
+converts to the one named here: `"31 N"`, `"6 mm/min"`, `"20 °C"`. Defaults are in that unit. A key
+that is not listed is an error. `campaign.schema.json` says the same to editors. At the end:
+[what a column may be](#what-a-column-may-be) and
+[what a header may give](#what-a-header-or-a-file-name-may-give). This page is
+made from the code, and a test keeps the two equal.
+"""
+_COLUMNS = """## What a column may be
+
+`quantity` of a `[[column]]` in a dialect (see [README.md](README.md)). Signals of a run:
+"""
+_SCANS = """Of a scan:
+"""
+_VALUES = """## What a header or a file name may give
+
+`name` of a `[[value]]` in a dialect: a single value that stands outside the table. Any name
+will do; it becomes an attribute of the run: a number in SI with its unit in the name
+(`set_speed_m_s`), or, without `unit`, a text. A name that is no quantity also wants `to`, the SI
+unit to keep it in. These are not only kept but used:
+"""
+
+# Names of tables that hold tables of the user's own names, and of lists of tables.
+_TABLE_NAMES = {
+    "medium": "[medium.NAME]",
+    "surface": "[[surface]]",
+    "run": "[[run]]",
+}
+_LAST_SIGNAL = "cycle"
+_SCAN_COLUMNS = ("x", "y", "height")
+_USED_VALUES = {
+    "set_speed": (
+        "m/s",
+        "the sliding speed where the file records neither velocity nor position; in checks the "
+        "speed that was asked for",
+    ),
+    "set_normal_force": (
+        "N",
+        "the load of the run where `[[run]]` gives no `normal_force`; in checks the load asked for",
+    ),
+    "recorded_at": ("", "date and time (ISO 8601), to join two clocks and for the report"),
+    "track_radius": (
+        "m",
+        'the radius for `[speed] source = "rotation"`; any name does that `radius_value` repeats',
+    ),
+    "tip_radius": ("m", "of a scan: radius of the stylus; below its reach the spectrum ends"),
+    "stated_length": ("m", "of a scan: its length as the instrument says, checked"),
+    "stated_pitch": ("m", "of a scan: the distance of its points as the instrument says, checked"),
+    "instrument_Ra": (
+        "m",
+        "of a scan: Ra as the instrument computed it, checked; also `instrument_Rq`",
+    ),
+}
+
+
+def campaign_page() -> str:
+    """Return the page: tables and keys with meaning, unit or type, and default; quantities.
+
+    Examples
+    --------
+    >>> "## [contact]" in campaign_page()
+    True
+    """
+    schema = campaign_schema()
+    required = schema["required"]
+    parts = [_HEAD]
+    for name, field in schema["properties"].items():
+        table = schema["$defs"][_reference(field)]
+        title = _TABLE_NAMES.get(name, f"[{name}]")
+        wanted = "At least one is wanted." if name == "run" else "Required."
+        needed = f" {wanted}" if name in required else ""
+        known = inspect.signature(find_segments).parameters if name == "segments" else {}
+        parts += [f"## {title}\n", f"{table['description']}{needed}\n", *_keys(table, known)]
+    names = list(QUANTITIES)
+    signals = (*names[: names.index(_LAST_SIGNAL) + 1], "friction_coefficient")
+    parts += [_COLUMNS, *_quantities(signals), _SCANS, *_quantities(_SCAN_COLUMNS), _VALUES]
+    rows = [
+        (f"`{name}`", unit or "text", "" if name in QUANTITIES or not unit else f'`"{unit}"`', text)
+        for name, (unit, text) in _USED_VALUES.items()
+    ]
+    parts += _table(("name", "SI unit", "`to`", "used for"), rows)
+    return "\n".join(parts)
+
+
+def _reference(field: Mapping[str, Any]) -> str:
+    """Name of the table that a field of the schema refers to, however it is wrapped."""
+    inner = field.get("items") or field.get("additionalProperties") or field
+    return str(inner["$ref"]).rpartition("/")[2]
+
+
+def _keys(table: Mapping[str, Any], parameters: Mapping[str, inspect.Parameter]) -> list[str]:
+    """Rows of a table's keys; a default that the model leaves to a function is the function's."""
+    rows = []
+    for name, field in table["properties"].items():
+        what, example = _kind(field)
+        default = field.get("default")
+        if default is None and name in parameters:
+            default = parameters[name].default
+        said = "required" if name in table.get("required", ()) else _default(default)
+        rows.append((f"`{name}`", field["description"], what, example, said))
+    return _table(("key", "meaning", "unit or type", "example", "default"), rows)
+
+
+def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
+    """Return unit or type of a key in words, and an example of a quantity."""
+    kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
+    if len(kinds) > 1:  # a text or a list of them
+        return "text, or a list of texts", ""
+    [kind] = kinds
+    if "$ref" in kind:
+        return f"table of the keys of `[{_reference(kind).lower()}]`", ""
+    if "enum" in kind:
+        return ", ".join(f'`"{value}"`' for value in kind["enum"]), ""
+    if "prefixItems" in kind:
+        ends = kind["prefixItems"]
+        shown = ", ".join(f'"{end["examples"][0]}"' for end in ends)
+        return f"{ends[0]['unit']}, two of them", f"`[{shown}]`"
+    if "unit" in kind:
+        return kind["unit"], f'`"{kind["examples"][0]}"`'
+    if kind["type"] == "object":
+        return "table of tables", ""
+    if kind["type"] == "array":
+        return "list of texts", ""
+    words = {"string": "text", "boolean": "`true`, `false`"}
+    return words.get(kind["type"], kind["type"]) + _bounds(kind), ""
+
+
+def _bounds(kind: Mapping[str, Any]) -> str:
+    signs = {"exclusiveMinimum": "&gt;", "minimum": "≥", "exclusiveMaximum": "&lt;", "maximum": "≤"}
+    said = [f"{sign} {kind[name]:g}" for name, sign in signs.items() if name in kind]
+    return f", {' and '.join(said)}" if said else ""
+
+
+def _default(default: Any) -> str:
+    if default is None or default == {} or default == []:
+        return ""
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
+    return f"`{default:g}`" if isinstance(default, float | int) else f'`"{default}"`'
+
+
+def _quantities(names: Iterable[str]) -> list[str]:
+    rows = [(f"`{name}`", QUANTITIES[name].unit, QUANTITIES[name].long_name) for name in names]
+    return _table(("quantity", "SI unit", "meaning"), rows)
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
+    lines = [" | ".join(row) for row in (head, ("---",) * len(head), *rows)]
+    return [*(f"| {line} |" for line in lines), ""]
