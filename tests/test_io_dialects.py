@@ -48,6 +48,20 @@ def test_the_json_schema_beside_the_dialects_is_that_of_the_model():
 
 
 @pytest.mark.parametrize(
+    ("unit", "to"), [("mm/min", "m/s"), ("N/mm", "N/m"), ("N mm", "kg*m**2/s**2")]
+)
+def test_a_value_that_is_no_quantity_is_told_its_own_si_unit_and_the_nearest(tmp_path, unit, to):
+    value = f'[[value]]\nname = "set_sliding_speed"\npattern = "(1)"\nunit = "{unit}"\n'
+    write(tmp_path, BASE + value, "")
+    with pytest.raises(ConfigError, match=r"did you mean .*'set_speed'") as caught:
+        load_dialect(tmp_path / "mine.toml")
+    assert f"add to = '{to}'" in str(caught.value)
+    right = value + f'to = "{to}"\n'
+    write(tmp_path, BASE + right, "")
+    assert load_dialect(tmp_path / "mine.toml").value[0].si_unit == to
+
+
+@pytest.mark.parametrize(
     ("change", "told"),
     [
         (('delimiter = ";"', 'delimeter = ";"'), "did you mean 'delimiter'"),

@@ -132,6 +132,22 @@ def conversion(unit: str, si_unit: str) -> tuple[float, float]:
     return float(f"{scale:.15g}"), float(zero)
 
 
+def base_unit(unit: str) -> str:
+    """Return the SI base units of a unit; "m" where it is no unit.
+
+    Examples
+    --------
+    >>> base_unit("N mm")
+    'kg*m**2/s**2'
+    """
+    import pint
+
+    try:
+        return f"{registry().Quantity(1.0, _clean(unit)).to_base_units().units:~C}"
+    except (pint.PintError, ValueError, TypeError):
+        return "m"
+
+
 def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
     """Turn ``"31 N"``, or a number that already is SI, into an SI float.
 

@@ -181,6 +181,8 @@ class RunEntry(Table):
     """Name of a [medium.*] table."""
     normal_force: _positive_si("N", "31 N") | None = None
     """Set-point of the normal force."""
+    sliding_speed: _positive_si("m/s", "6 mm/min") | None = None
+    """Set-point of the speed; it is the sliding speed where the files record none."""
     instrument: Text | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
     cycles: bool = False

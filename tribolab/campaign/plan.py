@@ -35,8 +35,8 @@ class PlannedRun:
         The same relative to the campaign file, as reports show them.
     surface, medium
         "" where the campaign file says nothing.
-    normal_force
-        Set-point [N], if the campaign file gives it.
+    normal_force, sliding_speed
+        Set-points [N, m/s], if the campaign file gives them.
     instrument
         Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
     segments, friction
@@ -53,6 +53,7 @@ class PlannedRun:
     surface: str
     medium: str
     normal_force: float | None
+    sliding_speed: float | None
     instrument: str | None
     segments: dict[str, Any] = field(default_factory=dict)
     friction: dict[str, Any] = field(default_factory=dict)
@@ -179,6 +180,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
         "surface": entry.surface or "",
         "medium": entry.medium or "",
         "normal_force": entry.normal_force,
+        "sliding_speed": entry.sliding_speed,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction.model_dump(),
         "quality": campaign.quality_options(entry),

@@ -7,6 +7,7 @@ as large as a signal travels between processes.
 from __future__ import annotations
 
 import errno
+import math
 import shutil
 import threading
 import time
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
-from tribolab.errors import OutputError, TribolabError
+from tribolab.errors import ConfigError, OutputError, TribolabError
 from tribolab.provenance import sha256_of_file
 from tribolab.quantities import stamp
 
@@ -205,6 +206,8 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     signals = read(files if len(files) > 1 else files[0], run.instrument)
     if run.normal_force is not None:
         signals.attrs["set_normal_force_N"] = run.normal_force
+    if run.sliding_speed is not None:
+        signals.attrs |= _stated_speed(signals, run.sliding_speed)
     segments = find_segments(signals, **run.segments)
     friction = friction_coefficient(signals, segments, **run.friction)
     slip = stick_slip(signals, segments)
@@ -214,6 +217,20 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     for data in (signals, segments, friction, slip):
         data.attrs.update(_labels(run), config_sha256=run.config_sha256)
     return signals, segments, friction, slip, found.status
+
+
+def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
+    """Attributes of a run whose speed the campaign file says.
+
+    The segments take it where nothing was recorded; else the check of the speed compares with it.
+    """
+    own = signals.attrs.get("set_speed_m_s", speed)
+    if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
+        raise ConfigError(
+            f"{signals.attrs['source']}: the file says its set speed itself; "
+            "leave sliding_speed out of its [[run]]"
+        )
+    return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}
 
 
 def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:

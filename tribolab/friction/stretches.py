@@ -40,7 +40,8 @@ def velocity_source(run: xr.Dataset) -> str:
         return "set speed"
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
-        " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'"
+        " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign file may "
+        'say it: sliding_speed = "1 mm/s" in its [[run]]'
     )
 
 

@@ -7,6 +7,7 @@ them is generated from these classes.
 from __future__ import annotations
 
 import codecs
+import contextlib
 import re
 from typing import Annotated, Literal, Self
 
@@ -20,9 +21,9 @@ from pydantic import (
     model_validator,
 )
 
-from tribolab.errors import TribolabError
-from tribolab.quantities import quantity
-from tribolab.units import conversion, to_si
+from tribolab.errors import TribolabError, nearest
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.units import base_unit, conversion, to_si
 
 
 def _is_pattern(text: str) -> str:
@@ -198,7 +199,20 @@ class Value(_Strict):
         try:
             return quantity(self.name).unit
         except TribolabError as error:
-            raise ValueError(f"value '{self.name}' is no known quantity; add to = 'N/m'") from error
+            hint = nearest(self.name, QUANTITIES)
+            hint = f"{hint[:-1]}, or " if "did you mean" in hint else "; "
+            raise ValueError(
+                f"value '{self.name}' is no known quantity{hint}add to = '{self._own_unit()}', the "
+                f"SI unit to keep it in"
+            ) from error
+
+    def _own_unit(self) -> str:
+        """SI unit of the unit given: of a quantity of its kind, else of base units."""
+        for unit in dict.fromkeys(known.unit for known in QUANTITIES.values()):
+            with contextlib.suppress(TribolabError):
+                conversion(str(self.unit), unit)
+                return unit
+        return base_unit(str(self.unit))
 
     @property
     def attribute(self) -> str:

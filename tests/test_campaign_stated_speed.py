@@ -1,0 +1,74 @@
+"""A speed that no file records, said in the campaign file, reaches friction and curve."""
+
+import numpy as np
+import pytest
+
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.io.netcdf import read_netcdf
+
+DIALECT = """
+name = "plain"
+title = "Force over time"
+[header]
+line = 1
+[[column]]
+quantity = "time"
+name = "t"
+[[column]]
+quantity = "friction_force"
+name = "F"
+[[column]]
+quantity = "normal_force"
+name = "N"
+"""
+CAMPAIGN = """
+[campaign]
+name = "Rock"
+[[run]]
+files = "*.csv"
+instrument = "plain.toml"
+sliding_speed = "6 mm/min"
+"""
+
+
+def analysed(folder, dialect=DIALECT, extra=()):
+    """Process a run of forces and, where given, another column of mm/s."""
+    rng = np.random.default_rng(0)
+    head = "t [s],F [N],N [N]" + "".join(f",{name} [mm/s]" for name, _ in extra)
+    rows = [head]
+    for i in range(200):
+        force, load = [3, 10] + 0.01 * rng.standard_normal(2)
+        rows.append(f"{i / 10},{force:.4f},{load:.4f}" + "".join(f",{value}" for _, value in extra))
+    (folder / "raw").mkdir()
+    (folder / "raw" / "one.csv").write_text("\n".join(rows))
+    (folder / "plain.toml").write_text(dialect)
+    (folder / "campaign.toml").write_text(CAMPAIGN)
+    (folder / "results").mkdir()
+    return process(load_campaign(folder), folder / "results")
+
+
+def test_a_stated_speed_reaches_friction_and_curve(tmp_path):
+    outcome = analysed(tmp_path)
+    friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
+    assert friction.sliding_speed.values == pytest.approx([1e-4])
+    assert friction.attrs["set_speed_source"] == "campaign file"
+    curve = read_netcdf(outcome.folder / outcome.curves[0].data_file)
+    assert curve.sliding_speed.values == pytest.approx([1e-4])
+    assert curve.friction_coefficient.values == pytest.approx([0.3], abs=0.001)
+
+
+def test_a_recorded_speed_is_used_and_compared_with_the_stated_one(tmp_path):
+    column = '[[column]]\nquantity = "sliding_velocity"\nname = "v"\n'
+    outcome = analysed(tmp_path, DIALECT + column, extra=[("v", 0.2)])
+    friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
+    assert friction.sliding_speed.values == pytest.approx([2e-4])
+    run = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="run")
+    [finding] = [row for row in run.attrs["findings"] if row["check"] == "velocity_set"]
+    assert finding["status"] == "fail" and "off its set-point" in finding["message"]
+
+
+def test_a_file_with_set_speeds_of_its_own_needs_none(tmp_path):
+    column = '[[column]]\nquantity = "set_speed"\nname = "v"\n'
+    [run] = analysed(tmp_path, DIALECT + column, extra=[("v", 0.2)]).runs
+    assert not run.done and "leave sliding_speed out" in run.reason
