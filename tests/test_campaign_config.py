@@ -224,6 +224,23 @@ def test_the_same_name_in_two_folders_gives_two_data_files(folder):
     assert names == ["monday_run_curve_u", "Monday_run_curve_u_2", "tuesday_run_curve_u"]
 
 
+def test_a_name_that_is_not_declared_is_told_how_to_declare_it(folder):
+    name, run = '[campaign]\nname = "a"\n', '[[run]]\nfiles = "friction/*"\n'
+    said = complaint(folder, name + run + 'surface = "basalt"\n')
+    assert said.endswith('add [[surface]] with name = "basalt" (its scans may be left out)')
+    said = complaint(folder, name + run + 'medium = "sea water"\n')
+    assert said.endswith('add [medium."sea water"] (its keys may be left out)')
+    load(folder, name + run + 'medium = "sea water"\n[medium."sea water"]\n')
+    assert 'add [campaign] with name = "' in complaint(folder, run)
+    assert "add [[run]] with files" in complaint(folder, name)
+
+
+def test_a_mistake_in_the_only_run_is_one_mistake(folder):
+    said = complaint(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "*"\nnormal_force = 2\n')
+    assert len(said.splitlines()) == 1 and "run 1, normal_force: 2 has no unit" in said
+    assert "run: is empty" in complaint(folder, 'run = []\n[campaign]\nname = "a"\n')
+
+
 def test_nothing_can_be_changed_after_reading(folder):
     campaign = load(folder, WHOLE)
     with pytest.raises(ValueError, match="frozen"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 import types
@@ -71,10 +72,18 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
 def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
     """Turn pydantic's findings into problems that name the cure."""
     found: dict[tuple[str | int, ...], Problem] = {}
-    for item in error.errors(include_url=False):
+    items = error.errors(include_url=False)
+    for item in items:
+        if item["type"] == "too_short" and any(_within(item["loc"], o["loc"]) for o in items):
+            continue  # a list whose only element is wrong is not empty
         where, table = _walk(model, item["loc"])
         found.setdefault(where, Problem(where, _words(item, table)))
     return list(found.values())
+
+
+def _within(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
+    """Whether one location lies below another."""
+    return len(inner) > len(outer) and inner[: len(outer)] == outer
 
 
 def _words(item: Any, table: type[BaseModel] | None) -> str:
@@ -82,7 +91,13 @@ def _words(item: Any, table: type[BaseModel] | None) -> str:
     if kind == "extra_forbidden" and table is not None:
         return f"unknown key{nearest(str(item['loc'][-1]), table.model_fields)}"
     if kind == "missing":
-        return "is missing"
+        if item["loc"] == ("campaign",):
+            return 'is missing; add [campaign] with name = "..." at the top'
+        return (
+            'is missing; add [[run]] with files = "..."'
+            if item["loc"] == ("run",)
+            else "is missing"
+        )
     if kind == "value_error":
         return str(item["ctx"]["error"])
     if kind == "literal_error":
@@ -159,18 +174,32 @@ def of_names(campaign: Campaign) -> list[Problem]:
             found.append(Problem(("medium", name, "work_of_adhesion_range"), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
-            what = f"no [[surface]] is called '{entry.surface}'{_hint(entry.surface, surfaces)}"
+            what = f"no [[surface]] is called '{entry.surface}'" + _hint(
+                entry.surface,
+                surfaces,
+                f'add [[surface]] with name = "{entry.surface}" (its scans may be left out)',
+            )
             found.append(Problem(("run", number, "surface"), what))
         if entry.medium is not None and entry.medium not in campaign.medium:
-            what = f"there is no [medium.{entry.medium}]{_hint(entry.medium, campaign.medium)}"
+            what = f"there is no [medium.{entry.medium}]" + _hint(
+                entry.medium,
+                campaign.medium,
+                f"add [medium.{_toml_key(entry.medium)}] (its keys may be left out)",
+            )
             found.append(Problem(("run", number, "medium"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
             found.append(Problem(("run", number, "instrument"), what))
     return found
 
 
-def _hint(word: str, known: Iterable[str]) -> str:
-    return nearest(word, known) or "; none is declared"
+def _hint(word: str, known: Iterable[str], cure: str) -> str:
+    """Return the nearest that is declared, or how to declare it."""
+    hint = nearest(word, known)
+    return hint if "did you mean" in hint else f"{hint}; {cure}"
+
+
+def _toml_key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
 
 
 def _instrument(campaign: Campaign, name: str) -> str:
