@@ -13,6 +13,7 @@ from tribolab import cli, rig
 from tribolab.io.kinds import kind_of
 from tribolab.qc import run_checks, scan_checks
 from tribolab.qc.register import Check
+from tribolab.report.typed import as_typed
 from tribolab.rig.files import scan_file
 
 
@@ -162,3 +163,32 @@ def test_a_map_and_a_single_scan_have_nothing_to_be_compared_with(tmp_path):
     for one in found["runs"]:
         [row] = [row for row in one["findings"] if row["check"] == "repeats"]
         assert row["status"] == "skipped", row
+
+
+def test_info_describes_scans_and_results_as_check_reads_them(scans, tmp_path):
+    results = tmp_path / "a.txt"
+    results.write_text("// Header\nMode;RES\n// CalcResult\nRa;3,246;um;;\n")
+    done = CliRunner().invoke(cli.app, ["info", str(scans / "sb-r_1.csv"), str(results)])
+    assert done.exit_code == 0 and done.stderr == ""
+    assert "sb-r_1.csv: surftest_csv (" in done.stdout
+    assert re.search(r"profile of \d+ points\n  x +4 mm, one point every 0.5 um\n", done.stdout)
+    assert "results of a roughness tester" in done.stdout and "Ra  3.246e-06 m" in done.stdout
+
+
+@pytest.mark.parametrize("command", ["info", "check"])
+def test_the_terminal_names_options_and_not_arguments_of_functions(scans, tmp_path, command):
+    unknown, squeezed = tmp_path / "unknown.txt", tmp_path / "run.csv.gz"
+    unknown.write_text("one\ntwo\n")
+    squeezed.write_bytes(b"PK\x03\x04")
+    done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])
+    assert done.exit_code == 3
+    assert "say which with --instrument, one of" in done.stderr
+    assert not re.search(r"\w=[ ,;]|\w\(\)", done.stderr)
+
+
+def test_what_is_skipped_is_explained_in_words_of_the_campaign_file():
+    said = as_typed("the contact width is not known (contact_width=)")
+    assert said == "the contact width is not known (a campaign knows it from [contact])"
+    assert as_typed("a: this looks like a profile (x): use read_scans").endswith("[[surface]]")
+    units = "say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name"
+    assert "=" not in as_typed(f"a: no units (x); {units} a dialect with instrument=")

@@ -271,16 +271,16 @@ def info(
     """
     with _reported(debug):
         from tribolab.errors import ReadError
-        from tribolab.io.runs import describe
-        from tribolab.report.terminal import file_lines
+        from tribolab.report.file_info import file_lines
+        from tribolab.report.typed import as_typed
 
         unreadable = 0
         for file in files:
             try:
-                typer.echo("\n".join(file_lines(describe(file, instrument))))
+                typer.echo("\n".join(file_lines(file, instrument)))
             except ReadError as error:  # the other files want to be seen too
                 unreadable += 1
-                typer.echo(f"tribolab: {error}", err=True)
+                typer.echo(f"tribolab: {as_typed(str(error))}", err=True)
     raise typer.Exit(UNREADABLE if unreadable else 0)
 
 
@@ -357,7 +357,9 @@ def _reported(debug: bool) -> Iterator[None]:
 def _fail(message: str, code: int, debug: bool) -> None:
     if debug:
         raise
-    typer.echo(f"tribolab: {message}", err=True)
+    from tribolab.report.typed import as_typed
+
+    typer.echo(f"tribolab: {as_typed(message)}", err=True)
     raise typer.Exit(code) from None
 
 
@@ -365,6 +367,7 @@ def _show(outcome: Outcome) -> int:
     """Show what a campaign came to; return the exit code."""
     from tribolab.qc.findings import exit_code
     from tribolab.report import terminal
+    from tribolab.report.typed import as_typed
 
     table = terminal.outcome_table(outcome)
     if table.row_count:
@@ -372,7 +375,7 @@ def _show(outcome: Outcome) -> int:
     for line in terminal.outcome_lines(outcome):
         typer.echo(line)
     for line in terminal.failure_lines(outcome):
-        typer.echo(f"tribolab: {line}", err=True)
+        typer.echo(f"tribolab: {as_typed(line)}", err=True)
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)

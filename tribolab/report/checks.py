@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.errors import ConfigError, ReadError, TribolabError
+from tribolab.errors import ConfigError, TribolabError
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
 from tribolab.io.scan_results import read_results
-from tribolab.io.signature import peek
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.run_checks import check_run
+from tribolab.report.file_info import read_scan
+from tribolab.report.typed import as_typed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,7 +91,7 @@ def check_files(
                 run = read(list(group) if len(group) > 1 else group[0], instrument)
                 checked[group] = Checked(group, check_run(run))
             else:
-                scans[group[0]] = _scan(group[0], instrument, kind)
+                scans[group[0]] = read_scan(group[0], instrument)
         except ConfigError:
             raise  # a wrong instrument is wrong for every file
         except (TribolabError, OSError) as error:
@@ -112,26 +113,6 @@ def check_files(
 
             checked[(path,)] = Checked((path,), check_results(result), kind="results")
     return [checked[group] for group in kinds if group in checked]
-
-
-def _scan(path: Path, instrument: str | Path | None, kind: str) -> xr.Dataset:
-    """Read a scan; what turns out to be none is told about as a run would be."""
-    from tribolab.io.scans import read_scans
-
-    try:
-        [scan] = read_scans([path], instrument, stack=False)
-    except ReadError:
-        if kind == "unknown" and _is_text(path):
-            read(path, instrument)  # says which instruments there are
-        raise
-    return scan
-
-
-def _is_text(path: Path) -> bool:
-    try:
-        return peek(path).format == "text"
-    except ReadError:
-        return not path.is_file() or path.stat().st_size == 0
 
 
 def _belongs(results: Path, scan: Path) -> bool:
@@ -157,7 +138,7 @@ def findings_table(findings: Findings, everything: bool = False) -> Table:
         if not everything and status in ("pass", "skipped") and not note:
             continue
         variable = f"{row['variable']}: " if row["variable"] else ""
-        text = escape(f"{variable}{row['message']}")
+        text = escape(as_typed(f"{variable}{row['message']}"))
         if row["cure"]:
             text += f"\n[dim]{escape(row['cure'])}[/dim]"
         table.add_row("note" if note else status, row["check"], text, style=_STYLES[status])
@@ -187,7 +168,7 @@ def show(checked: Sequence[Checked], everything: bool = False) -> None:
     for one in checked:
         print(summary(one), flush=True)
         if one.findings is None:
-            print(f"tribolab: {one.error}", file=sys.stderr)
+            print(f"tribolab: {as_typed(one.error)}", file=sys.stderr)
             continue
         table = findings_table(one.findings, everything)
         if table.row_count:

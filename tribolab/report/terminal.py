@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
@@ -166,32 +165,6 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
         f"look at   {shown(folder / 'paper.html')}  the page: open it in a browser",
         f"          {shown(folder / 'paper.csv')}   all numbers, a row each",
     ]
-
-
-def file_lines(description: Mapping[str, Any]) -> list[str]:
-    """Say how a raw file is understood.
-
-    Parameters
-    ----------
-    description
-        From `tribolab.io.runs.describe`.
-    """
-    d = description
-    title = f" ({d['title']})" if d["title"] else ""
-    lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
-    sampling = f"  {d['rows']} rows over {d['duration_s']:.6g} s"
-    if d["interval_s"] is not None:
-        sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
-    lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
-    width = max((len(name) for name in d["columns"]), default=0)
-    for name, column in d["columns"].items():
-        span = f"{column['minimum']:.6g} to {column['maximum']:.6g} {column['unit']}"
-        label = f"   from '{column['label']}'" if column["label"] else ""
-        lines.append(f"  {name:<{width}}  {span}{label}")
-    if d["not_used"]:
-        lines.append(f"  not used: {', '.join(d['not_used'])}")
-    lines += [f"  {key}: {value}" for key, value in d["metadata"].items()]
-    return lines
 
 
 def shown(path: Path) -> str:

@@ -1,0 +1,39 @@
+"""Messages that name Python functions and arguments, in words of the command line."""
+
+from __future__ import annotations
+
+import re
+
+# The library tells of its own functions; who types commands has these instead.
+_PYTHON_TO_COMMAND = (
+    (
+        r"say them with x_unit= and height_unit=, e\.g\. .*?, or name a dialect with instrument=",
+        "name the dialect that says them with --instrument",
+    ),
+    (r"\binstrument=", "--instrument"),
+    (
+        r": use read_scans(\(\))?",
+        "; 'tribolab check' takes it, a campaign under scans of a [[surface]]",
+    ),
+    (r"\buse read_scans(\(\))?", "try 'tribolab check'"),
+    (r"; a profile or map of heights is read by read_scans\(\)", "; so for a profile or map"),
+    (r": use read_results\(\)", "; 'tribolab check' takes it"),
+    (r"read them with read_results\(\)", "look at them with 'tribolab check'"),
+    (
+        r" \(contact_width=\)",
+        " (a campaign knows it from [contact])",
+    ),
+)
+
+
+def as_typed(message: str) -> str:
+    """Put a message that names Python functions and arguments into words of the command line.
+
+    Examples
+    --------
+    >>> as_typed("a.csv: two instruments fit; say which with instrument=")
+    'a.csv: two instruments fit; say which with --instrument'
+    """
+    for pattern, words in _PYTHON_TO_COMMAND:
+        message = re.sub(pattern, words, message)
+    return message
