@@ -283,9 +283,9 @@ def test_no_samples_is_an_error_that_says_so():
         find_segments(velocity_run([]))
 
 
-@pytest.mark.parametrize("trim", [0.5, 0.9, -0.1, float("nan")])
-def test_trim_that_leaves_nothing_is_an_error(trim):
-    with pytest.raises(AnalysisError, match="trim"):
+@pytest.mark.parametrize("trim", [0.5, 0.9, -0.1, float("nan"), "10 %", None])
+def test_trim_that_is_no_share_below_a_half_is_an_error(trim):
+    with pytest.raises(AnalysisError, match="trim: a share .* is wanted, e.g. 0.10"):
         find_segments(velocity_run(np.ones(100)), trim=trim)
 
 

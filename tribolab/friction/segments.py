@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from numbers import Real
+
 import numpy as np
 import xarray as xr
 
@@ -104,8 +106,10 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'at rest', 'at rest'])
     """
-    if not 0 <= trim < 0.5:
-        raise AnalysisError(f"trim: {trim} leaves nothing of a segment; give 0 <= trim < 0.5")
+    if not isinstance(trim, Real) or not 0 <= trim < 0.5:
+        raise AnalysisError(
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got {trim!r}"
+        )
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")
