@@ -159,6 +159,13 @@ WRONG = {
         "surface 1, scans",
         "friction/, profiles/",
     ),
+    "the raw folder again": (
+        "friction/cycle",
+        "raw/friction/cycle",
+        33,
+        "run 2, files",
+        "patterns are relative to raw/: leave 'raw/' out",
+    ),
     "no raw folder": ('raw = "raw"', 'raw = "rawdata"', 3, "campaign.raw", "there is no folder"),
     "no name": ('name = "PMMA on PDMS in glycerol"', "", 1, "campaign.name", "is missing"),
     "not TOML": ('viscosity = "1.4 Pa s"', "viscosity = 1.4 Pa s", 12, "", "1.4 Pa s"),

@@ -181,3 +181,14 @@ def test_a_damaged_real_file_ends_in_a_run_or_our_error(shared_data, tmp_path, s
         assert tl.read(file).sizes["time"] > 0
     except TribolabError as error:
         assert str(file) in str(error)
+
+
+def test_what_is_not_there_is_told_as_far_as_it_is_not_there(tmp_path):
+    for name, said in {
+        "a.csv": "a.csv: there is no such file",
+        "*.csv": f"the pattern matches nothing in {tmp_path}",
+        "rock/*.csv": f"there is no folder {tmp_path / 'rock'}",
+    }.items():
+        with pytest.raises(ReadError) as caught:
+            tl.read(tmp_path / name)
+        assert str(caught.value).endswith(said)

@@ -16,7 +16,7 @@ class TribolabError(Exception):
     ...     tl.read("nothing.csv")
     ... except tl.TribolabError as error:
     ...     print(error)
-    nothing.csv: there is no such file (any more)
+    nothing.csv: there is no such file
     """
 
 

@@ -150,7 +150,10 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 
 
 def _there(raw: Path, pattern: str) -> str:
-    """Say what is in the folder where the pattern stops to match."""
+    """Say what is in the folder where the pattern stops to match, or that it names that folder."""
+    parts = Path(pattern).parts
+    if len(parts) > 1 and parts[0] == raw.name and not (raw / parts[0]).is_dir():
+        return f"; patterns are relative to {raw.name}/: leave '{raw.name}/' out"
     folder = raw
     for part in Path(pattern).parts[:-1]:
         if not (folder / part).is_dir():

@@ -52,12 +52,20 @@ def peek(path: str | Path) -> File:
             head = file.read(HEAD)
             size = file.seek(0, 2)
     except FileNotFoundError as error:
-        raise ReadError(f"{path}: there is no such file (any more)") from error
+        raise ReadError(f"{path}: {_why_missing(path)}") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     if not head.strip(b"\xef\xbb\xbf \t\r\n"):
         raise ReadError(f"{path}: the file is empty")
     return File(path, _format(path, head), size, head)
+
+
+def _why_missing(path: Path) -> str:
+    if not path.parent.is_dir():
+        return f"there is no folder {path.parent}"
+    if any(sign in path.name for sign in "*?["):
+        return f"the pattern matches nothing in {path.parent}"
+    return "there is no such file"
 
 
 def _format(path: Path, head: bytes) -> str:
