@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
+from tribolab.report import checks
 from tribolab.rig.parameters import Protocol, Rig
 from tribolab.rig.runs import simulate_run
 
@@ -24,7 +25,17 @@ def test_findings_tell_each_objection_whole_and_fold_the_rest_away(spiked):
     assert len(message) > 50 and message in shown and "..." not in shown
     assert shown.count("<tr>") == 2 and rest.count("<tr>") == 1 + len(found.rows)
     assert "&lt;a&gt;.csv: suspect" in shown and "<a>" not in shown
-    assert repr(found).splitlines() == ["<a>.csv: suspect", f"  suspect spikes: {message}"]
+
+
+def test_findings_print_what_the_command_shows(spiked, tmp_path, capsys):
+    found = tl.check(spiked)
+    checks.show([checks.Checked((tmp_path / "<a>.csv",), found)])
+    summary, *rows = capsys.readouterr().out.splitlines()
+    printed = str(found)
+    assert printed.splitlines()[0] == summary
+    assert summary.startswith("<a>.csv: suspect (") and ", 1 objected, " in summary
+    assert " ".join("".join(rows).split()) == " ".join(printed.split("\n", 1)[1].split())
+    assert "function" not in repr(found.results)
 
 
 def test_findings_without_objection_need_no_table(spiked):

@@ -84,11 +84,41 @@ class Findings:
         found = [result.status for _, result in self.results]
         return {status: found.count(status) for status in STATUSES}
 
+    @property
+    def summary(self) -> str:
+        """One line: the status, and how many checks passed, objected and were skipped."""
+        by_check: dict[str, set[str]] = {}
+        for check, result in self.results:
+            by_check.setdefault(check.name, set()).add(result.status)
+        objecting = {n for n, found in by_check.items() if found & {"suspect", "fail", "error"}}
+        passed = {n for n, found in by_check.items() if "pass" in found} - objecting
+        skipped = len(by_check) - len(objecting) - len(passed)
+        parts = [f"{len(passed)} checks passed"]
+        parts += [f"{len(objecting)} objected"] if objecting else []
+        parts += [f"{skipped} had nothing to look at"] if skipped else []
+        return f"{self.name}: {self.status} ({', '.join(parts)})"
+
+    def told(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
+        """Status, check, message and cure of what is worth reading, graver ones first.
+
+        Objections and notes; with `everything` all that was asked.
+        """
+        lines = []
+        for row in self.rows:
+            note = row["status"] == "pass" and row["noted"]
+            if everything or note or row["status"] not in ("pass", "skipped"):
+                variable = f"{row['variable']}: " if row["variable"] else ""
+                status = "note" if note else row["status"]
+                lines.append((status, row["check"], f"{variable}{row['message']}", row["cure"]))
+        return lines
+
     def __repr__(self) -> str:
-        """Name, status, and a line for each objection."""
-        told = [row for row in self.rows if row["status"] in ("suspect", "fail", "error")]
-        lines = [f"  {row['status']} {row['check']}: {row['message']}" for row in told]
-        return "\n".join([f"{self.name}: {self.status}", *lines])
+        """Return what `tribolab check` shows: a summary, and objections and notes with cures."""
+        lines = [self.summary]
+        for status, check, message, cure in self.told():
+            lines.append(f"{status}  {check}  {message}")
+            lines += [f"    {cure}"] if cure else []
+        return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         """Objections and notes; everything that was asked, folded away."""

@@ -73,7 +73,7 @@ class Check:
     question: str
     cure: str
     limits: Mapping[str, Limit]
-    examine: Callable[[Any, Mapping[str, float]], list[Result]]
+    examine: Callable[[Any, Mapping[str, float]], list[Result]] = field(repr=False)
 
 
 def resolve_limits(

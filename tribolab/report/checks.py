@@ -26,7 +26,14 @@ if TYPE_CHECKING:
 
 SCHEMA_VERSION = 1
 UNREADABLE = 3
-_STYLES = {"error": "bold red", "fail": "red", "suspect": "yellow", "skipped": "dim", "pass": ""}
+_STYLES = {
+    "error": "bold red",
+    "fail": "red",
+    "suspect": "yellow",
+    "skipped": "dim",
+    "pass": "",
+    "note": "",
+}
 
 
 @dataclass(frozen=True)
@@ -132,33 +139,10 @@ def findings_table(findings: Findings, everything: bool = False) -> Table:
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for row in findings.rows:
-        status = row["status"]
-        note = status == "pass" and row["noted"]
-        if not everything and status in ("pass", "skipped") and not note:
-            continue
-        variable = f"{row['variable']}: " if row["variable"] else ""
-        text = escape(as_typed(f"{variable}{row['message']}"))
-        if row["cure"]:
-            text += f"\n[dim]{escape(row['cure'])}[/dim]"
-        table.add_row("note" if note else status, row["check"], text, style=_STYLES[status])
+    for status, check, message, cure in findings.told(everything):
+        text = escape(as_typed(message)) + (f"\n[dim]{escape(cure)}[/dim]" if cure else "")
+        table.add_row(status, check, text, style=_STYLES[status])
     return table
-
-
-def summary(checked: Checked) -> str:
-    """Say in one line how many checks passed, were skipped, and objected."""
-    if checked.findings is None:
-        return f"{checked.name}: unreadable"
-    by_check: dict[str, set[str]] = {}
-    for check, result in checked.findings.results:
-        by_check.setdefault(check.name, set()).add(result.status)
-    objecting = {n for n, found in by_check.items() if found & {"suspect", "fail", "error"}}
-    passed = {n for n, found in by_check.items() if "pass" in found} - objecting
-    skipped = len(by_check) - len(objecting) - len(passed)
-    parts = [f"{len(passed)} checks passed"]
-    parts += [f"{len(objecting)} objected"] if objecting else []
-    parts += [f"{skipped} had nothing to look at"] if skipped else []
-    return f"{checked.name}: {checked.status} ({', '.join(parts)})"
 
 
 def show(checked: Sequence[Checked], everything: bool = False) -> None:
@@ -166,10 +150,13 @@ def show(checked: Sequence[Checked], everything: bool = False) -> None:
     from tribolab.report import terminal
 
     for one in checked:
-        print(summary(one), flush=True)
         if one.findings is None:
+            print(f"{one.name}: unreadable", flush=True)
             print(f"tribolab: {as_typed(one.error)}", file=sys.stderr)
             continue
+        # a run of two logs is called by the first, not by both
+        head = one.findings.summary.removeprefix(one.findings.name)
+        print(f"{one.name}{head}", flush=True)
         table = findings_table(one.findings, everything)
         if table.row_count:
             terminal.console().print(table)
