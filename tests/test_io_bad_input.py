@@ -187,6 +187,7 @@ def test_what_is_not_there_is_told_as_far_as_it_is_not_there(tmp_path):
     for name, said in {
         "a.csv": "a.csv: there is no such file",
         "*.csv": f"the pattern matches nothing in {tmp_path}",
+        "*/a.csv": "the pattern matches nothing",
         "rock/*.csv": f"there is no folder {tmp_path / 'rock'}",
     }.items():
         with pytest.raises(ReadError) as caught:

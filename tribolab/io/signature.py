@@ -61,6 +61,8 @@ def peek(path: str | Path) -> File:
 
 
 def _why_missing(path: Path) -> str:
+    if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
+        return "the pattern matches nothing"
     if not path.parent.is_dir():
         return f"there is no folder {path.parent}"
     if any(sign in path.name for sign in "*?["):
