@@ -1,12 +1,17 @@
 """Runs whose segments are an instrument's steps of unknown speed: what is said of them."""
 
+import numpy as np
 import pytest
+import xarray as xr
 
 from tribolab import cli
 from tribolab.campaign import pipeline
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.io.netcdf import read_netcdf
+from tribolab.qc.run_checks import check_run
 from tribolab.report import results
+from tribolab.report.run_summary import _of_friction
 
 TEXT = """
 [campaign]
@@ -58,3 +63,55 @@ def test_a_mistake_of_ours_in_a_curve_is_an_error_and_traced_on_demand(
     assert "Traceback" not in capsys.readouterr().err
     assert cli._show(outcome, debug=True) == 3
     assert "ZeroDivisionError: float division by zero" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def said(together):
+    """What the checks said of each run: {run: {check: row}}."""
+    return {
+        run.name: {
+            row["check"]: row
+            for row in read_netcdf(together.folder / run.data_file, group="run").attrs["findings"]
+        }
+        for run in together.runs
+    }
+
+
+def test_too_few_effective_samples_decide_nothing_of_steadiness(said):
+    for checks in said.values():
+        row = checks["steadiness"]
+        assert row["status"] == "skipped" and row["noted"]
+        assert "not decided in" in row["message"] and "effective samples" in row["message"]
+    worst = said["HT-2n-6-4_2_002"]["steadiness"]
+    # by which much the line falls, of the friction: -0.177 of 0.774
+    assert worst["value"] == pytest.approx(-0.177 / 0.774, abs=2e-3)
+    assert "-22.82%" in worst["message"] and "2.8 effective samples" in worst["message"]
+
+
+def test_a_speed_that_is_unknown_is_suspect_for_what_may_be_inside(said):
+    for checks in said.values():
+        row = checks["segment_speed"]
+        assert row["status"] == "suspect"
+        assert row["message"].startswith("the speed of 2 of 2 segments is unknown: start, stop and")
+        assert "strokes figure" in row["cure"] and "`trim`" in row["cure"]
+
+
+def test_a_trend_that_can_be_told_is_still_told_and_many_samples_show_that_there_is_none():
+    time = np.arange(4000) / 100
+    noise = 0.02 * np.random.default_rng(0).standard_normal(time.size)
+    for slope, status, words in (
+        (0.0, "pass", "no significant trend within a segment; measured at most 0."),
+        (0.1, "suspect", "+8."),
+    ):
+        mu = 0.5 * (1 + slope * (time / 40 - 0.5)) + noise
+        data = {"friction_coefficient": ("time", mu)}
+        data["sliding_velocity"] = ("time", np.full(time.size, 1e-3))
+        found = check_run(xr.Dataset(data, {"time": time}))
+        (row,) = (row for row in found.rows if row["check"] == "steadiness")
+        assert row["status"] == status and words in row["message"]
+
+
+def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
+    for run in together.runs:
+        friction = read_netcdf(together.folder / run.data_file, group="friction")
+        assert _of_friction(friction)["relative_drift"] is None

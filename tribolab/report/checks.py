@@ -153,7 +153,7 @@ def findings_table(findings: Findings, everything: bool = False) -> Table:
     table.add_column(overflow="fold")
     for row in findings.rows:
         status = row["status"]
-        note = status == "pass" and row["noted"]
+        note = status in ("pass", "skipped") and row["noted"]
         if not everything and status in ("pass", "skipped") and not note:
             continue
         variable = f"{row['variable']}: " if row["variable"] else ""
