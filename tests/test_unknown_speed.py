@@ -1,8 +1,13 @@
 """Runs whose segments are an instrument's steps of unknown speed: what is said of them."""
 
+import io
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
+from rich.console import Console
 
 from tribolab import cli
 from tribolab.campaign import pipeline
@@ -10,7 +15,7 @@ from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run
-from tribolab.report import results
+from tribolab.report import results, terminal
 from tribolab.report.run_summary import _of_friction
 
 TEXT = """
@@ -21,13 +26,15 @@ raw = "{raw}"
 {surface}
 
 [[run]]
-files = "cetr_umt2_MIT/*.csv"
+files = "cetr_umt2_MIT/*00{number}.csv"
 """
 SURFACE = '[[surface]]\nname = "HEA"\n'
 
 
-def steps_of_an_instrument(shared_data, folder, surface=True):
-    text = TEXT.format(raw=shared_data.as_posix(), surface=SURFACE if surface else "")
+def steps_of_an_instrument(shared_data, folder, surface=True, number="*"):
+    text = TEXT.format(
+        raw=shared_data.as_posix(), surface=SURFACE if surface else "", number=number
+    )
     file = folder / "campaign.toml"
     file.write_text(text + ('surface = "HEA"\n' if surface else ""), encoding="utf-8")
     return process(load_campaign(file), folder / "new")
@@ -55,7 +62,7 @@ def test_a_mistake_of_ours_in_a_curve_is_an_error_and_traced_on_demand(
         raise ZeroDivisionError("float division by zero")
 
     monkeypatch.setattr(pipeline, "process_curve", broken)
-    outcome = steps_of_an_instrument(shared_data, tmp_path)
+    outcome = steps_of_an_instrument(shared_data, tmp_path, number="1")
     findings = []
     results._curves(outcome, {}, findings)
     assert [row["severity"] for row in findings] == ["error"]
@@ -115,3 +122,39 @@ def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
     for run in together.runs:
         friction = read_netcdf(together.folder / run.data_file, group="friction")
         assert _of_friction(friction)["relative_drift"] is None
+
+
+def printed(outcome):
+    """Rows of the table on the command line, each split into its cells."""
+    out = Console(width=160, record=True, file=io.StringIO())
+    out.print(terminal.outcome_table(outcome))
+    rows = out.export_text().splitlines()
+    return [re.split(r"\s{2,}", row.strip()) for row in rows if row.strip()]
+
+
+def test_friction_is_printed_where_the_speed_is_unknown(together):
+    (heading, row) = printed(together)
+    assert heading[0] == "surface"
+    load, friction = "1.961 N", "0.768 to 0.785"
+    assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction]
+
+
+def test_a_run_of_no_surface_stands_under_its_own_name(shared_data, tmp_path):
+    outcome = steps_of_an_instrument(shared_data, tmp_path, surface=False, number="[12]")
+    heading, *rows = printed(outcome)
+    assert heading[:2] == ["run", "surface"]
+    assert [row[:4] for row in rows] == [[run.name, "–", "–", "1.961 N"] for run in outcome.runs]
+    assert [row[4:7] for row in rows] == 2 * [["1", "2", "speed unknown"]]
+    assert all(float(row[7]) == pytest.approx(0.776, abs=0.01) for row in rows)
+
+
+def test_every_objection_is_printed_with_its_reason_and_at_most_a_handful(together):
+    lines = [line for line in terminal.outcome_lines(together) if "suspect" in line]
+    assert len(lines) == 3
+    for run, line in zip(together.runs, lines, strict=True):
+        assert line.startswith(f"checks are suspect in: {run.name}: ")
+        assert "segment_speed: the speed of 2 of 2 segments is unknown" in line
+    many = replace(together, runs=4 * together.runs)
+    lines = [line for line in terminal.outcome_lines(many) if "suspect" in line]
+    assert len(lines) == 6
+    assert "and 7 more: see " in lines[-1] and lines[-1].endswith("findings.csv")
