@@ -313,15 +313,15 @@ def test_unknown_speeds_are_null_and_averaged_over_all(tmp_path):
 def test_drifting_and_backward_friction_is_said(tmp_path):
     def odd(run, segments, friction):
         friction = friction.copy()
-        friction["steady"][:2] = 0
+        friction["trend_p_value"] = "segment", [1e-4, 1e-4, 0.3, 0.3, 0.3, 0.3]
+        friction["trend_change"] = 0.1 * friction["friction_coefficient"]
         friction["friction_coefficient"][3] *= -1
         friction.attrs["offset"] = "none: strokes in one direction only"
         return run, segments, friction
 
-    made = _one(tmp_path, odd)
-    write_report(made)
+    write_report(made := _one(tmp_path, odd))
     messages = " | ".join(table(made, "findings").message)
-    assert "2 segments of 6 with a significant trend" in messages
+    assert "2 segments of 6 with a significant trend, at most 10 % of the" in messages
     assert "1 segment of 6 with friction along the motion" in messages
     assert "none: strokes in one direction only" in messages
 

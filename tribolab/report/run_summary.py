@@ -14,7 +14,16 @@ from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, flagged_spans, trace
-from tribolab.report.wording import SYMBOLS, UNITS, duration, many, plain_value, span, speeds
+from tribolab.report.wording import (
+    SYMBOLS,
+    UNITS,
+    duration,
+    many,
+    percent,
+    plain_value,
+    span,
+    speeds,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -263,16 +272,21 @@ def _findings(
     if count == 0:
         say("suspect", "segments", "no segment of steady sliding was found")
     quantity = main_quantity(friction)
+    values = _values(friction, quantity, count)
     if quantity in friction and count:
-        values = np.asarray(friction[quantity], float)
         if missing := int(np.isnan(values).sum()):
             say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
         if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
             text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
             say("suspect", "friction", text + "; is the sign of the force or the offset right?")
-    drift = int((_values(friction, "steady", count) == 0).sum())
+    # as the check on steadiness and the page's table count them
+    drift = int((_values(friction, "trend_p_value", count) < SURE).sum())
     if drift:
-        say("note", "friction", f"{many(drift, 'segment')} of {count} with a significant trend")
+        text = f"{many(drift, 'segment')} of {count} with a significant trend"
+        largest = _drift(friction, values) if quantity in friction else None
+        if largest:
+            text += f", at most {percent(largest)} of the typical friction"
+        say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
     for entry in _omitted(segments):
