@@ -43,6 +43,7 @@ BITS = {
     "steadiness": 21,
     "distance": 22,
     "sampling": 23,
+    "segment_speed": 24,
 }
 
 

@@ -313,17 +313,19 @@ def test_unknown_speeds_are_null_and_averaged_over_all(tmp_path):
 def test_drifting_and_backward_friction_is_said(tmp_path):
     def odd(run, segments, friction):
         friction = friction.copy()
-        friction["steady"][:2] = 0
+        friction["trend_p_value"] = "segment", [1e-4, 1e-4, 0.3, 0.3, 0.3, 0.3]
+        friction["trend_change"] = 0.1 * friction["friction_coefficient"]
         friction["friction_coefficient"][3] *= -1
         friction.attrs["offset"] = "none: strokes in one direction only"
         return run, segments, friction
 
-    made = _one(tmp_path, odd)
-    write_report(made)
+    write_report(made := _one(tmp_path, odd))
     messages = " | ".join(table(made, "findings").message)
-    assert "2 segments of 6 with a significant trend" in messages
+    assert "2 segments of 6 with a significant trend, at most 10 % of the" in messages
     assert "1 segment of 6 with friction along the motion" in messages
     assert "none: strokes in one direction only" in messages
+    page = (made.folder / "report.html").read_text(encoding="utf-8")
+    assert page.count("%, significant</td>") == 2 and ">Steady</th>" not in page
 
 
 def test_a_broken_data_file_costs_only_its_own_place(tmp_path):
@@ -356,10 +358,9 @@ def test_curves_beyond_nine_go_to_further_figures(tmp_path):
     (tmp_path / "figures").mkdir()
     curves = []
     for number in range(11):
-        write_netcdf(made_curve(load=1.0 + number), tmp_path / f"{number}.nc")
-        curves.append(
-            CurveOutcome(f"c{number}", "Sb-R", "dry", 1.0 + number, f"{number}.nc", ("r",))
-        )
+        file, load = f"{number}.nc", 1.0 + number
+        write_netcdf(made_curve(load=load), tmp_path / file)
+        curves.append(CurveOutcome(f"c{number}", "Sb-R", "dry", load, file, ("r",)))
     planned = plan_figures(curves, tmp_path)
     assert [len(figure.curves) for figure in planned] == [9, 2]
     assert "9 measured curves" in draw_curves(planned[0])["alt"]
@@ -393,9 +394,7 @@ def test_flagged_spans_say_where_why_and_how_gravely():
     flags[100:103], flags[400] = 3, 4
     run = attach(run, "friction_force", {"spikes": flags}, {"spikes": 14})
     spans = flagged_spans(run)
-    assert [(s["severity"], s["checks"]) for s in spans] == [
-        ("suspect", ["spikes"]),
-        ("fail", ["spikes"]),
-    ]
+    kinds = [(s["severity"], s["checks"]) for s in spans]
+    assert kinds == [("suspect", ["spikes"]), ("fail", ["spikes"])]
     assert spans[0]["start_s"] == pytest.approx(float(run.time[100]))
     assert spans[0]["stop_s"] == pytest.approx(float(run.time[102]))

@@ -28,7 +28,8 @@ def write(folder, run):
 
 
 def test_every_check_has_a_fault_that_it_finds():
-    assert {fault.check for fault in FAULTS.values()} == set(RUN_CHECKS)
+    # the rig always logs its speed: measured files show what is said where nobody did
+    assert {fault.check for fault in FAULTS.values()} == set(RUN_CHECKS) - {"segment_speed"}
     for name, fault in FAULTS.items():
         assert fault.name == name and fault.what.endswith(".")
         assert fault.severity in ("suspect", "fail", "unreadable")

@@ -93,7 +93,7 @@ def demo(
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
-        code = _show(outcome)
+        code = _show(outcome, debug)
         for line in truth_lines(compared, outcome):
             typer.echo(line)
     raise typer.Exit(code)
@@ -166,7 +166,7 @@ def run(
             outcome = run_campaign(
                 campaign, output=output, jobs=jobs, scheduler=scheduler, progress=progress
             )
-        code = _show(outcome)
+        code = _show(outcome, debug)
     raise typer.Exit(code)
 
 
@@ -363,8 +363,8 @@ def _fail(message: str, code: int, debug: bool) -> None:
     raise typer.Exit(code) from None
 
 
-def _show(outcome: Outcome) -> int:
-    """Show what a campaign came to; return the exit code."""
+def _show(outcome: Outcome, debug: bool) -> int:
+    """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
     from tribolab.qc.findings import exit_code
     from tribolab.report import terminal
     from tribolab.report.typed import as_typed
@@ -376,10 +376,13 @@ def _show(outcome: Outcome) -> int:
         typer.echo(line)
     for line in terminal.failure_lines(outcome):
         typer.echo(f"tribolab: {as_typed(line)}", err=True)
+    crashes = [curve.crash for curve in outcome.curves if curve.crash]
+    for crash in crashes if debug else ():
+        typer.echo(crash, err=True)
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
-    if spoilt or not outcome.segments:
+    if spoilt or crashes or not outcome.segments:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))

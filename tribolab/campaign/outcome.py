@@ -67,7 +67,8 @@ class RunOutcome:
 class CurveOutcome:
     """One measured curve: the runs of one surface, medium and load, taken together.
 
-    `status` and `reason` are as for a run; `data_file` is "" for a curve that failed.
+    `status` and `reason` are as for a run; `data_file` is "" for a curve that failed. `crash` is
+    the traceback of an error that nobody raised on purpose, else "".
     """
 
     name: str
@@ -78,6 +79,7 @@ class CurveOutcome:
     run_names: tuple[str, ...]
     status: str = "done"
     reason: str = ""
+    crash: str = ""
 
     @property
     def done(self) -> bool:

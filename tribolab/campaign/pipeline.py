@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from traceback import format_exception
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.executor import WorkerDied, completed
@@ -38,7 +39,7 @@ from tribolab.campaign.work import (
     process_curve,
     process_run,
 )
-from tribolab.errors import ConfigError, OutputError
+from tribolab.errors import ConfigError, OutputError, TribolabError
 from tribolab.provenance import sha256_of_file
 
 if TYPE_CHECKING:
@@ -251,7 +252,9 @@ def _curves(
             raise error
         curve = task.curve
         if error is not None:
-            curve = replace(curve, data_file="", status="failed", reason=explain(error)[0])
+            crash = "" if isinstance(error, TribolabError) else "".join(format_exception(error))
+            reason = explain(error)[0]
+            curve = replace(curve, data_file="", status="failed", reason=reason, crash=crash)
         done[curve.name] = curve
         tell("curves", len(done), len(tasks))
     return tuple(done[task.curve.name] for task in tasks)

@@ -51,14 +51,14 @@ def verdict_text(
         where = f" at {speed_text(speeds[0])}"
     elif speeds.size:
         where = f" from {speed_text(speeds.min())} to {speed_text(speeds.max())}"
-    if verdict == "steady sliding":
+    if verdict == "no stick-slip":
         off = numbers["model_misfit"]
         if not modelled or np.isnan(off):
-            return "steady sliding at all speeds"
+            return "no stick-slip at any speed"
         if off < 0.10:
-            return "steady sliding at all speeds; the mixed-lubrication model is sufficient"
+            return "no stick-slip at any speed; the mixed-lubrication model is sufficient"
         return (
-            "steady sliding at all speeds; the mixed-lubrication model is not sufficient, "
+            "no stick-slip at any speed; the mixed-lubrication model is not sufficient, "
             "and the traces do not say why"
         )
     low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]

@@ -14,7 +14,7 @@ from tribolab.compare.regimes import end_of_boundary, measured_regimes, model_re
 from tribolab.friction.slip_curve import STEADY
 from tribolab.quantities import stamp
 
-STEADY_SLIDING = "steady sliding"
+NO_STICK_SLIP = "no stick-slip"
 LOCAL = "local stick-slip"
 SUSPECTED = "adhesion-controlled macroscopic instability suspected"
 UNEXPLAINED = "stick-slip of unknown origin"
@@ -55,7 +55,7 @@ class SlidingMode:
     Parameters
     ----------
     verdict
-        ``"steady sliding"``, ``"local stick-slip"``, ``"adhesion-controlled macroscopic instability
+        ``"no stick-slip"``, ``"local stick-slip"``, ``"adhesion-controlled macroscopic instability
         suspected"``, ``"stick-slip of unknown origin"`` or ``"not known"``.
     text
         The verdict as one sentence, with the speeds.
@@ -138,7 +138,7 @@ def sliding_mode(
     ...     {"sliding_speed": v},
     ... )
     >>> sliding_mode(curve, None, slip, Mode(work_of_adhesion=0.0, fluid=False)).verdict
-    'steady sliding'
+    'no stick-slip'
     """
     known = known or Mode()
     curve = _curve(measured, model, slip, known.fluid)
@@ -183,7 +183,7 @@ def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
     if slip is None or slip.sizes.get("sliding_speed", 0) == 0:
         return UNKNOWN
     if not oscillating(slip).size:
-        return STEADY_SLIDING
+        return NO_STICK_SLIP
     if known.work_of_adhesion is None:
         return UNEXPLAINED
     return SUSPECTED if known.work_of_adhesion > 0 else LOCAL

@@ -24,7 +24,7 @@ def run_levels(frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1) ->
     -------
     numpy.ndarray
         Level [1] of each run, 1 where it is as the repeats together; NaN where none of its points
-        has a positive friction with an error.
+        has a speed and a positive friction with an error.
 
     Notes
     -----
@@ -35,13 +35,16 @@ def run_levels(frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1) ->
     levels = []
     for friction in frictions:
         own = measured_stribeck_curve([friction], speed_tolerance)
+        if not own.sizes["sliding_speed"]:  # e.g. an instrument's steps, of unknown speed
+            levels.append(np.nan)
+            continue
         place = np.abs(np.log(own["sliding_speed"].values)[:, None] - speed).argmin(axis=1)
         whole = together["friction_coefficient"].values[place]
         mu, sem = (own[f"friction_coefficient{end}"].values for end in ("", "_sem"))
         fine = (mu > 0) & (whole > 0) & np.isfinite(sem) & (sem > 0)
         weight = (mu[fine] / sem[fine]) ** 2
         levels.append(weight @ (mu / whole)[fine] / weight.sum() if fine.any() else np.nan)
-    return np.array(levels)
+    return np.array(levels, dtype=float)
 
 
 def repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:

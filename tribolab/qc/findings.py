@@ -105,7 +105,7 @@ class Findings:
         """
         lines = []
         for row in self.rows:
-            note = row["status"] == "pass" and row["noted"]
+            note = row["status"] in ("pass", "skipped") and row["noted"]
             if everything or note or row["status"] not in ("pass", "skipped"):
                 variable = f"{row['variable']}: " if row["variable"] else ""
                 status = "note" if note else row["status"]

@@ -33,8 +33,8 @@ class Limit:
 class Result:
     """What one check found on one variable.
 
-    `noted` says that a status "pass" is worth a reader's while: something is there, too little to
-    object to.
+    `noted` says that a status "pass" or "skipped" is worth a reader's while: something is there,
+    too little to object to or to decide by.
     """
 
     status: str

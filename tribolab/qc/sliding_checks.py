@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -88,8 +89,77 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     if not (typical > 0).any():
         raise Skip("there is no friction to compare with")
     change = change / float(np.nanmean(typical))
-    change[friction["trend_p_value"].values >= limits["chance"]] = 0.0
-    return by_segment(subject, signal, change, limits, "trend within a segment")
+    chance, samples = friction["trend_p_value"].values, friction["effective_samples"].values
+    open_ = undecided(change, chance, samples, limits)
+    graded = np.where(open_, np.nan, np.where(chance >= limits["chance"], 0.0, change))
+    told = "trend within a segment"
+    if not open_.any():
+        return _told(by_segment(subject, signal, graded, limits, told), change)
+    worst = int(np.argmax(np.where(open_, np.abs(change), -1.0)))
+    where = subject.segment_label(worst)
+    text = (
+        f"not decided in {open_.sum()} of {open_.size} segments, too few effective samples: "
+        f"{change[worst]:+.2%} along {where}, {samples[worst]:.2g} effective samples, "
+        f"p = {chance[worst]:.2g}"
+    )
+    value, count = float(change[worst]), int(open_.sum())
+    doubt = Result("skipped", signal, text, value, "1", where, count, noted=True)
+    if np.isnan(graded).all():
+        return [doubt]
+    rest = by_segment(subject, signal, graded, limits, told)
+    # a part that is steady is no answer for the run; a part that is not is one
+    return [doubt, *(result for result in rest if result.status != "pass")]
+
+
+def undecided(
+    change: np.ndarray, chance: np.ndarray, samples: np.ndarray, limits: Mapping[str, float]
+) -> np.ndarray:
+    """Return where a line through the friction shows neither a trend nor that there is none.
+
+    It changes by as much as is objected to, but of so few effective samples that the test would
+    hardly have seen it.
+
+    Parameters
+    ----------
+    change
+        Along the line, of the typical friction [1] (segment).
+    chance, samples
+        The line's p value, and effective samples (segment).
+    limits
+        Of the check on steadiness.
+
+    Examples
+    --------
+    >>> limits = {"suspect": 0.05, "chance": 0.01, "samples": 10.0}
+    >>> p, n = np.array([0.36, 0.36, 1e-4]), np.array([2.8, 90.0, 2.8])
+    >>> undecided(np.array([-0.2, -0.2, -0.2]), p, n, limits)
+    array([ True, False, False])
+    """
+    large, few = np.abs(change) > limits["suspect"], samples < limits["samples"]
+    return large & few & (chance >= limits["chance"])
+
+
+def _told(results: list[Result], change: np.ndarray) -> list[Result]:
+    """Say how large the trends are that are none: a line through noise has a slope, too."""
+    if results[0].status != "pass" or results[0].value != 0.0:
+        return results
+    text = (
+        f"no significant trend within a segment; measured at most {np.nanmax(np.abs(change)):.2%}"
+    )
+    return [replace(results[0], message=text)]
+
+
+def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    # of friction: a rheometer's steps of shear stress have a shear rate in place of a speed
+    unknown = np.isnan(subject.friction["sliding_speed"].values)
+    if not unknown.any():
+        return [Result("pass", "sliding_speed", "the speed of every segment is known")]
+    text = (
+        f"the speed of {int(unknown.sum())} of {unknown.size} segments is unknown: start, stop "
+        "and rest may be inside them"
+    )
+    where, count = subject.segment_label(int(np.argmax(unknown))), int(unknown.sum())
+    return [Result("suspect", "sliding_speed", text, where=where, count=count)]
 
 
 def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -176,6 +246,9 @@ SLIDING_CHECKS = (
             "suspect": Limit(0.05, "1", "5 % is above the usual spread of repeats"),
             "fail": Limit(0.50, "1", "the number has no meaning as a mean"),
             "chance": Limit(0.01, "1", "so that noise is rarely called a trend"),
+            "samples": Limit(
+                10.0, "1", "fewer effective samples do not tell a trend from slow wandering"
+            ),
         },
         _steadiness,
     ),
@@ -203,5 +276,13 @@ SLIDING_CHECKS = (
             "strength": _STRENGTH,
         },
         _sampling,
+    ),
+    Check(
+        "segment_speed",
+        24,
+        "Is the speed of every segment known?",
+        "Look at the strokes figure and set `trim` under [segments], or record position or speed.",
+        {},
+        _segment_speed,
     ),
 )

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from tribolab.qc.run_checks import RUN_CHECKS
+import numpy as np
 
-_STEADINESS = RUN_CHECKS["steadiness"].limits
+from tribolab.qc.run_checks import RUN_CHECKS
+from tribolab.qc.sliding_checks import undecided
+from tribolab.report.wording import percent
+
+_STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}
 # A number at or above these is marked in the table of runs. Drift is judged as the check on
 # steadiness does; friction of soft contacts scatters by 2 to 10 % around a segment's mean.
 THRESHOLDS: dict[str, dict[str, float]] = {
     "noise": {"suspect": 0.10, "fail": 0.50},
-    "drift": {key: _STEADINESS[key].value for key in ("suspect", "fail")},
+    "drift": {key: _STEADINESS[key] for key in ("suspect", "fail")},
 }
 # Chance below which a trend counts as one, again as that check has it.
-SURE = _STEADINESS["chance"].value
+SURE = _STEADINESS["chance"]
 _GRAVE = ("error", "fail", "suspect")
 
 
@@ -31,6 +35,55 @@ def judge(kind: str, value: float | None) -> str:
     if value is None or value < limits["suspect"]:
         return ""
     return "fail" if value >= limits["fail"] else "suspect"
+
+
+def not_decided(change: np.ndarray, chance: np.ndarray, samples: np.ndarray) -> np.ndarray:
+    """Return where there may be a trend or none, as the check on steadiness has it."""
+    return undecided(change, chance, samples, _STEADINESS)
+
+
+def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[float, str]]:
+    """Return the trend of each segment as a number to sort by and a text.
+
+    Parameters
+    ----------
+    rows
+        The segments of a run, as in report.json.
+    quantity
+        What the run is told by: a friction coefficient, else a force.
+
+    Examples
+    --------
+    >>> few = {"trend_change": -0.16, "trend_p_value": 0.36, "effective_samples": 2.8}
+    >>> many = {"trend_change": 8e-4, "trend_p_value": 1e-9, "effective_samples": 300}
+    >>> rows = [{"friction_coefficient": 0.8} | row for row in (few, many)]
+    >>> [text for _, text in trend_texts(rows, "friction_coefficient")]
+    ['−20 %, not decided (p = 0.36)', '+0.1 %, significant']
+    """
+
+    def column(name: str) -> np.ndarray:
+        return np.array([np.nan if (v := row.get(name)) is None else v for row in rows], float)
+
+    change, key = column("trend_change"), "friction_coefficient"
+    if quantity != key:
+        key = f"{quantity}_N"
+        change = column("force_trend_N_s") * (column("trimmed_stop_s") - column("trimmed_start_s"))
+    value = np.abs(column(key))
+    typical = value[np.isfinite(value)]
+    if not (typical > 0).any():
+        return [(0.0, "–") for _ in rows]
+    change, chance = change / typical.mean(), column("trend_p_value")
+    open_ = not_decided(change, chance, column("effective_samples"))
+    return [_trend_text(*one) for one in zip(change, chance, open_, strict=True)]
+
+
+def _trend_text(change: float, chance: float, is_open: bool) -> tuple[float, str]:
+    if not np.isfinite(change):
+        return 0.0, "–"
+    size = f"{'+' if change > 0 else ''}{percent(float(change))}"
+    if is_open:
+        return float(change), f"{size}, not decided (p = {chance:.2g})"
+    return float(change), f"{size}, {'significant' if chance < SURE else f'p = {chance:.2g}'}"
 
 
 def is_bad(run: Mapping[str, Any]) -> bool:

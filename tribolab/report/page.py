@@ -191,6 +191,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "span": wording.span,
         "speeds": wording.speeds,
         "judge": judgement.judge,
+        "trend_texts": judgement.trend_texts,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }

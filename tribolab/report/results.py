@@ -157,6 +157,7 @@ def _curves(
         known = [summaries[name].facts["quantity"] for name in curve.run_names if name in summaries]
         # without a recorded load there is no friction coefficient, so nothing is amiss
         severity = "suspect" if "friction_coefficient" in known else "note"
+        severity = "error" if curve.crash else severity
         text, members = f"no measured curve: {reason}", "; ".join(curve.run_names)
         findings.append(
             {"severity": severity, "run": members, "where": curve.name, "message": text}

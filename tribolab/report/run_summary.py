@@ -11,10 +11,19 @@ import numpy as np
 
 from tribolab.errors import AnalysisError
 from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.judgement import SURE
+from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, flagged_spans, trace
-from tribolab.report.wording import SYMBOLS, UNITS, duration, many, plain_value, span, speeds
+from tribolab.report.wording import (
+    SYMBOLS,
+    UNITS,
+    duration,
+    many,
+    percent,
+    plain_value,
+    span,
+    speeds,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -175,7 +184,7 @@ def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:
     """Return the largest significant change along a segment, of the run's typical friction.
 
     Measured as the check on steadiness does: at high speed in a liquid hardly any friction is
-    left to divide by.
+    left to divide by. None where there may be one that could not be told from chance.
     """
     size = friction.sizes["segment"]
     change = _values(friction, "trend_change", size)
@@ -185,8 +194,12 @@ def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:
     typical = np.abs(value[np.isfinite(value)])
     if not np.isfinite(change).any() or not (typical > 0).any():
         return None
-    sure = _values(friction, "trend_p_value", size) < SURE
-    return float(np.nanmax(np.abs(change[sure]), initial=0.0) / typical.mean())
+    change = change / typical.mean()
+    chance, samples = (_values(friction, n, size) for n in ("trend_p_value", "effective_samples"))
+    sure = chance < SURE
+    if not sure.any() and not_decided(change, chance, samples).any():
+        return None
+    return float(np.nanmax(np.abs(change[sure]), initial=0.0))
 
 
 def _values(data: xr.Dataset, name: str, size: int) -> np.ndarray:
@@ -243,7 +256,7 @@ def _findings(
 ) -> list[dict[str, str]]:
     found: list[dict[str, str]] = [
         {
-            "severity": "note" if row["status"] == "pass" else row["status"],
+            "severity": "note" if row["status"] in ("pass", "skipped") else row["status"],
             "run": name,
             "where": f"{row['check']} {row['variable']}".strip(),
             "message": f"{row['message']}. {row['cure']}".strip(". ") + ".",
@@ -259,16 +272,21 @@ def _findings(
     if count == 0:
         say("suspect", "segments", "no segment of steady sliding was found")
     quantity = main_quantity(friction)
+    values = _values(friction, quantity, count)
     if quantity in friction and count:
-        values = np.asarray(friction[quantity], float)
         if missing := int(np.isnan(values).sum()):
             say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
         if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
             text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
             say("suspect", "friction", text + "; is the sign of the force or the offset right?")
-    drift = int((_values(friction, "steady", count) == 0).sum())
+    # as the check on steadiness and the page's table count them
+    drift = int((_values(friction, "trend_p_value", count) < SURE).sum())
     if drift:
-        say("note", "friction", f"{many(drift, 'segment')} of {count} with a significant trend")
+        text = f"{many(drift, 'segment')} of {count} with a significant trend"
+        largest = _drift(friction, values) if quantity in friction else None
+        if largest:
+            text += f", at most {percent(largest)} of the typical friction"
+        say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
     for entry in _omitted(segments):

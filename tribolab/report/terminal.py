@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tribolab.campaign.outcome import CurveOutcome, Outcome
+from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,7 +18,8 @@ if TYPE_CHECKING:
     from tribolab.report.demo import DemoComparison
 
 _PIPED_WIDTH = 120
-_SHOWN = 10
+_SHOWN, _HANDFUL = 10, 5
+_NONE = "–"
 
 
 def console() -> Console:
@@ -28,26 +31,30 @@ def console() -> Console:
 def outcome_table(outcome: Outcome) -> Table:
     """Return one row per measured curve: what was measured, at what speeds, how much friction."""
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for heading in ("surface", "medium"):
+    done = [curve for curve in outcome.curves if curve.done]
+    # where nothing is said of what was measured, the run's name tells rows apart
+    nameless = any(not (curve.surface or curve.medium) for curve in done)
+    for heading in (*(("run",) if nameless else ()), "surface", "medium"):
         table.add_column(heading)
     for heading in ("load", "runs", "segments", "speeds", "friction coefficient"):
         table.add_column(heading, justify="right")
-    for curve in outcome.curves:
-        if curve.done:
-            load = "" if curve.normal_force is None else f"{curve.normal_force:g} N"
-            name = curve.surface or curve.run_names[0]
-            table.add_row(name, curve.medium, load, *_numbers(curve, outcome.folder))
+    for curve in done:
+        load = _NONE if curve.normal_force is None else f"{curve.normal_force:g} N"
+        known = (curve.surface or _NONE, curve.medium or _NONE, load)
+        run = curve.run_names[0] if len(curve.run_names) == 1 else _NONE
+        first = (run,) if nameless else ()
+        table.add_row(*first, *known, *_numbers(curve, outcome))
     return table
 
 
-def _numbers(curve: CurveOutcome, folder: Path) -> tuple[str, str, str, str]:
+def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
     from tribolab.io.netcdf import read_netcdf
 
-    data = read_netcdf(folder / curve.data_file)
+    data = read_netcdf(outcome.folder / curve.data_file)
     segments = f"{int(data.segments.sum())}" if "segments" in data else ""
     speed, mu = data.sliding_speed.values, data.friction_coefficient.values
-    if not speed.size:  # e.g. nothing told the speed
-        return str(len(curve.run_names)), segments, "", ""
+    if not speed.size:
+        return _of_unknown_speed(curve, outcome)
     ends = _range(f"{speed.min():.2g}", f"{speed.max():.2g}")
     return (
         str(len(curve.run_names)),
@@ -55,6 +62,20 @@ def _numbers(curve: CurveOutcome, folder: Path) -> tuple[str, str, str, str]:
         f"{ends} m/s",
         _range(f"{mu.min():.3f}", f"{mu.max():.3f}"),
     )
+
+
+def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
+    """Return the friction of the segments themselves: without a speed there is no curve."""
+    from tribolab.io.netcdf import read_netcdf
+
+    runs = [run for run in outcome.runs if run.name in curve.run_names]
+    found = [read_netcdf(outcome.folder / run.data_file, group="friction") for run in runs]
+    mu = np.concatenate([one.friction_coefficient.values for one in found])
+    known = mu[np.isfinite(mu)]
+    text = _range(f"{known.min():.3f}", f"{known.max():.3f}") if known.size else _NONE
+    speeds = np.concatenate([one.sliding_speed.values for one in found])
+    said = _NONE if np.isfinite(speeds).any() else "speed unknown"
+    return str(len(runs)), str(sum(run.segments for run in runs)), said, text
 
 
 def _range(low: str, high: str) -> str:
@@ -70,16 +91,37 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         line += f"; {reused} unchanged since the last time"
     lines = [line]
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
-        names = [run.name for run in outcome.runs if run.quality == quality]
-        names += [f"scans of {s.name}" for s in outcome.surfaces if quality in s.objections]
-        if names:
-            more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-            lines.append(f"checks {what}: {', '.join(names[:_SHOWN])}{more}")
+        runs = [run for run in outcome.runs if run.quality == quality]
+        # a campaign of hundreds of runs is not read again for a handful of lines
+        names = [f"{run.name}{_why(run, outcome)}" for run in runs[:_HANDFUL]]
+        names += [run.name for run in runs[_HANDFUL:]]
+        for one in outcome.surfaces:
+            if quality in one.objections:
+                names.append(f"scans of {one.name}{_because(one.checks, quality)}")
+        lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
+        if len(names) > _HANDFUL:
+            file = shown(outcome.folder / "tables" / "findings.csv")
+            lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     if known := [surface for surface in outcome.surfaces if surface.files]:
         done = sum(surface.done for surface in known)
         lines.append(f"{done} of {len(known)} surfaces: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
+
+
+def _why(run: RunOutcome, outcome: Outcome) -> str:
+    from tribolab.campaign.work import FINDINGS
+    from tribolab.io.netcdf import read_netcdf
+
+    attrs = read_netcdf(outcome.folder / run.data_file, group="run").attrs
+    return _because(attrs.get(FINDINGS, ()), run.quality)
+
+
+def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
+    """Return the checks that say so, and what they say."""
+    mine = [row for row in rows if row["status"] == status]
+    said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
+    return "".join(f": {' '.join(one.split())}" for one in ["; ".join(said)] if one)
 
 
 def _computed(outcome: Outcome) -> str:

@@ -1,0 +1,160 @@
+"""Runs whose segments are an instrument's steps of unknown speed: what is said of them."""
+
+import io
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from rich.console import Console
+
+from tribolab import cli
+from tribolab.campaign import pipeline
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.io.netcdf import read_netcdf
+from tribolab.qc.run_checks import check_run
+from tribolab.report import results, terminal
+from tribolab.report.run_summary import _of_friction
+
+TEXT = """
+[campaign]
+name = "steps"
+raw = "{raw}"
+
+{surface}
+
+[[run]]
+files = "cetr_umt2_MIT/*00{number}.csv"
+"""
+SURFACE = '[[surface]]\nname = "HEA"\n'
+
+
+def steps_of_an_instrument(shared_data, folder, surface=True, number="*"):
+    text = TEXT.format(
+        raw=shared_data.as_posix(), surface=SURFACE if surface else "", number=number
+    )
+    file = folder / "campaign.toml"
+    file.write_text(text + ('surface = "HEA"\n' if surface else ""), encoding="utf-8")
+    return process(load_campaign(file), folder / "new")
+
+
+@pytest.fixture(scope="module")
+def together(shared_data, tmp_path_factory):
+    return steps_of_an_instrument(shared_data, tmp_path_factory.mktemp("together"))
+
+
+def test_repeats_without_a_speed_make_an_empty_curve_and_no_crash(together):
+    (curve,) = together.curves
+    assert (curve.status, curve.reason, curve.crash) == ("done", "", "")
+    findings = []
+    results._curves(together, {}, findings)
+    assert [row["message"] for row in findings] == [
+        "no measured curve: no segment has both a speed and a friction coefficient"
+    ]
+
+
+def test_a_mistake_of_ours_in_a_curve_is_an_error_and_traced_on_demand(
+    shared_data, tmp_path, monkeypatch, capsys
+):
+    def broken(task):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr(pipeline, "process_curve", broken)
+    outcome = steps_of_an_instrument(shared_data, tmp_path, number="1")
+    findings = []
+    results._curves(outcome, {}, findings)
+    assert [row["severity"] for row in findings] == ["error"]
+    assert cli._show(outcome, debug=False) == 3
+    assert "Traceback" not in capsys.readouterr().err
+    assert cli._show(outcome, debug=True) == 3
+    assert "ZeroDivisionError: float division by zero" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def said(together):
+    """What the checks said of each run: {run: {check: row}}."""
+    return {
+        run.name: {
+            row["check"]: row
+            for row in read_netcdf(together.folder / run.data_file, group="run").attrs["findings"]
+        }
+        for run in together.runs
+    }
+
+
+def test_too_few_effective_samples_decide_nothing_of_steadiness(said):
+    for checks in said.values():
+        row = checks["steadiness"]
+        assert row["status"] == "skipped" and row["noted"]
+        assert "not decided in" in row["message"] and "effective samples" in row["message"]
+    worst = said["HT-2n-6-4_2_002"]["steadiness"]
+    # by which much the line falls, of the friction: -0.177 of 0.774
+    assert worst["value"] == pytest.approx(-0.177 / 0.774, abs=2e-3)
+    assert "-22.82%" in worst["message"] and "2.8 effective samples" in worst["message"]
+
+
+def test_a_speed_that_is_unknown_is_suspect_for_what_may_be_inside(said):
+    for checks in said.values():
+        row = checks["segment_speed"]
+        assert row["status"] == "suspect"
+        assert row["message"].startswith("the speed of 2 of 2 segments is unknown: start, stop and")
+        assert "strokes figure" in row["cure"] and "`trim`" in row["cure"]
+
+
+def test_a_trend_that_can_be_told_is_still_told_and_many_samples_show_that_there_is_none():
+    time = np.arange(4000) / 100
+    noise = 0.02 * np.random.default_rng(0).standard_normal(time.size)
+    for slope, status, words in (
+        (0.0, "pass", "no significant trend within a segment; measured at most 0."),
+        (0.1, "suspect", "+8."),
+    ):
+        mu = 0.5 * (1 + slope * (time / 40 - 0.5)) + noise
+        data = {"friction_coefficient": ("time", mu)}
+        data["sliding_velocity"] = ("time", np.full(time.size, 1e-3))
+        found = check_run(xr.Dataset(data, {"time": time}))
+        (row,) = (row for row in found.rows if row["check"] == "steadiness")
+        assert row["status"] == status and words in row["message"]
+
+
+def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
+    for run in together.runs:
+        friction = read_netcdf(together.folder / run.data_file, group="friction")
+        assert _of_friction(friction)["relative_drift"] is None
+
+
+def printed(outcome):
+    """Rows of the table on the command line, each split into its cells."""
+    out = Console(width=160, record=True, file=io.StringIO())
+    out.print(terminal.outcome_table(outcome))
+    rows = out.export_text().splitlines()
+    return [re.split(r"\s{2,}", row.strip()) for row in rows if row.strip()]
+
+
+def test_friction_is_printed_where_the_speed_is_unknown(together):
+    (heading, row) = printed(together)
+    assert heading[0] == "surface"
+    load, friction = "1.961 N", "0.768 to 0.785"
+    assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction]
+
+
+def test_a_run_of_no_surface_stands_under_its_own_name(shared_data, tmp_path):
+    outcome = steps_of_an_instrument(shared_data, tmp_path, surface=False, number="[12]")
+    heading, *rows = printed(outcome)
+    assert heading[:2] == ["run", "surface"]
+    assert [row[:4] for row in rows] == [[run.name, "–", "–", "1.961 N"] for run in outcome.runs]
+    assert [row[4:7] for row in rows] == 2 * [["1", "2", "speed unknown"]]
+    assert all(float(row[7]) == pytest.approx(0.776, abs=0.01) for row in rows)
+
+
+def test_every_objection_is_printed_with_its_reason_and_at_most_a_handful(together):
+    lines = [line for line in terminal.outcome_lines(together) if "suspect" in line]
+    assert len(lines) == 3
+    for run, line in zip(together.runs, lines, strict=True):
+        assert line.startswith(f"checks are suspect in: {run.name}: ")
+        assert "segment_speed: the speed of 2 of 2 segments is unknown" in line
+    many = replace(together, runs=4 * together.runs)
+    lines = [line for line in terminal.outcome_lines(many) if "suspect" in line]
+    assert len(lines) == 6
+    assert "and 7 more: see " in lines[-1] and lines[-1].endswith("findings.csv")
