@@ -234,6 +234,18 @@ def test_stribeck_draws_any_number_of_points(points):
     assert low < 1e-6 and high > np.logspace(-6, -2, points)[-1]
 
 
+def test_a_flat_curve_is_not_cut_by_the_axis():
+    names = ("friction_coefficient", "friction_coefficient_std", "friction_coefficient_sem")
+    values = ([0.6074, 0.6080], [0.0, 0.0], [0.0001, 0.0002])
+    data = {n: ("sliding_speed", v) for n, v in zip(names, values, strict=True)}
+    figure = plot.stribeck(xr.Dataset(data, {"sliding_speed": [1e-5, 1e-4]}))
+    axes = figure.axes[0]
+    figure.draw_without_rendering()
+    y, top = axes.transData.transform((1e-4, 0.6082))[1], axes.bbox.y1
+    # half a marker of 4.2 pt and its edge fit between the highest error bar and the frame
+    assert axes.get_ylim()[0] == 0 and top - y > 2.6 * figure.dpi / 72
+
+
 def test_stribeck_leaves_nan_out_and_refuses_nothing_at_all():
     curve = made_curve()
     curve["friction_coefficient"][1] = np.nan
