@@ -51,6 +51,15 @@ def outcome(campaign):
     return made
 
 
+def test_the_readme_names_every_table_and_folder_that_a_run_leaves(outcome):
+    readme = (SCHEMA.parents[1] / "README.md").read_text("utf-8")
+    listed = readme.partition("What the demo leaves behind")[2].partition("\n## ")[0]
+    tables = [path.name for path in (outcome.folder / "tables").iterdir()]
+    folders = [f"{path.name}/" for path in outcome.folder.iterdir() if path.is_dir()]
+    assert {"stick_slip.csv", "shear_stress.csv"} <= set(tables)
+    assert [name for name in tables + folders if name not in listed] == []
+
+
 def changed(campaign, extra, name):
     """Write the campaign file again with a table more, and an empty folder for its results."""
     file = campaign.with_name(f"{name}.toml")

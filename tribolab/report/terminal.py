@@ -185,7 +185,8 @@ def file_lines(description: Mapping[str, Any]) -> list[str]:
     lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
     width = max((len(name) for name in d["columns"]), default=0)
     for name, column in d["columns"].items():
-        span = f"{column['minimum']:.6g} to {column['maximum']:.6g} {column['unit']}"
+        span = _range(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
+        span += f" {column['unit']}" if column["unit"] != "1" else ""
         label = f"   from '{column['label']}'" if column["label"] else ""
         lines.append(f"  {name:<{width}}  {span}{label}")
     if d["not_used"]:
