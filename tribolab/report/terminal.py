@@ -119,12 +119,12 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"surfaces, from their scans: at most {text} from the truth; "
             f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
         )
-    fits = compared.shear_stress
+    fits, lost = compared.shear_stress, _not_described(results)
     if len(fits):
         lines.append(
             f"shear stresses, fitted with the scanned spectra: at most "
             f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
-            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals"
+            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
     lines.append(f"against the paper: {_counted(compared.paper)}")
     tables = shown(results / "tables")
@@ -138,6 +138,23 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
     ]
+
+
+def _not_described(results: Path) -> str:
+    """Say in brackets how many curves of which surface the model does not describe."""
+    import pandas as pd
+
+    from tribolab.report.model_words import is_described
+    from tribolab.report.wording import many
+
+    path = results / "tables" / "shear_stress.csv"
+    if not path.is_file():
+        return ""
+    fits = pd.read_csv(path)
+    fits = fits[[not is_described(words) for words in fits.judgement]]
+    said = [f"{many(n, 'curve')} of {name}" for name, n in fits.surface.value_counts().items()]
+    verb = "is" if len(fits) == 1 else "are"
+    return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
 
 
 def _counted(table: pd.DataFrame) -> str:
