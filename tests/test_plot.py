@@ -12,11 +12,13 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from reporting import SPEEDS, made_curve, made_run
 
+import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import DOUBLE_MM, SINGLE_MM, surface_styles
 from tribolab.quantities import stamp
+from tribolab.report.sliding_figures import _marked
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +105,7 @@ mpl.rcParams["font.size"] = 31
 mpl.rcParams["axes.grid"] = True
 before = dict(mpl.rcParams)
 from reporting import made_run, made_curve
+import tribolab as tl
 from tribolab import plot
 parts = made_run(samples=50)
 for figure in (plot.trace(*parts), plot.strokes(*parts), plot.stribeck(made_curve())):
@@ -308,3 +311,28 @@ def test_a_run_without_friction_is_refused_with_what_it_has():
 
 def test_a_notebook_gets_a_picture(made):
     assert plot.trace(*made)._repr_png_().startswith(b"\x89PNG")
+
+
+def test_long_names_beside_stick_slip_stay_on_the_paper():
+    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    segments, name = tl.find_segments(run), "10 µm/s, velstep4_BRAVA_expb819_basalt"
+    slip = tl.stick_slip(run, segments)
+    stack = [plot.Trace(label, run, segments, None, 0, "basalt") for label in ("dry", name)]
+    for figure in (
+        plot.slip_traces(stack),
+        plot.waveform_map({name: tl.stick_slip_curve([slip])}),
+    ):
+        canvas = FigureCanvasAgg(figure)
+        drawn = [t for t in figure.findobj(mpl.text.Text) if "basalt" in t.get_text()]
+        assert drawn and "…" not in drawn[0].get_text()  # whole, the speed first
+        for text in drawn:
+            box = text.get_window_extent(canvas.get_renderer())
+            assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
+
+
+def test_the_caption_of_spectra_names_only_what_is_marked():
+    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    slip = tl.stick_slip(run, tl.find_segments(run))
+    calm = slip.assign(dominant_frequency=slip.dominant_frequency * np.nan)
+    assert "Blue: the strongest oscillation." in _marked([("dry", slip, 0)])
+    assert "Blue" not in _marked([("dry", calm, 0)]) and "mains" not in _marked([("dry", calm, 0)])
