@@ -4,6 +4,7 @@ import html
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import jsonschema
 import numpy as np
@@ -13,14 +14,21 @@ import xarray as xr
 
 import tribolab
 from tribolab.campaign.config import load_campaign
+from tribolab.campaign.model_work import _beside
+from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
 from tribolab.compare.shear_stress import fit_shear_stress
 from tribolab.compare.spectrum_error import shear_stress_shift
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.friction.repeatability import repeatability
-from tribolab.io.netcdf import read_netcdf
-from tribolab.report.model_words import judgement
+from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.report.demo import DemoComparison
+from tribolab.report.model_figures import draw_model, plan_model_figures
+from tribolab.report.model_records import ModelRows
+from tribolab.report.model_words import is_described, judgement
 from tribolab.report.results import write_report
+from tribolab.report.terminal import truth_lines
+from tribolab.report.truth import Comparison
 from tribolab.report.truth_shear_stress import compare_shear_stress
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026
@@ -49,6 +57,15 @@ def outcome(campaign):
     made = process(load_campaign(campaign), folder)
     write_report(made)
     return made
+
+
+def test_the_readme_names_every_table_and_folder_that_a_run_leaves(outcome):
+    readme = (SCHEMA.parents[1] / "README.md").read_text("utf-8")
+    listed = readme.partition("What the demo leaves behind")[2].partition("\n## ")[0]
+    tables = [path.name for path in (outcome.folder / "tables").iterdir()]
+    folders = [f"{path.name}/" for path in outcome.folder.iterdir() if path.is_dir()]
+    assert {"stick_slip.csv", "shear_stress.csv"} <= set(tables)
+    assert [name for name in tables + folders if name not in listed] == []
 
 
 def changed(campaign, extra, name):
@@ -240,4 +257,54 @@ def test_the_words_follow_the_residuals():
     far = judgement(described([0.9, 0.8, -0.01, -0.02], chi_square_p_value=0.0))
     assert far.startswith("the model does not describe this curve: off by up to 47 %")
     none = judgement(described([0.5] * 4, shear_stress_Pa=-1.0))
-    assert "not positive" in none
+    assert none.startswith("no shear stress describes this curve")
+    assert "the model's" not in none and "see stick-slip and sliding mode" in none
+    assert [is_described(words) for words in (good, bad, far, none)] == [True, True, False, False]
+
+
+def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
+    measured, curve = curve_of_one_factor(1.0)
+    fluid = curve.friction_coefficient_couette + curve.friction_coefficient_pressure
+    measured["friction_coefficient"] = 0.5 * fluid
+    measured["friction_coefficient_std"] = measured.friction_coefficient_sem
+    found = fit_shear_stress(measured, xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0)
+    assert found.shear_stress < 0
+    fit = _beside(found, measured)
+    np.testing.assert_allclose(fit.friction_coefficient_model, fluid)
+    np.testing.assert_allclose(fit.friction_coefficient_residual, -0.5 * fluid)
+    assert not fit.friction_coefficient_solid.any()
+    figure = tribolab.plot.mixed_curve(fit, curve, surface="Sb-S")
+    drawn = tribolab.plot.figure_data(figure)
+    assert drawn.series.unique().tolist() == ["viscous", "measured", "measured less viscous part"]
+
+    (tmp_path / "figures").mkdir()
+    write_netcdf(fit, tmp_path / "m.nc", group="fit")
+    write_netcdf(curve, tmp_path / "m.nc", group="curve")
+    labels = {"surface": "Sb-S", "medium": "glycerol", "status": "done", "data_file": "m.nc"}
+    parts = ("curve", "fit")
+    models = [
+        ModelOutcome(name=f"m{load:g}", curve="c", normal_force=load, parts=parts, **labels)
+        for load in (31.0, 91.0)
+    ]
+    rows = [ModelRows(model, {"shear_stress_Pa": -1.0}, None) for model in models]
+    outcome = SimpleNamespace(curves=(), folder=tmp_path)
+    planned = {task.name: draw_model(task) for task in plan_model_figures(outcome, rows)}
+    assert set(planned) == {"m31", "m91", "model_surface_1"}  # and no figure of shear stresses
+    assert "31 N: no shear stress describes this curve" in planned["m31"]["caption"]
+    assert "no model at 31 N and 91 N" in planned["model_surface_1"]["caption"]
+    loads = pd.read_csv(tmp_path / planned["model_surface_1"]["data"])
+    assert not loads.series.str.startswith("model").any()
+
+
+def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):
+    (tmp_path / "tables").mkdir()
+    words = ["no shear stress describes this curve: …", "the model describes the curve: …"]
+    fits = pd.DataFrame({"surface": ["Smooth", "Smooth", "Sb-S"], "judgement": [*words, words[1]]})
+    fits.loc[1, "judgement"] = "the model does not describe this curve: off by up to 85 % of it"
+    fits.to_csv(tmp_path / "tables/shear_stress.csv")
+    paper = pd.DataFrame({"status": ["reproduced"]})
+    fitted = pd.DataFrame({"relative_difference": [0.01], "within_interval": [1]})
+    runs = Comparison(pd.DataFrame(), 1, 1, 0, 0, 1.0, 1.0)
+    compared = DemoComparison(tmp_path, runs, pd.DataFrame(), fitted, paper)
+    said = "\n".join(truth_lines(compared, SimpleNamespace(folder=tmp_path)))
+    assert "1 of 1 within their 95 % intervals (2 curves of Smooth are not described" in said

@@ -10,6 +10,7 @@ from tribolab import cli
 from tribolab.errors import ConfigError
 from tribolab.io.dialects import load_dialect
 from tribolab.io.draft import draft_dialect, save_draft
+from tribolab.report.file_info import run_lines
 
 
 def test_an_existing_dialect_is_not_overwritten(tmp_path):
@@ -24,6 +25,22 @@ def test_an_existing_dialect_is_not_overwritten(tmp_path):
     assert toml.read_text() == "by hand"
     save_draft(draft, toml, force=True)
     assert load_dialect(toml).name == "mine_2"
+
+
+def test_one_value_and_a_pure_number_are_said_once_and_without_a_unit(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("Time [s],Fx [N],mu [1],Dev [V]\n0,1,0.5,0.004\n1,2,0.6,0.004\n2,3,0.7,0.004\n")
+    draft = draft_dialect(file, name="mine")
+    save_draft(draft, tmp_path / "mine.toml")
+    assert ": 0.004;" in (tmp_path / "mine.toml").read_text("utf-8")
+    columns = {
+        "mu": {"label": "", "unit": "1", "minimum": 1.0, "maximum": 2.0},
+        "step": {"label": "", "unit": "1", "minimum": 4.0, "maximum": 4.0},
+        "force": {"label": "", "unit": "N", "minimum": 4.0, "maximum": 4.0},
+    }
+    about = {"file": "a", "instrument": "b", "title": "", "rows": 2, "duration_s": 1.0}
+    about |= {"interval_s": None, "steps": 0, "not_used": [], "metadata": {}, "columns": columns}
+    assert [line.split(maxsplit=1)[1] for line in run_lines(about)[2:]] == ["1 to 2", "4", "4 N"]
 
 
 def command(*words):

@@ -12,11 +12,13 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from reporting import SPEEDS, made_curve, made_run
 
+import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import DOUBLE_MM, SINGLE_MM, surface_styles
 from tribolab.quantities import stamp
+from tribolab.report.sliding_figures import _marked
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +105,7 @@ mpl.rcParams["font.size"] = 31
 mpl.rcParams["axes.grid"] = True
 before = dict(mpl.rcParams)
 from reporting import made_run, made_curve
+import tribolab as tl
 from tribolab import plot
 parts = made_run(samples=50)
 for figure in (plot.trace(*parts), plot.strokes(*parts), plot.stribeck(made_curve())):
@@ -234,6 +237,18 @@ def test_stribeck_draws_any_number_of_points(points):
     assert low < 1e-6 and high > np.logspace(-6, -2, points)[-1]
 
 
+def test_a_flat_curve_is_not_cut_by_the_axis():
+    names = ("friction_coefficient", "friction_coefficient_std", "friction_coefficient_sem")
+    values = ([0.6074, 0.6080], [0.0, 0.0], [0.0001, 0.0002])
+    data = {n: ("sliding_speed", v) for n, v in zip(names, values, strict=True)}
+    figure = plot.stribeck(xr.Dataset(data, {"sliding_speed": [1e-5, 1e-4]}))
+    axes = figure.axes[0]
+    figure.draw_without_rendering()
+    y, top = axes.transData.transform((1e-4, 0.6082))[1], axes.bbox.y1
+    # half a marker of 4.2 pt and its edge fit between the highest error bar and the frame
+    assert axes.get_ylim()[0] == 0 and top - y > 2.6 * figure.dpi / 72
+
+
 def test_stribeck_leaves_nan_out_and_refuses_nothing_at_all():
     curve = made_curve()
     curve["friction_coefficient"][1] = np.nan
@@ -296,3 +311,28 @@ def test_a_run_without_friction_is_refused_with_what_it_has():
 
 def test_a_notebook_gets_a_picture(made):
     assert plot.trace(*made)._repr_png_().startswith(b"\x89PNG")
+
+
+def test_long_names_beside_stick_slip_stay_on_the_paper():
+    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    segments, name = tl.find_segments(run), "10 µm/s, velstep4_BRAVA_expb819_basalt"
+    slip = tl.stick_slip(run, segments)
+    stack = [plot.Trace(label, run, segments, None, 0, "basalt") for label in ("dry", name)]
+    for figure in (
+        plot.slip_traces(stack),
+        plot.waveform_map({name: tl.stick_slip_curve([slip])}),
+    ):
+        canvas = FigureCanvasAgg(figure)
+        drawn = [t for t in figure.findobj(mpl.text.Text) if "basalt" in t.get_text()]
+        assert drawn and "…" not in drawn[0].get_text()  # whole, the speed first
+        for text in drawn:
+            box = text.get_window_extent(canvas.get_renderer())
+            assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
+
+
+def test_the_caption_of_spectra_names_only_what_is_marked():
+    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    slip = tl.stick_slip(run, tl.find_segments(run))
+    calm = slip.assign(dominant_frequency=slip.dominant_frequency * np.nan)
+    assert "Blue: the strongest oscillation." in _marked([("dry", slip, 0)])
+    assert "Blue" not in _marked([("dry", calm, 0)]) and "mains" not in _marked([("dry", calm, 0)])

@@ -130,7 +130,7 @@ def test_the_rocks_change_of_rate_is_seen_and_lies_outside_the_segments(shared_d
     _, found = verdict(shared_data, "rock_velstep_MIT", "velstep4_BRAVA_expb819_basalt.txt")
     assert objections(found) == {}
     told = message(found, "rate_changes")
-    assert "changes 1 times, never within a trimmed segment: t = 66.5 s" in told
+    assert "changes 1 time, never within a trimmed segment: t = 66.5 s" in told
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])

@@ -154,6 +154,34 @@ def test_table_sorts_filters_and_hides(browser, results):
 
 
 @pytest.mark.slow
+def test_friction_stands_beside_the_name_which_stays_on_a_narrow_screen(browser, results):
+    with browser.page(results / "report.html", 400) as page:
+        row = json.loads(
+            page.run(
+                "(() => { const table = document.getElementById('runs-table');"
+                "const text = (row) => Array.from(row.cells, (cell) => cell.textContent.trim());"
+                "return JSON.stringify([text(table.tHead.rows[0]), text(table.tBodies[0].rows[0])])"
+                "})()"
+            )
+        )
+        cells = dict(zip(*row, strict=True))
+        head = [name for name in cells if name != "Why"]
+        assert head[:3] == ["Run", "Status", "µ, slowest"]
+        assert cells["µ, slowest"].startswith("0.7999 ± ") and cells["Surface"] == "Sb-R"
+        assert (cells["Medium"], cells["Load"]) == ("glycerol", "31 N")
+        assert cells["Noise"].endswith("%") and cells["Drift"].endswith("%")
+        where = (
+            "['Run', 'Left out'].map((name) => Math.round(Array.from(document.querySelectorAll("
+            "'#runs-table thead th')).find((th) => th.textContent.trim() === name)"
+            ".getBoundingClientRect().left)).join()"
+        )
+        left, right = map(int, page.run(where).split(","))
+        page.run("document.querySelector('#runs-table').parentNode.scrollLeft = 5000")
+        assert int(page.run(where).split(",")[0]) == left < 400
+        assert int(page.run(where).split(",")[1]) < 400 < right
+
+
+@pytest.mark.slow
 def test_a_flagged_run_is_two_clicks_away_with_its_span_marked(browser, results):
     number = FLAGGED + 1
     with browser.page(results / "report.html") as page:

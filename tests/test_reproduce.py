@@ -56,6 +56,18 @@ def test_every_figure_is_there_with_its_origin_its_numbers_and_its_words(made, p
         assert one["kinds"] and set(one["kinds"]) <= {COMPUTED, SIMULATED}
 
 
+def test_a_bound_is_met_or_not_and_has_no_percentage(made, page):
+    document = json.loads((made.folder / "paper.json").read_text())
+    said = {row["quantity"]: row for row in document["numbers"] if row["difference"]}
+    assert said["boundary_onset_speed"]["difference"] == "within the bound"
+    assert said["viscoelastic_friction"]["difference"] == "above the bound"
+    assert said["shear_stress"]["difference"] == "inconsistent with other printed numbers"
+    assert all(row["relative_difference"] is None for row in said.values())
+    table = page[page.index('id="numbers-table"') :].partition("</table>")[0]
+    (cells,) = re.findall(r"boundary onset speed</a>.*?</tr>", table, re.S)
+    assert "within the bound" in cells and "±" not in cells
+
+
 def test_each_number_stands_once_at_its_place(made):
     rows = json.loads((made.folder / "paper.json").read_text())["numbers"]
     claimed = [sum(figure.has(row) for figure in FIGURES) for row in rows]

@@ -101,12 +101,13 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
         fit = None
     else:
-        groups["curve"] = with_shear_stress(groups["curve"], fit.shear_stress)
+        # friction that helps the motion is no model: the best that is one has no shear stress
+        groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         groups["fit"] = _beside(fit, measured)
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
-    if model.uncertain and fit is not None:
+    if model.uncertain and fit is not None and fit.shear_stress > 0:
         given = {"viscosity": model.viscosity, "load": load, **body}
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
@@ -160,8 +161,16 @@ def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float]:
 
 
 def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
-    """Model and points at the measured speeds; the fit among the attributes."""
+    """Model and points at the measured speeds; the fit among the attributes.
+
+    Where the fitted shear stress is negative, the model is the one with none.
+    """
+    from tribolab.lubrication.stribeck import with_shear_stress
+
     curve = fit.curve
+    if fit.shear_stress < 0:
+        curve = with_shear_stress(curve, -fit.shear_stress)
+        curve["friction_coefficient_solid"] = 0.0 * curve["friction_coefficient"]
     points = measured.sel(sliding_speed=curve["sliding_speed"])
     low, high = fit.valid_speed_range
     data = curve.rename(friction_coefficient="friction_coefficient_model").assign(
@@ -169,6 +178,9 @@ def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
             f"friction_coefficient{end}": points[f"friction_coefficient{end}"]
             for end in ("", "_std", "_sem")
         }
+    )
+    data["friction_coefficient_residual"] = (
+        data["friction_coefficient"] - data["friction_coefficient_model"]
     )
     return stamp(
         data,

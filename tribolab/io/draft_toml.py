@@ -189,7 +189,10 @@ def _has_no_unit(column: DraftColumn) -> bool:
 
 def _range(values: np.ndarray) -> str:
     finite = values[np.isfinite(values)]
-    return f"{finite.min():.6g} to {finite.max():.6g}" if finite.size else "no number"
+    ends = (
+        dict.fromkeys(f"{end:.6g}" for end in (finite.min(), finite.max())) if finite.size else {}
+    )
+    return " to ".join(ends) or "no number"
 
 
 def _comment(text: str) -> str:

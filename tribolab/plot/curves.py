@@ -231,9 +231,10 @@ def _scales(axes: Axes, name: str, numbered: bool) -> None:
         few_ticks(axes.xaxis, low / room, high * room, decades=9)
         axes.set_xlabel(label("sliding_speed"))
     axes.set_ylabel(label(name, "half loop of the friction force" if name == "half_loop" else None))
-    low, high = axes.dataLim.intervaly
-    span = (high - low) or abs(high) or 1.0
-    axes.set_ylim(0.0 if low >= 0 else low - 0.08 * span, high + 0.08 * span)
+    low, high = axes.dataLim.intervaly  # with the error bars
+    low = 0.0 if low >= 0 else low
+    room = 0.08 * ((high - low) or 1.0)  # of the whole axis: a flat curve far from 0 is not cut
+    axes.set_ylim(low - room if low < 0 else 0.0, high + room)
 
 
 def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:

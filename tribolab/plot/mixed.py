@@ -58,6 +58,8 @@ def mixed_curve(
     Returns
     -------
     matplotlib.figure.Figure
+        Where the fitted shear stress is not positive there is no model: of its lines only the
+        viscous part is drawn, and the differences are from that.
         Above: points with wide pale bars (standard deviation) and narrow ones (standard error),
         the model as a line, its solid part dashed and its viscous part dotted, dry points open.
         Below: measured less model, with the standard errors.
@@ -83,22 +85,25 @@ def mixed_curve(
         figure = new_figure(SINGLE_MM, _MODEL_HEIGHT + _MISFIT_HEIGHT)
         ratios = {"height_ratios": [_MODEL_HEIGHT, _MISFIT_HEIGHT]}
         axes, below = figure.subplots(2, 1, sharex=True, gridspec_kw=ratios)
-        if uncertainty is not None:
+        modelled = fit.attrs.get("shear_stress_Pa", 1.0) > 0
+        if uncertainty is not None and modelled:
             _band(figure, axes, uncertainty, style.colour)
-        _model(figure, axes, curve, style.colour)
+        _model(figure, axes, curve, style.colour, () if modelled else ("viscous",))
         _measured(figure, axes, fit, style, "measured")
         if dry is not None:
             _measured(figure, axes, dry, style, "dry", hollow=True)
-        _misfit(figure, below, fit, style)
+        _misfit(figure, below, fit, style, "model" if modelled else "viscous part")
         _speeds(below, curve["sliding_speed"].values)
         axes.set_ylabel(label("friction_coefficient"))
-        low, high = axes.dataLim.intervaly  # a shear stress that fits nothing may be negative
+        low, high = axes.dataLim.intervaly
         axes.set_ylim(1.2 * low if low < -0.01 * high else 0, 1.06 * high)
         _two_panels(figure, axes, title)
     return figure
 
 
-def _model(figure: PaperFigure, axes: Axes, curve: xr.Dataset, colour: str) -> None:
+def _model(
+    figure: PaperFigure, axes: Axes, curve: xr.Dataset, colour: str, only: tuple[str, ...] = ()
+) -> None:
     v = curve["sliding_speed"].values
     fluid = curve["friction_coefficient_couette"] + curve["friction_coefficient_pressure"]
     for name, values, look, text in (
@@ -106,6 +111,8 @@ def _model(figure: PaperFigure, axes: Axes, curve: xr.Dataset, colour: str) -> N
         ("solid", curve["friction_coefficient_solid"], {"linestyle": "--"}, "solid part"),
         ("viscous", fluid, {"linestyle": (0, (1, 1.2)), "color": BLACK}, "viscous part"),
     ):
+        if only and name not in only:
+            continue
         axes.plot(v, values, **{"color": colour, "linewidth": 0.9, "zorder": 3} | look, label=text)
         numbers = {column("sliding_speed"): v, "friction_coefficient": values.values}
         figure.keep("friction", name, **numbers)
@@ -141,7 +148,7 @@ def _measured(figure, axes: Axes, data: xr.Dataset, style, text: str, hollow: bo
     figure.keep("friction", text, **columns, **kept)
 
 
-def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style) -> None:
+def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style, what: str) -> None:
     v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
     error = np.nan_to_num(fit["friction_coefficient_sem"].values)
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
@@ -149,7 +156,8 @@ def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style) -> None:
         v, off, error, color=style.colour, marker=style.marker, markersize=3.2,
         linestyle="none", elinewidth=0.8, capsize=1.8, capthick=0.8,
     )  # fmt: skip
-    figure.keep("residual", "measured less model", sliding_speed_m_s=v, residual=off, error=error)
+    columns = {"sliding_speed_m_s": v, "residual": off, "error": error}
+    figure.keep("residual", f"measured less {what}", **columns)
     axes.set_ylabel(r"difference $\Delta\mu$")
     axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
     reach = 1.15 * np.nanmax(np.abs(off) + error) or 1.0

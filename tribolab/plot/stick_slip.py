@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -30,6 +31,7 @@ from tribolab.plot.style import (
 )
 
 _COLUMNS = 500
+_LETTERS = 25  # that fit into a margin of 42 mm
 _GAP = 0.25  # between stacked traces, of the tallest one's height
 _LOOK = {
     CLASSES[0]: ("o", GREY),
@@ -112,20 +114,20 @@ def slip_traces(
             low = float(y[part].min())
             base = low if base is None else base
             shift = base - low
-            base += max(height, 0.6 * gap) + gap  # room for two lines of text
+            base += max(height, 0.6 * gap) + gap  # room for the words
             count = sum(t.surface == trace.surface for t in traces)
             place = rank[trace.surface] = rank.get(trace.surface, -1) + 1
             colour = shade(chosen[trace.surface], place, count)
             short = envelope(x[part] * 1e6, y[part] + shift, _COLUMNS)
             axes.plot(*short, color=colour, linewidth=0.8)
-            words = plain(trace.label)
+            words = _wrapped(trace.label)
             words += f"\nshifted by {shift:+.2f}" if abs(shift) > 0.005 else ""
             axes.annotate(
                 words,
                 (1.01, short[1][-min(20, short[1].size) :].mean()),
                 xycoords=("axes fraction", "data"),
                 va="center",
-                fontsize=6.5,
+                fontsize=7,
                 annotation_clip=False,
             )
             figure.keep("traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
@@ -135,6 +137,13 @@ def slip_traces(
         word = r"friction force $F_x$ (N), shifted" if force else r"$\mu = F_x/F_N$, shifted"
         axes.set_ylabel(word)
     return figure
+
+
+def _wrapped(label: str) -> str:
+    """Break a label, so that it fits the margin of 42 mm."""
+    apart = str(label).replace("_", "_ ")  # a long name breaks at its underscores
+    lines = textwrap.wrap(apart, _LETTERS, max_lines=2, placeholder=" …") or [""]
+    return "\n".join(plain(line.replace("_ ", "_")) for line in lines)
 
 
 def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
@@ -191,7 +200,7 @@ def slip_spectra(slips: Mapping[str, tuple[xr.Dataset, int]]) -> PaperFigure:
         for axes in grid.flat[len(slips) :]:
             axes.remove()
         handles, words = grid.flat[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="upper center", ncols=3, fontsize=6.5)
+        figure.legend(handles, words, loc="upper center", ncols=3, fontsize=7)
     return figure
 
 
@@ -218,7 +227,7 @@ def _spectrum(figure: PaperFigure, axes: Axes, label: str, slip: xr.Dataset, num
             (own, top),
             xytext=(3, 2),
             textcoords="offset points",
-            fontsize=6.5,
+            fontsize=7,
             color="#006699",
         )
     if np.isfinite(row["mains_frequency"].item()):
@@ -228,7 +237,7 @@ def _spectrum(figure: PaperFigure, axes: Axes, label: str, slip: xr.Dataset, num
             (row["mains_frequency"].item(), level.min()),
             xytext=(2, 2),
             textcoords="offset points",
-            fontsize=6.5,
+            fontsize=7,
             color=PURPLE,
         )
     axes.set_ylim(top=top * 12)
@@ -286,7 +295,7 @@ def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -
             axes.set_ylim(0, 1)
         panels[0].set_ylabel("share of the events")
         handles, words = panels[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="upper center", ncols=4, fontsize=6.5)
+        figure.legend(handles, words, loc="upper center", ncols=4, fontsize=7)
     return figure
 
 
@@ -337,7 +346,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
     drops = np.concatenate([_drops(curve) for curve in curves.values()])
     largest = np.nanmax(np.append(drops[np.isfinite(drops)], 1e-12))
     with paper_style():
-        figure = new_figure(DOUBLE_MM, 24.0 + 6.0 * len(curves))
+        figure = new_figure(DOUBLE_MM, 24.0 + 7.0 * len(curves))
         axes = figure.add_subplot()
         margins(figure, 42, 5, 11, 8)
         for place, (label, curve) in enumerate(curves.items()):
@@ -362,11 +371,11 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
         if speeds.size:  # stated, as a single speed has no range of its own
             axes.set_xlim(speeds.min() / 1.8, 1.8 * speeds.max())
         logarithmic(axes, "x")
-        axes.set_yticks(range(len(curves)), [plain(label) for label in curves])
+        axes.set_yticks(range(len(curves)), [_wrapped(label) for label in curves])
         axes.set_ylim(-0.7, len(curves) - 0.3)
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("sliding speed $v$ (m/s)")
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=4, fontsize=6.5)
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=4, fontsize=7)
     return figure
 
 

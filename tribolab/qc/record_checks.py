@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT
-from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
+from tribolab.qc.register import Check, Count, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
 
 _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
@@ -23,7 +23,8 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         if name not in run:
             continue
         flags = schema.in_range(run[name].values, span)
-        text = f"{{count}} values outside {span.low:g} to {span.high:g}: {span.reason}; {{where}}"
+        text = f"{{count:value|values}} outside {span.low:g} to {span.high:g}: "
+        text += f"{span.reason}; {{where}}"
         results.append(sample_result(name, flags, subject.time, text))
     if "normal_force" in run:
         share = schema.pulled(run["normal_force"].values)
@@ -35,7 +36,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = timing.time_order(subject.time)
-    text = "time stands still or goes back at {count} samples, {where}"
+    text = "time stands still or goes back at {count:sample|samples}, {where}"
     return [sample_result("time", flags, subject.time, text)]
 
 
@@ -46,7 +47,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
         return [sample_result("time", flags, time, "")]
     lost = timing.lost_time(time, flags)
     longest = float(np.diff(time)[flags[1:] == SUSPECT].max())
-    text = f"{{count}} gaps in time, the longest {longest:.4g} s, {{where}}"
+    text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
     if lost > limits["lost"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
     return [sample_result("time", flags, time, text, value=lost)]
@@ -54,7 +55,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
 
 def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = timing.time_jitter(subject.time, limits["scatter"])
-    text = "the sampling intervals scatter over {count} samples, {where}"
+    text = "the sampling intervals scatter over {count:sample|samples}, {where}"
     return [sample_result("time", flags, subject.time, text)]
 
 
@@ -66,13 +67,13 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
         if cut is not None:
             flags[part.start + cut] = SUSPECT
     if (flags == SUSPECT).any():
-        text = "the sampling rate changes within a segment {count} times, {where}"
+        text = "the sampling rate changes within a segment {count:time|times}, {where}"
         return [sample_result("time", flags, time, text)]
     places = timing.rate_changes(time, limits["factor"])
     text, where = "one sampling rate", ", ".join(f"t = {time[p]:.6g} s" for p in places[:5])
     if places.size:
-        text = f"the sampling rate changes {places.size} times, never within a trimmed segment"
-        text += f": {where}" + (" ..." if places.size > 5 else "")
+        text = f"the sampling rate changes {Count(places.size):time|times}"
+        text += f", never within a trimmed segment: {where}" + (" ..." if places.size > 5 else "")
     seen = places.size > 0
     return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
@@ -113,13 +114,13 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
             status = "pass"
         first = int(np.flatnonzero(np.isnan(values))[0])
         where = f"first at t = {subject.time[first]:.6g} s (sample {first})"
-        text = f"{count} samples ({share:.2%}) have no value, {where}"
+        text = f"{Count(count):sample|samples} ({share:.2%}) without a value, {where}"
         results.append(Result(status, name, text, share, "1", where, count, flags, noted=True))
     return results
 
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    text = "{count} samples repeat one value longer than noise allows, {where}"
+    text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
     return [
         sample_result(
             name,
@@ -136,8 +137,9 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     results = []
     for name, values in subject.force_signals.items():
         flags = signals.saturation(values)
-        text = f"{{count}} samples lie at the end of the range ({np.nanmax(values):.6g} or "
-        text += f"{np.nanmin(values):.6g} {subject.unit(name)}): cut off there, {{where}}"
+        ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
+        text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
+        text += "cut off there, {where}"
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
     return results
 
@@ -166,7 +168,7 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in subject.force_signals.items():
         flags = signals.spikes(values, limits["noise"])
-        text = "{count} single samples stand out from both neighbours, {where}"
+        text = "{count:single sample stands|single samples stand} out from both neighbours, {where}"
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
     return results
 

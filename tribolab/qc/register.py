@@ -138,6 +138,21 @@ def examine(
     return found
 
 
+class Count(int):
+    """A count that is written with the noun that suits it.
+
+    Examples
+    --------
+    >>> f"{Count(1):gap|gaps} and {Count(3):sample is|samples are} missing"
+    '1 gap and 3 samples are missing'
+    """
+
+    def __format__(self, nouns: str) -> str:
+        """Write the number and, of "one|many", what suits it."""
+        one, _, more = nouns.partition("|")
+        return f"{int(self)} {one if self == 1 else more}" if nouns else str(int(self))
+
+
 def sample_result(
     variable: str,
     flags: np.ndarray,
@@ -159,7 +174,8 @@ def sample_result(
     time
         [s] (time)
     message
-        Text with ``{count}`` and ``{where}`` to fill in.
+        Text with ``{count}`` and ``{where}`` to fill in; ``{count:gap|gaps}`` adds the noun that
+        suits the count.
     fail_share
         Share of the samples above which suspect becomes fail.
     value, unit
@@ -176,7 +192,7 @@ def sample_result(
     where = f"t = {time[first]:.6g} s (sample {first})"
     if last > first:
         where += f" to t = {time[last]:.6g} s (sample {last})"
-    text = message.format(count=bad.size, where=where)
+    text = message.format(count=Count(bad.size), where=where)
     share = bad.size / flags.size
     number = share if np.isnan(value) else value
     status = "fail" if grave else "suspect"

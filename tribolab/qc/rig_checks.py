@@ -191,7 +191,7 @@ RIG_CHECKS = (
         "Are the clocks of the two logs matched?",
         "Give the shift (clock_shift), or record a common mark such as a start and a stop.",
         {
-            "suspect": Limit(0.10, "1", "the usual trim of 10 % takes up a shift up to that"),
+            "suspect": Limit(0.10, "1", "the usual trim, 10 % of the duration, takes up as much"),
             "fail": Limit(0.50, "1", "segments and forces no longer belong together"),
         },
         _clock_shift,

@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError, ConfigError, nearest
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
-from tribolab.qc.register import Check, Limit, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Count, Limit, Result, examine, resolve_limits
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
 
@@ -57,7 +57,7 @@ def check_scans(
     >>> height[1000:] += 2e-5
     >>> scans = xr.Dataset({"height": ("x", height)}, {"x": 1e-6 * np.arange(4096)})
     >>> check_scans(scans).table.query("check == 'steps'").message.item()
-    'the height jumps 1 times, scan 1, x = 1 mm'
+    'the height jumps 1 time, scan 1, x = 1 mm'
     """
     for name in skip:
         if name not in SCAN_CHECKS:
@@ -95,7 +95,11 @@ def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: flo
     at = np.flatnonzero(bad[row])
     where = subject.where(row, int(at[0]), int(at[-1]))
     others = int(bad.any(axis=1).sum()) - 1
-    message = text.format(count=count) + f", {where}" + (f" and in {others} more" if others else "")
+    message = (
+        text.format(count=Count(count))
+        + f", {where}"
+        + (f" and in {others} more" if others else "")
+    )
     status = "fail" if grave else "suspect"
     return [Result(status, "height", message, share, "1", where, count, flags)]
 
@@ -112,7 +116,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     where = subject.where(row, int(at[0]), int(at[-1]))
     span = longest * subject.pitch
     text = (
-        f"{count} heights ({share:.2%}) are missing, at most {longest} in a row "
+        f"{Count(count):height is|heights are} missing ({share:.2%}), at most {longest} in a row "
         f"({span * 1e6:.4g} um), {where}"
     )
     whole = float(subject.x[-1] - subject.x[0])
@@ -126,12 +130,12 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
 
 def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = np.stack([profiles.steps(row, limits["factor"]) for row in subject.rows])
-    return _flagged(subject, flags, "the height jumps {count} times", limits["fail"])
+    return _flagged(subject, flags, "the height jumps {count:time|times}", limits["fail"])
 
 
 def _clipping(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = np.stack([profiles.clipped(row, int(limits["points"])) for row in subject.rows])
-    text = "{count} points lie flat at the end of the range: cut off there"
+    text = "{count:point lies|points lie} flat at the end of the range: cut off there"
     return _flagged(subject, flags, text, limits["fail"])
 
 

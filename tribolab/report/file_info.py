@@ -13,6 +13,7 @@ from tribolab.io.runs import describe, read
 from tribolab.io.scan_results import read_results
 from tribolab.io.signature import peek
 from tribolab.quantities import quantity
+from tribolab.report.wording import range_of
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
@@ -112,7 +113,8 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
     lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
     width = max((len(name) for name in d["columns"]), default=0)
     for name, column in d["columns"].items():
-        span = f"{column['minimum']:.6g} to {column['maximum']:.6g} {column['unit']}"
+        span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
+        span += f" {column['unit']}" if column["unit"] != "1" else ""
         label = f"   from '{column['label']}'" if column["label"] else ""
         lines.append(f"  {name:<{width}}  {span}{label}")
     if d["not_used"]:

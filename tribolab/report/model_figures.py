@@ -12,6 +12,7 @@ import pandas as pd
 from tribolab.plot.labels import force_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.model_records import ModelRows, shear_stress_table
+from tribolab.report.model_words import has_shear_stress
 from tribolab.report.wording import span
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import ModelOutcome, Outcome
 
+_NO_MODEL = ": no shear stress describes this curve, so only the model's viscous part is drawn"
+_NO_LINE = ": no model at {}, where no shear stress describes the curve"
 _MOST_IN_ONE = 9  # surfaces or loads that can be told apart in one figure
 
 
@@ -43,6 +46,8 @@ class ModelFigure:
         All surfaces of the study, for their colours.
     table
         Rows of fits, where it shows those.
+    missing
+        What the figure cannot show, behind its title.
     folder
         Folder of the results.
     """
@@ -55,6 +60,7 @@ class ModelFigure:
     folder: Path
     dry: str = ""
     table: pd.DataFrame | None = None
+    missing: str = ""
 
     @property
     def file(self) -> str:
@@ -72,15 +78,19 @@ def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRows]) -> list[Mode
     def add(kind: str, name: str, title: str, models: Iterable[ModelOutcome], **more: Any) -> None:
         planned.append(ModelFigure(kind, name, title, tuple(models), surfaces, folder, **more))
 
+    stressed = [one.model for one in rows if one.fit is not None and one.fit["shear_stress_Pa"] > 0]
     for model in fitted:
-        add("curve", model.name, _title(model), [model], dry=_dry(outcome, model))
+        missing = "" if model in stressed else _NO_MODEL
+        add("curve", model.name, _title(model), [model], dry=_dry(outcome, model), missing=missing)
     for number, surface in enumerate(dict.fromkeys(model.surface for model in fitted)):
         mine = [model for model in fitted if model.surface == surface][:_MOST_IN_ONE]
         if len(mine) > 1:
-            add("loads", f"model_surface_{number + 1}", surface, mine)
-    if fitted:
-        table = shear_stress_table([one for one in rows if one.fit is not None])
-        add("shear_stress", "shear_stress", "Shear stress over the load", fitted, table=table)
+            without = [force_text(m.normal_force) for m in mine if m not in stressed]
+            missing = _NO_LINE.format(" and ".join(without)) if without else ""
+            add("loads", f"model_surface_{number + 1}", surface, mine, missing=missing)
+    if stressed:
+        table = shear_stress_table([one for one in rows if one.model in stressed])
+        add("shear_stress", "shear_stress", "Shear stress over the load", stressed, table=table)
     for kind, part, title in (
         ("effect", "profiles", "With and without friction factors"),
         ("factors", "factors", "Flow and friction factors"),
@@ -117,8 +127,8 @@ def draw_model(task: ModelFigure) -> dict[str, str]:
     draw, caption = _KINDS[task.kind]
     with DRAWING:
         figure, numbers = draw(task)
-        text = f"{task.title}. {caption}"
-        alt = f"{task.title}. {numbers} {caption}"
+        title = task.title + task.missing
+        text, alt = f"{title}. {caption}", f"{title}. {numbers} {caption}"
         record = save_figure(figure, task.folder, task.file, text, alt)
     return record | {"kind": task.kind}
 
@@ -155,9 +165,10 @@ def _curve(task: ModelFigure) -> tuple[Figure, str]:
         surfaces=task.surfaces,
         title=task.title,
     )
-    stress = fit.attrs["shear_stress_Pa"] / 1e6
-    measured = span(fit["friction_coefficient"].values.tolist())
-    return figure, f"Measured µ from {measured}; fitted shear stress {stress:.3g} MPa."
+    measured = f"Measured µ from {span(fit['friction_coefficient'].values.tolist())}"
+    if not has_shear_stress(fit):
+        return figure, f"{measured}; no shear stress."
+    return figure, f"{measured}; fitted shear stress {fit.attrs['shear_stress_Pa'] / 1e6:.3g} MPa."
 
 
 def _loads(task: ModelFigure) -> tuple[Figure, str]:
@@ -167,7 +178,8 @@ def _loads(task: ModelFigure) -> tuple[Figure, str]:
         labels["normal_force_N"] = model.normal_force
         fit, curve = (_read(task, model, group) for group in ("fit", "curve"))
         measured.append(fit.assign_attrs(labels))
-        models.append(curve.assign_attrs(labels))
+        if has_shear_stress(fit):
+            models.append(curve.assign_attrs(labels))
     figure = _plot().stribeck(measured, models, surfaces=task.surfaces, title=task.title)
     return figure, f"Measured and computed at {len(task.models)} loads."
 

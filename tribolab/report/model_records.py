@@ -172,7 +172,7 @@ def complete(rows: Sequence[ModelRows]) -> None:
         ]
         earlier = alike[: alike.index(one)]
         reference = earlier[-1] if earlier else None
-        if reference and _is_known(reference.fit):
+        if reference and _is_known(reference.fit) and one.fit["shear_stress_Pa"] > 0:
             value, error = (
                 [other.fit[f"corrected_shear_stress_{k}Pa"] for other in (one, reference)]
                 for k in ("", "error_")

@@ -16,6 +16,24 @@ _UNLIKELY = 0.05  # probability under which the order of the residuals' signs is
 _LARGE = 0.10  # of the measured friction: a miss that any reader sees
 _CLOSE = 0.02  # of the curve's height
 _FAR = 0.3
+_NOT_DESCRIBED = "the model does not describe this curve"
+_NO_STRESS = "no shear stress describes this curve"
+
+
+def has_shear_stress(fit: xr.Dataset) -> bool:
+    """Whether the fit found a shear stress; one that is not positive is none."""
+    return bool(fit.attrs["shear_stress_Pa"] > 0)
+
+
+def is_described(words: str) -> bool:
+    """Whether a `judgement` says that the model describes the curve, be it beyond the errors.
+
+    Examples
+    --------
+    >>> is_described("the model does not describe this curve: off by up to 85 % of it")
+    False
+    """
+    return not words.startswith((_NOT_DESCRIBED, _NO_STRESS))
 
 
 def judgement(fit: xr.Dataset) -> str:
@@ -32,6 +50,9 @@ def judgement(fit: xr.Dataset) -> str:
     by the range of speeds that one shear stress describes within the errors, and by the points
     that are off by more than a tenth of the friction.
     """
+    if not has_shear_stress(fit):
+        why = "the fitted one is not positive, so no model is drawn"
+        return f"{_NO_STRESS}: {why}; see stick-slip and sliding mode"
     used = fit["used"].values > 0
     speed = fit["sliding_speed"].values[used]
     mu, off = (
@@ -64,14 +85,12 @@ def judgement(fit: xr.Dataset) -> str:
 def _verdict(attrs: dict, largest: float) -> str:
     """Say first whether the two agree, then whether what is left has an order."""
     ordered = attrs["runs_p_value"] < _UNLIKELY
-    if attrs["shear_stress_Pa"] <= 0:
-        return "the model does not describe this curve: the fitted shear stress is not positive"
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
         return "the model describes the curve within the errors"
     if attrs["chi_square_p_value"] >= _UNLIKELY:
         return "within the errors, but the residuals follow one another: the shape differs slightly"
     if largest > _FAR:
-        return f"the model does not describe this curve: off by up to {percent(largest)} of it"
+        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of it"
     chance = ", and not by chance: neighbouring points err alike" if ordered else ""
     if largest < _CLOSE:
         return (

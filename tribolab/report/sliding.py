@@ -77,7 +77,8 @@ def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
     for one in outcome.models:
         if one.curve == curve.name and one.done and "fit" in one.parts:
             model, fit = read_groups(folder / one.data_file, ("curve", "fit")).values()
-            stress = float(fit.attrs["corrected_shear_stress_Pa"])
+            found = float(fit.attrs["corrected_shear_stress_Pa"])
+            stress = found if found > 0 else None
     measured = read_netcdf(folder / curve.data_file)
     over_speed = stick_slip_curve(list(slips.values()))
     return CurveSlip(curve, measured, slips, model, stress, over_speed)

@@ -61,9 +61,8 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
         shown = _stretches(mine, outcome)
         planned.append(("traces", f"slip_traces_{stem}", title, caption, shown))
     moving = [one for one in found if _moves(one)]
-    planned.append(
-        ("spectra", "slip_spectra", "Spectra of friction", _SPECTRA, _slowest(moving or lowest))
-    )
+    shown = _slowest(moving or lowest)
+    planned.append(("spectra", "slip_spectra", "Spectra of friction", _marked(shown), shown))
     events = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in moving)
     events = tuple((label, slip) for label, slip in events if slip.sizes.get("event", 0))
     planned.append(("events", "slip_events", "Events", _EVENTS, events))
@@ -78,10 +77,21 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
 
 _SPECTRA = (
     "Spectra of friction at the slowest speed. Orange: red and white noise, and the power that "
-    "noise exceeds anywhere in one spectrum of a thousand. Blue: the strongest oscillation."
+    "noise exceeds anywhere in one spectrum of a thousand."
 )
 _EVENTS = "Events of one run of each condition, all speeds: share of events below a value."
 _MAP = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
+
+
+def _marked(shown: Sequence[tuple[str, xr.Dataset, int]]) -> str:
+    """Return the caption of the spectra, with what is marked in them."""
+    marks = {"dominant": "Blue: the strongest oscillation.", "mains": "Violet: the mains."}
+    drawn = (
+        text
+        for name, text in marks.items()
+        if any(np.isfinite(slip[f"{name}_frequency"][segment]) for _, slip, segment in shown)
+    )
+    return " ".join([_SPECTRA, *drawn])
 
 
 def draw_sliding(task: SlipFigure) -> dict[str, str]:
@@ -141,7 +151,7 @@ def _slowest(found: Sequence[CurveSlip]) -> tuple[tuple[str, xr.Dataset, int], .
         run, segments = _slow_segments(one)
         for segment in segments[:1]:
             speed = speed_text(float(one.slips[run]["sliding_speed"][segment]))
-            chosen.append((f"{condition(one.outcome)}, {speed}", one.slips[run], segment))
+            chosen.append((f"{speed}, {condition(one.outcome)}", one.slips[run], segment))
     return tuple(chosen)
 
 
@@ -157,7 +167,7 @@ def _traces(task: SlipFigure) -> tuple[Figure, str]:
             groups = read_groups(task.folder / file, ("run", "segments", "friction"))
             parts[file] = list(groups.values())
         speed = speed_text(float(parts[file][1]["sliding_speed"][segment]))
-        stack.append(plot.Trace(f"{medium}, {speed}", *parts[file], segment, surface))
+        stack.append(plot.Trace(f"{speed}, {medium}", *parts[file], segment, surface))
     return plot.slip_traces(stack, task.surfaces), "; ".join(_in_words(trace) for trace in stack)
 
 

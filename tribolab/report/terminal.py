@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.report.wording import range_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,12 +56,12 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]
     speed, mu = data.sliding_speed.values, data.friction_coefficient.values
     if not speed.size:
         return _of_unknown_speed(curve, outcome)
-    ends = _range(f"{speed.min():.2g}", f"{speed.max():.2g}")
+    ends = range_of(f"{speed.min():.2g}", f"{speed.max():.2g}")
     return (
         str(len(curve.run_names)),
         segments,
         f"{ends} m/s",
-        _range(f"{mu.min():.3f}", f"{mu.max():.3f}"),
+        range_of(f"{mu.min():.3f}", f"{mu.max():.3f}"),
     )
 
 
@@ -72,14 +73,10 @@ def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, 
     found = [read_netcdf(outcome.folder / run.data_file, group="friction") for run in runs]
     mu = np.concatenate([one.friction_coefficient.values for one in found])
     known = mu[np.isfinite(mu)]
-    text = _range(f"{known.min():.3f}", f"{known.max():.3f}") if known.size else _NONE
+    text = range_of(f"{known.min():.3f}", f"{known.max():.3f}") if known.size else _NONE
     speeds = np.concatenate([one.sliding_speed.values for one in found])
     said = _NONE if np.isfinite(speeds).any() else "speed unknown"
     return str(len(runs)), str(sum(run.segments for run in runs)), said, text
-
-
-def _range(low: str, high: str) -> str:
-    return low if low == high else f"{low} to {high}"
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
@@ -160,12 +157,12 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"surfaces, from their scans: at most {text} from the truth; "
             f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
         )
-    fits = compared.shear_stress
+    fits, lost = compared.shear_stress, _not_described(results)
     if len(fits):
         lines.append(
             f"shear stresses, fitted with the scanned spectra: at most "
             f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
-            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals"
+            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
     lines.append(f"against the paper: {_counted(compared.paper)}")
     tables = shown(results / "tables")
@@ -179,6 +176,23 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
     ]
+
+
+def _not_described(results: Path) -> str:
+    """Say in brackets how many curves of which surface the model does not describe."""
+    import pandas as pd
+
+    from tribolab.report.model_words import is_described
+    from tribolab.report.wording import many
+
+    path = results / "tables" / "shear_stress.csv"
+    if not path.is_file():
+        return ""
+    fits = pd.read_csv(path)
+    fits = fits[[not is_described(words) for words in fits.judgement]]
+    said = [f"{many(n, 'curve')} of {name}" for name, n in fits.surface.value_counts().items()]
+    verb = "is" if len(fits) == 1 else "are"
+    return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
 
 
 def _counted(table: pd.DataFrame) -> str:

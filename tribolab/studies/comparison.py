@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError, nearest
 from tribolab.studies import comparison_contact, comparison_lubrication, xu2026
 from tribolab.studies.published import Published
 from tribolab.studies.theory import Theory
-from tribolab.studies.verdict import Computed, Measured, Own, judge
+from tribolab.studies.verdict import BOUNDS, Computed, Measured, Own, judge
 
 COLUMNS = [
     "quantity",
@@ -49,7 +49,8 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
         A row per published number: quantity, surface, condition, published (text with unit),
         computed (in the same unit), relative_difference, tolerance, status (reproduced | differs
         | published value inconsistent | measured, not computed) and a note. What cannot be
-        computed has none of the three numbers.
+        computed has none of the three numbers, and what is printed as a bound no relative
+        difference.
 
     Raises
     ------
@@ -95,6 +96,8 @@ def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | f
         )
         difference = computed.value / row.si - 1 if row.si else math.nan
         tolerance = computed.tolerance
+        if row.relation.startswith(BOUNDS):  # met or not: no number is off by a share of a bound
+            difference = math.nan
     return {
         "published": row.text + unit,
         "computed": value,

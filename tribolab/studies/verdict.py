@@ -43,6 +43,9 @@ class Own(NamedTuple):
     words: str
 
 
+BOUNDS = (">", "at most", "below")  # relations that say where a number ends, not where it is
+
+
 class Verdict(NamedTuple):
     """Status of a published number, and why."""
 
@@ -76,7 +79,7 @@ def judge(row: Published, computed: Computed | Measured, own: Own | None = None)
         status = INCONSISTENT if reasons else MEASURED
         return Verdict(status, "; ".join([*reasons, computed.note]))
     agrees = _agrees(row, computed)
-    if not agrees and not row.relation.startswith((">", "at most", "below")):
+    if not agrees and not row.relation.startswith(BOUNDS):
         if power := _power_of_ten(row, computed):
             reasons.append(f"the printed number is {power} the computed one")
         elif _close(row, 1 / computed.value, computed.tolerance):

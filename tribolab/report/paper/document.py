@@ -16,7 +16,7 @@ from tribolab.report.paper.laboratory import Laboratory
 from tribolab.report.sections import Section
 from tribolab.report.wording import many, plain_value
 from tribolab.studies import xu2026
-from tribolab.studies.verdict import DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
+from tribolab.studies.verdict import BOUNDS, DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
 
 SCHEMA_VERSION = "1.0"
 # A status in words that follow a number, and how the page marks it.
@@ -146,11 +146,23 @@ def _row(record: dict[str, Any], known: Any) -> dict[str, Any]:
     note = str(record["note"])
     return record | {
         "note": note and note[0].upper() + note[1:].rstrip(".") + ".",
+        "difference": _difference(record, known),
         "where": known.where,
         "kind": known.kind,
         "section": section,
         "figure": figure.name if figure else "",
     }
+
+
+def _difference(record: dict[str, Any], known: Any) -> str:
+    """Say how a number differs that has no relative difference; "" if it has one or is unknown."""
+    if known.relation.startswith(BOUNDS) and record["computed"]:
+        if record["status"] == REPRODUCED:
+            return "within the bound"
+        return "below the bound" if known.relation == ">" else "above the bound"
+    if record["status"] == INCONSISTENT and not record["computed"]:
+        return "inconsistent with other printed numbers"
+    return ""
 
 
 def _section(where: str) -> str:
