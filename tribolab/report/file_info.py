@@ -13,7 +13,7 @@ from tribolab.io.runs import describe, read
 from tribolab.io.scan_results import read_results
 from tribolab.io.signature import peek
 from tribolab.quantities import quantity
-from tribolab.report.wording import range_of
+from tribolab.report.typed import range_of
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
-from tribolab.report.wording import range_of
+from tribolab.report.typed import range_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -33,17 +33,6 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
     return f"({text}){unit}" if unit else text
 
 
-def range_of(low: str, high: str) -> str:
-    """Return lowest to highest as written, once if they read the same.
-
-    Examples
-    --------
-    >>> range_of("0.004", "0.004"), range_of("1", "2")
-    ('0.004', '1 to 2')
-    """
-    return low if low == high else f"{low} to {high}"
-
-
 def span(values: Iterable[float | None], unit: str = "") -> str:
     """Return smallest to largest, once if they look the same.
 
