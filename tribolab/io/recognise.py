@@ -14,7 +14,7 @@ from tribolab.io.signature import File
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
 _FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
-_PREAMBLE = 1 << 14  # characters in which the marks of a preamble are sought
+_PREAMBLE = 1 << 13  # characters in which the marks of a preamble are sought
 _LINKED = 0.999  # correlation of the same signal in volts and in its unit
 
 
