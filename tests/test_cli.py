@@ -231,6 +231,8 @@ def _begin(campaign, *words):
         text=True,
         env=ENVIRONMENT,
         start_new_session=True,
+        # where the tests themselves run in the background, the interrupt would be ignored
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 60
     while not list(campaign.parent.glob(".results.tribolab-*/new/data/*.nc")):
