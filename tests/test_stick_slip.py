@@ -73,6 +73,58 @@ def test_wavelength_and_drop_are_the_drawn_ones(form):
         )
 
 
+@pytest.mark.parametrize("form", ["sawtooth", "rounded"])
+def test_of_ten_cycles_in_noise_wavelength_and_drop_are_met_without_bias(form):
+    wavelength, drop = [], []
+    for seed in range(24):
+        stroke = {"form": form, "periods": 12.5, "scatter": 0.0, "seed": 300 + seed}
+        found = looked_at(simulate_trace(noise=0.2 / 6, **stroke))
+        wavelength.append(found["dominant_wavelength"].item() / 22e-6 - 1)
+        drop.append(
+            found["drop"].item() / looked_at(simulate_trace(noise=0.0, **stroke))["drop"].item() - 1
+        )
+    assert np.abs(wavelength).max() < 0.05
+    assert np.mean(np.abs(drop) < 0.10) >= 0.9
+    # twice the standard error of the mean of 24
+    assert abs(np.mean(drop)) < 2 * np.std(drop) / np.sqrt(24) + 0.005
+
+
+def test_the_drop_of_a_clean_wave_is_its_height():
+    t = 0.01 * np.arange(20_000)
+    phase = t % 2.0
+    saw = np.where(phase < 1.9, phase / 1.9, (2.0 - phase) / 0.1)
+    assert looked_at(a_run(1 + 0.3 * saw, 0.01, 1e-5))["drop"].item() == pytest.approx(
+        0.3, rel=0.01
+    )
+    sine = looked_at(a_run(1 + 0.15 * np.sin(np.pi * t), 0.01, 1e-5))
+    assert sine["drop"].item() == pytest.approx(0.3, rel=0.01)
+
+
+def test_the_wavelength_of_an_irregular_wave_is_that_of_its_mean_frequency():
+    error = []
+    for seed in range(10):
+        stroke = {"form": "irregular", "periods": 125, "samples": 8000, "seed": 400 + seed}
+        clean, noisy = (simulate_trace(noise=n, **stroke) for n in (0.0, 0.2 / 6))
+        found = looked_at(noisy)
+        assert found["waveform"].item() == "irregular"
+        inside = slice(found["trimmed_start"].item(), found["trimmed_stop"].item())
+        wave = clean.sel(time=inside)["friction_coefficient"]
+        power = np.abs(np.fft.rfft((wave - wave.mean()).values * np.hanning(wave.size))) ** 2
+        wavelength = 125 * 0.8 * 22e-6 / np.arange(power.size).clip(1)
+        near = np.exp(-0.5 * (np.log(wavelength / found["dominant_wavelength"].item()) / 0.6) ** 2)
+        weight = (power * near)[2:]
+        error.append(
+            found["dominant_wavelength"].item() * (weight / wavelength[2:]).sum() / weight.sum() - 1
+        )
+    assert np.mean(np.abs(error) < 0.05) >= 0.9
+
+
+def test_irregular_stick_slip_is_seen_however_densely_it_is_sampled():
+    for seed in range(3):
+        run = simulate_trace("irregular", noise=0.01, periods=12, samples=300_000, seed=500 + seed)
+        assert looked_at(run)["waveform"].item() == "irregular"
+
+
 def test_loading_slope_and_durations_of_a_saw():
     t = 0.01 * np.arange(20_000)
     phase = t % 2.0

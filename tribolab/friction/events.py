@@ -16,6 +16,9 @@ class Events(NamedTuple):
     ----------
     start, peak, stop
         Moments of valley, peak and next valley [s] (event).
+    middle
+        Moment at which half of the drop is done [s] (event): steep, so that noise shifts it less
+        than the peak.
     rise, drop
         Heights of the rise and of the drop, in the signal's unit (event).
     """
@@ -23,6 +26,7 @@ class Events(NamedTuple):
     start: np.ndarray
     peak: np.ndarray
     stop: np.ndarray
+    middle: np.ndarray
     rise: np.ndarray
     drop: np.ndarray
 
@@ -131,13 +135,26 @@ def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Even
     """
     turns = turning_points(values, hysteresis)
     if turns.size < 4:
-        return Events(*[np.zeros(0)] * 5)
+        return Events(*[np.zeros(0)] * len(Events._fields))
     # the first and the last turn are where the record was cut
     turns = turns[1:-1]
     if values[turns[0]] > values[turns[1]]:
         turns = turns[1:]
     turns = turns[: (turns.size - 1) // 2 * 2 + 1]
     if turns.size < 3:
-        return Events(*[np.zeros(0)] * 5)
+        return Events(*[np.zeros(0)] * len(Events._fields))
     t, v = time[turns], values[turns]
-    return Events(t[:-2:2], t[1:-1:2], t[2::2], v[1:-1:2] - v[:-2:2], v[1:-1:2] - v[2::2])
+    middle = _half_way(time, values, turns[1:-1:2], turns[2::2])
+    return Events(t[:-2:2], t[1:-1:2], t[2::2], middle, v[1:-1:2] - v[:-2:2], v[1:-1:2] - v[2::2])
+
+
+def _half_way(
+    time: np.ndarray, values: np.ndarray, peak: np.ndarray, valley: np.ndarray
+) -> np.ndarray:
+    """When each fall is half done: as many samples after the peak as lie above its middle."""
+    count = valley - peak + 1
+    first = np.cumsum(count) - count
+    inside = np.arange(count.sum()) + np.repeat(peak - first, count)
+    middle = np.repeat(0.5 * (values[peak] + values[valley]), count)
+    last = peak + np.add.reduceat((values[inside] > middle).astype(int), first) - 1
+    return 0.5 * (time[last] + time[last + 1])

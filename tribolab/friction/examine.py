@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.friction.events import Events, find_events, without_spikes
+from tribolab.friction.mean_cycle import abrupt_drop, smooth_drop
 from tribolab.friction.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation import Oscillation, oscillation
 from tribolab.friction.spectra import Record, coarse, make_record
@@ -21,6 +22,7 @@ PER_PERIOD = 48  # samples in a period that events are sought in, at least; more
 QUIET = 50.0  # ... until the noise is so many times smaller than the swing
 MOST = 1 << 17  # samples that events are sought in: thousands of periods
 DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
+ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
 STEPS = 1.5  # quantisation steps
 _AGAIN = 200  # cycles that tell how much noise adds to them
 _ROUNDS = 2
@@ -95,14 +97,29 @@ def examine(
             events = find_events(view.time, view.values, hysteresis)
     lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
     form = describe_waveform(view.values, lag, events)
-    if events.drop.size and class_probabilities(features(form, found))[0] < 0.5:
-        excess = noise_excess(view, found, events, hysteresis)
-        # of a sine, its power says best how large it is: the noise's has been taken off
-        sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
-        mean = float(np.mean(events.drop))
-        excess = sine * (mean - found.swing) + (1 - sine) * min(excess, 0.5 * mean)
+    if events.drop.size:
+        excess = _excess(view, found, events, form, hysteresis)
         events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
     return Examined(found, events, form, hysteresis, noise, spikes / n, force)
+
+
+def _excess(
+    view: Record, found: Oscillation, events: Events, form: Waveform, hysteresis: float
+) -> float:
+    """By how much the mean of the drops, as picked from valley to peak, is too large."""
+    kind = class_probabilities(features(form, found))
+    if kind[0] >= 0.5:
+        return 0.0
+    mean = float(np.mean(events.drop))
+    if form.period_scatter < ALIKE:  # the cycles lie on one another
+        means = {1: abrupt_drop, 2: smooth_drop}.get(int(np.argmax(kind)))
+        drop = means(view, events) if means else np.nan
+        if 0.25 * mean < drop < 1.25 * mean:
+            return mean - drop
+    # of a sine, its power says best how large it is: the noise's has been taken off
+    sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
+    excess = min(noise_excess(view, found, events, hysteresis), 0.5 * mean) if sine < 1 else 0.0
+    return sine * (mean - found.swing) + (1 - sine) * excess
 
 
 def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis: float) -> float:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.examine import Examined
+from tribolab.friction.examine import ALIKE, Examined
 from tribolab.friction.oscillation import PER_DECADE
 from tribolab.friction.waveform import CLASSES, class_probabilities, features
 
@@ -25,8 +25,7 @@ _OF_NOISE = (
     "mains_frequency",
     "mains_amplitude",
 )
-_DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
-_ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
+_DOUBT = 0.28  # probability of smooth sliding above which nothing else is claimed
 _AGREE = 0.15  # drops and spectrum agree on the period to this
 
 
@@ -104,13 +103,12 @@ def _std(values: np.ndarray) -> float:
 def _row(e: Examined, speed: float, load: float) -> Row:
     o, w, events = e.oscillation, e.waveform, e.events
     stick, slip = events.peak - events.start, events.stop - events.peak
-    period = np.diff(events.peak)
+    period = np.diff(events.middle)
     frequency, error = o.frequency, o.frequency_error
     # drops tell the period better than the spectrum does, where periods are alike and the two agree
-    alike = period.size > 1 and w.period_scatter < _ALIKE
-    if period.size and class_of(e) == CLASSES[3]:  # no line in the spectrum to speak of
-        frequency = 1 / float(period.mean())
-        error = frequency * w.period_scatter / np.sqrt(period.size)
+    alike = period.size > 1 and w.period_scatter < ALIKE
+    if class_of(e) == CLASSES[3]:  # no line in the spectrum to speak of
+        frequency, error = o.mean_frequency, o.mean_frequency_error
     elif alike and abs(1 / (period.mean() * frequency) - 1) < _AGREE:
         frequency = 1 / float(period.mean())
         error = frequency * w.period_scatter / np.sqrt(period.size)

@@ -66,7 +66,7 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events) -> Waveform:
     p_value = 1.0
     if longer + shorter:
         p_value = float(stats.binomtest(longer, longer + shorter).pvalue)
-    period = np.diff(events.peak)
+    period = np.diff(events.middle)
     return Waveform(
         fall_share=float(np.median(fall / (rise + fall))),
         asymmetry_p_value=p_value,
@@ -93,17 +93,17 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([4.12, -5.11, 0.52, 0.46])
+INTERCEPT = np.array([4.22, -5.00, 1.01, -0.23])
 COEFFICIENTS = {
-    "prominence": np.array([-0.23, -0.40, 0.60, 0.03]),
-    "significance": np.array([-0.22, 0.65, 0.29, -0.72]),
-    "strength": np.array([-1.02, -1.59, 1.58, 1.03]),
-    "share": np.array([-2.63, 0.24, 1.85, 0.54]),
-    "harmonics": np.array([0.11, 1.83, -2.73, 0.79]),
-    "asymmetry": np.array([-10.55, 18.12, -7.97, 0.40]),
-    "reversal": np.array([-0.50, -0.03, -0.04, 0.58]),
-    "skewness": np.array([1.11, -1.23, 0.80, -0.68]),
-    "scatter": np.array([4.15, -1.28, -2.90, 0.04]),
+    "prominence": np.array([-0.31, -0.38, 0.60, 0.09]),
+    "significance": np.array([-0.21, 0.66, 0.25, -0.71]),
+    "strength": np.array([-0.89, -1.47, 1.39, 0.97]),
+    "share": np.array([-2.83, 0.61, 1.55, 0.66]),
+    "harmonics": np.array([0.14, 1.86, -3.10, 1.11]),
+    "asymmetry": np.array([-10.42, 16.94, -7.01, 0.49]),
+    "reversal": np.array([-0.52, -0.04, 0.00, 0.55]),
+    "skewness": np.array([1.12, -1.24, 0.81, -0.69]),
+    "scatter": np.array([4.40, -1.68, -4.02, 1.30]),
 }
 
 
