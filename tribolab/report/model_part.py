@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribolab.campaign.work import explain
 from tribolab.report import model_records, tables
 from tribolab.report.model_figures import ModelFigure, plan_model_figures
-from tribolab.report.model_records import ModelRows, model_record, model_rows
+from tribolab.report.model_records import model_record, model_rows
+from tribolab.report.part_rows import rows_of
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -21,20 +21,13 @@ def write_models(
 
     What was found about the models is added to `findings`.
     """
-    rows: dict[str, ModelRows] = {}
-    for model in outcome.models:
-        where = f"model {model.name.removeprefix('model_')}"
-        findings += [
-            {"severity": f.severity, "run": "", "where": where, "message": f.message}
-            for f in model.findings
-        ]
-        if not model.done:
-            continue
-        try:
-            rows[model.name] = model_rows(outcome, model)
-        except Exception as error:  # recorded: the other models have their place in the report
-            message = explain(error)[0]
-            findings.append({"severity": "error", "run": "", "where": where, "message": message})
+    rows = rows_of(
+        outcome.models,
+        lambda model: model_rows(outcome, model),
+        findings,
+        kind="model",
+        prefix="model_",
+    )
     every = list(rows.values())
     model_records.complete(every)
     folder = Path(outcome.folder)

@@ -11,6 +11,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from tribolab.campaign.executor import completed
+from tribolab.campaign.work import explain
 from tribolab.report import sliding, surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
@@ -18,6 +19,7 @@ from tribolab.report.figure_files import DRAWING
 from tribolab.report.model_figures import draw_model
 from tribolab.report.model_part import write_models
 from tribolab.report.page import PageTrace, write_page
+from tribolab.report.part_rows import rows_of
 from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
 from tribolab.report.sliding_figures import SlipFigure, draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
@@ -62,7 +64,12 @@ def write_report(
     # what the others wait for begins first; meanwhile the rows of the tables are read here
     runs = _RunFigures(outcome, executor)
     with DRAWING:
-        rows = _surfaces(outcome, findings)
+        rows = rows_of(
+            outcome.surfaces,
+            lambda surface: surface_rows(surface, Path(outcome.folder)),
+            findings,
+            kind="surface",
+        )
         models, model_tasks = write_models(outcome, findings)
     done = [surface for surface in outcome.surfaces if surface.name in rows]
     early = _Figures(
@@ -121,8 +128,7 @@ def _left_out(run: RunOutcome) -> dict[str, str]:
 
 
 def _error(run: str, where: str, error: BaseException) -> dict[str, str]:
-    text = f"{type(error).__name__}: {' '.join(str(error).split())}"
-    return {"severity": "error", "run": run, "where": where, "message": text}
+    return {"severity": "error", "run": run, "where": where, "message": explain(error)[0]}
 
 
 class _RunFigures:
@@ -178,24 +184,6 @@ def _curves(
         records.append(record)
         points.append(tables.labelled(table, "curve", curve.name, labels(curve)))
     return records, points
-
-
-def _surfaces(outcome: Outcome, findings: list[dict[str, str]]) -> dict[str, SurfaceRows]:
-    """Read the rows of the surfaces, and add what was found about them to the findings."""
-    rows: dict[str, SurfaceRows] = {}
-    for surface in outcome.surfaces:
-        where = f"surface {surface.name}"
-        findings += [
-            {"severity": f.severity, "run": "", "where": where, "message": f.message}
-            for f in surface.findings
-        ]
-        if not surface.done:
-            continue
-        try:
-            rows[surface.name] = surface_rows(surface, Path(outcome.folder))
-        except Exception as error:  # recorded, as above
-            findings.append(_error("", where, error))
-    return rows
 
 
 def _sliding(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.campaign.work import explain
 from tribolab.errors import AnalysisError
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
@@ -320,7 +321,7 @@ def _figures(
         try:
             saved = save_figure(draw(), task.folder, file, caption, alt)
         except Exception as error:  # recorded: a figure that fails must not cost the report
-            text = f"could not be drawn: {type(error).__name__}: {' '.join(str(error).split())}"
+            text = f"could not be drawn: {explain(error)[0]}"
             findings.append(
                 {"severity": "error", "run": name, "where": f"figure {kind}", "message": text}
             )
