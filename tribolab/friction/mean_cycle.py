@@ -8,7 +8,7 @@ from tribolab.friction.events import Events
 from tribolab.friction.spectra import Record
 
 _REACH = 0.38  # of a period to either side of the fall
-_BESIDE = 0.01  # of a period between the fall and the stretches beside it ...
+_BESIDE = 0.005  # of a period between the fall and the stretches beside it ...
 _STRETCH = 0.06  # ... whose means are compared: slow noise is alike in both
 _LONGEST = 0.3  # of a period; a longer fall is not abrupt
 _ROUNDS = 3
@@ -32,10 +32,10 @@ def abrupt_drop(record: Record, events: Events) -> float:
 
     Notes
     -----
-    Cycles are laid on one another by the middles of their falls, and averaged. The fall lasts twice
-    as long as it takes from three quarters to one quarter of its height. From the means of short
-    stretches just before and just after it the slope of the loading leads to its begin and end.
-    Nothing is picked because it is large, so that noise does not make the drop larger.
+    Cycles are laid on one another by the middles of their falls, and averaged. Of a straight fall,
+    the integral of z(1 - z) over the part z that is left is a sixth of its duration. From the means
+    of short stretches just before and just after it, the slope of the loading leads to its begin
+    and its end. Nothing is picked because it is large, so that noise does not make the drop larger.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def abrupt_drop(record: Record, events: Events) -> float:
     period = float(np.diff(events.middle).mean())
     spacing = record.spacing / period
     count = int(_REACH / spacing)
-    place = spacing * np.arange(-count, count + 1)
+    place = spacing * (np.arange(-count, count) + 0.5)  # middles lie between two samples
     reach = count * record.spacing
     whole = (events.middle - reach >= record.time[0]) & (events.middle + reach <= record.time[-1])
     if count < 2 or not whole.any():
@@ -61,7 +61,7 @@ def abrupt_drop(record: Record, events: Events) -> float:
     cycle = np.interp(moments, record.time, record.values).mean(axis=0)
     fall = 0.1
     for _ in range(_ROUNDS):
-        edge = 0.5 * fall + max(_BESIDE, 0.5 * spacing)
+        edge = 0.5 * fall + _BESIDE
         before, after = place < -edge, place > edge
         near = np.abs(place) <= edge + max(_STRETCH, 1.5 * spacing)
         if min((before & near).sum(), (after & near).sum(), before.sum() - 1, after.sum() - 1) < 1:
@@ -69,9 +69,8 @@ def abrupt_drop(record: Record, events: Events) -> float:
         slope = 0.5 * (_slope(place[before], cycle[before]) + _slope(place[after], cycle[after]))
         level = cycle - slope * place
         high, low = level[before & near].mean(), level[after & near].mean()
-        inner = level[np.abs(place) <= edge + 0.05]
-        quarters = [int((inner > low + part * (high - low)).sum()) for part in (0.25, 0.75)]
-        fall = min(2 * spacing * (quarters[0] - quarters[1]), _LONGEST)
+        part = (level - low)[np.abs(place) <= edge + _STRETCH] / (high - low)
+        fall = float(np.clip(6 * spacing * (part * (1 - part)).sum(), spacing, _LONGEST))
     return float(high - low - slope * fall)
 
 
