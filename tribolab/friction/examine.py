@@ -18,7 +18,7 @@ from tribolab.friction.waveform import (
     features,
 )
 
-PER_PERIOD = 48  # samples in a period that events are sought in, at least; more is averaged ...
+PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
 QUIET = 50.0  # ... until the noise is so many times smaller than the swing
 MOST = 1 << 17  # samples that events are sought in: thousands of periods
 DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
@@ -98,13 +98,19 @@ def examine(
     lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
     form = describe_waveform(view.values, lag, events)
     if events.drop.size:
-        excess = _excess(view, found, events, form, hysteresis)
+        finer = coarse(part, max(1, size // 2))
+        excess = _excess(view, finer, found, events, form, hysteresis)
         events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
     return Examined(found, events, form, hysteresis, noise, spikes / n, force)
 
 
 def _excess(
-    view: Record, found: Oscillation, events: Events, form: Waveform, hysteresis: float
+    view: Record,
+    finer: Record,
+    found: Oscillation,
+    events: Events,
+    form: Waveform,
+    hysteresis: float,
 ) -> float:
     """By how much the mean of the drops, as picked from valley to peak, is too large."""
     kind = class_probabilities(features(form, found))
@@ -113,7 +119,7 @@ def _excess(
     mean = float(np.mean(events.drop))
     if form.period_scatter < ALIKE:  # the cycles lie on one another
         means = {1: abrupt_drop, 2: smooth_drop}.get(int(np.argmax(kind)))
-        drop = means(view, events) if means else np.nan
+        drop = means(finer, events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off

@@ -25,7 +25,7 @@ _OF_NOISE = (
     "mains_frequency",
     "mains_amplitude",
 )
-_DOUBT = 0.28  # probability of smooth sliding above which nothing else is claimed
+_DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
 _AGREE = 0.15  # drops and spectrum agree on the period to this
 
 

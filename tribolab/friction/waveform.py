@@ -93,17 +93,17 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([4.22, -5.00, 1.01, -0.23])
+INTERCEPT = np.array([4.13, -4.71, 0.97, -0.38])
 COEFFICIENTS = {
-    "prominence": np.array([-0.31, -0.38, 0.60, 0.09]),
-    "significance": np.array([-0.21, 0.66, 0.25, -0.71]),
-    "strength": np.array([-0.89, -1.47, 1.39, 0.97]),
-    "share": np.array([-2.83, 0.61, 1.55, 0.66]),
-    "harmonics": np.array([0.14, 1.86, -3.10, 1.11]),
-    "asymmetry": np.array([-10.42, 16.94, -7.01, 0.49]),
-    "reversal": np.array([-0.52, -0.04, 0.00, 0.55]),
-    "skewness": np.array([1.12, -1.24, 0.81, -0.69]),
-    "scatter": np.array([4.40, -1.68, -4.02, 1.30]),
+    "prominence": np.array([-0.30, -0.38, 0.60, 0.08]),
+    "significance": np.array([-0.20, 0.64, 0.24, -0.69]),
+    "strength": np.array([-0.94, -1.46, 1.37, 1.03]),
+    "share": np.array([-2.71, 0.39, 1.61, 0.70]),
+    "harmonics": np.array([0.13, 1.93, -3.18, 1.13]),
+    "asymmetry": np.array([-10.74, 17.30, -7.01, 0.45]),
+    "reversal": np.array([-0.53, -0.02, 0.01, 0.54]),
+    "skewness": np.array([1.08, -1.20, 0.80, -0.67]),
+    "scatter": np.array([4.95, -2.93, -3.92, 1.90]),
 }
 
 
