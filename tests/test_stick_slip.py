@@ -133,6 +133,18 @@ def test_irregular_stick_slip_is_seen_however_densely_it_is_sampled():
         assert looked_at(run)["waveform"].item() == "irregular"
 
 
+def test_where_the_speed_is_unknown_the_remark_says_what_the_segment_may_hold():
+    run = simulate_trace("sawtooth", noise=0.01)
+    known = looked_at(run)
+    segments = find_segments(run)
+    segments["sliding_speed"][:] = np.nan
+    found = stick_slip(run, segments)
+    assert "speed is not known" in found["remark"].item()
+    assert "speed" not in known["remark"].item()
+    assert found["waveform"].item() == "sawtooth stick-slip"
+    assert np.isnan(found["dominant_wavelength"].item())
+
+
 def test_loading_slope_and_durations_of_a_saw():
     t = 0.01 * np.arange(20_000)
     phase = t % 2.0

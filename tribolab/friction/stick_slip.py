@@ -141,11 +141,11 @@ def stick_slip(
     speed = segments["sliding_speed"].values.astype(float)
     force = "friction_force" in run and "normal_force" not in run
     found, loads, remarks = [], [], []
-    for one in _signals(run, segments):
+    for one, v in zip(_signals(run, segments), speed, strict=True):
         seen = examine(one.time, one.values, limits, force=force)
         found.append(seen)
         loads.append(one.load)
-        remarks.append(_remark(seen, _cut_off(one.raw)))
+        remarks.append(_remark(seen, _cut_off(one.raw), v))
     data = table(found, speed, np.array(loads))
     data["instrument"] = _texts(_instrument(found, speed))
     data["remark"] = _texts(remarks)
@@ -227,10 +227,12 @@ def _texts(values: list[str]) -> np.ndarray:
     return np.array(values, dtype=object)
 
 
-def _remark(found: Examined | str, cut: bool) -> str:
+def _remark(found: Examined | str, cut: bool, speed: float) -> str:
     if isinstance(found, str):
         return found
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
+    if not np.isfinite(speed):
+        words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
     if oscillates(found) and found.waveform.events < 3:
         words.append("fewer than three whole cycles")
     if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:

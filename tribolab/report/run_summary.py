@@ -169,8 +169,8 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
     if not kind.size:
         return {"class": NOT_EVALUATED, "detail": ""}
     moving = kind != STEADY
-    if not moving.any():
-        return {"class": STEADY, "detail": ""}
+    if not moving.any():  # without a speed, standing still may be among the sliding
+        return {"class": STEADY, "detail": "" if over_speed else "if it slides: speed not known"}
     names, counts = np.unique(kind[moving], return_counts=True)
     names = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
     detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
