@@ -265,7 +265,7 @@ def test_the_table_of_runs_says_which_stick_slip_at_how_many_speeds(tmp_path, re
 def test_a_run_without_speeds_counts_segments_and_one_too_short_is_not_evaluated():
     slip = made_slip(["smooth sliding", "irregular", "irregular", "not evaluated"], [np.nan] * 4)
     assert stick_slip_of(slip) == {"class": "irregular", "detail": "in 2 of 3 segments"}
-    still = slip.assign(waveform=("segment", np.array(["smooth sliding"] * 3, dtype=object)))
+    still = made_slip(["smooth sliding"] * 3, [np.nan] * 3)
     assert stick_slip_of(still)["detail"] == "if it slides: speed not known"
     slip = made_slip(["irregular"] * 3, [1e-6, 2e-6, 4e-6])
     assert stick_slip_of(slip) == {"class": "irregular", "detail": "at 3 of 3 speeds"}
