@@ -15,7 +15,7 @@ from tribolab.quantities import stamp
 OFFSETS = ("auto", "half loop", "zero load", "none")
 NO_CONTACT = 0.02  # share of the run's load below which there is no contact
 LOST = 0.05  # share of samples without contact that spoils a segment
-SIGNIFICANT = 0.05
+SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: runs have hundreds
 
 
 def friction_coefficient(

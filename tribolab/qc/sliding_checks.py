@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribolab.friction.coefficient import SIGNIFICANT
 from tribolab.friction.lines import Line
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
@@ -245,7 +246,7 @@ SLIDING_CHECKS = (
         {
             "suspect": Limit(0.05, "1", "5 % is above the usual spread of repeats"),
             "fail": Limit(0.50, "1", "the number has no meaning as a mean"),
-            "chance": Limit(0.01, "1", "so that noise is rarely called a trend"),
+            "chance": Limit(SIGNIFICANT, "1", "so that noise is rarely called a trend"),
             "samples": Limit(
                 10.0, "1", "fewer effective samples do not tell a trend from slow wandering"
             ),

@@ -198,11 +198,11 @@ class RunSubject:
         return float(self.segments["sliding_speed"].values[number])
 
     def segment_label(self, number: int) -> str:
-        """Return what a person calls a segment: its number, speed, direction and time."""
+        """Return what a person calls a segment: its number as in tables, speed, direction, time."""
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
         how = f"{speed:.3g} m/s {arrow}".strip() if np.isfinite(speed) else "speed unknown"
-        return f"segment {number} ({how}, from t = {start:.6g} s)"
+        return f"segment {number + 1} ({how}, from t = {start:.6g} s)"
 
     def strong_periods(self, least: float) -> np.ndarray:
         """How many stick-slip periods each segment holds; NaN where there is none to speak of.

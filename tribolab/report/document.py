@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribolab.provenance import sha256_of_file
-from tribolab.report.judgement import THRESHOLDS
+from tribolab.report.judgement import THRESHOLDS, is_bad
 from tribolab.report.wording import SYMBOLS, UNITS, many, plain_value, span
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def report_document(
         "schema_version": SCHEMA_VERSION,
         "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "campaign": _campaign(outcome.campaign),
-        "verdict": verdict(runs),
+        "verdict": verdict(runs, [one.name for one in outcome.surfaces if one.quality in _BAD]),
         "runs": runs,
         "curves": list(curves),
         "figures": list(figures),
@@ -73,21 +73,37 @@ def report_document(
     return plain_value(document)
 
 
-def verdict(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return what came of the campaign in one sentence and its numbers."""
+def verdict(runs: Sequence[dict[str, Any]], rejected_scans: Sequence[str] = ()) -> dict[str, Any]:
+    """Return what came of the campaign in one sentence and its numbers.
+
+    Parameters
+    ----------
+    runs
+        As in report.json.
+    rejected_scans
+        Surfaces whose scans failed their checks.
+    """
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
+    sound = [run for run in done if not is_bad(run)]
+    rejected = len(done) - len(sound)
     segments = sum(run["segments_found"] for run in done)
-    quantities = {run["quantity"] for run in done if run["value_min"] is not None}
-    status = "complete" if done and not failed else "incomplete" if done else "nothing"
+    quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
+    status = "incomplete" if done else "nothing"
+    if done and not (failed or rejected or rejected_scans):
+        status = "complete"
     parts = [f"{len(done)} of {many(len(runs), 'run')} done"]
     if failed:
         parts.append(f"{failed} failed")
+    if rejected:
+        parts.append(f"{rejected} rejected by {'its' if rejected == 1 else 'their'} checks")
+    if rejected_scans:
+        parts.append(f"scans of {', '.join(rejected_scans)} rejected")
     parts.append(many(segments, "segment"))
     ranges = {}
     for name in ("friction_coefficient", "half_loop", "friction_force"):
         if name in quantities:
-            mine = [run for run in done if run["quantity"] == name]
+            mine = [run for run in sound if run["quantity"] == name]
             bounds = [run[key] for run in mine for key in ("value_min", "value_max")]
             known = [b for b in bounds if b is not None]
             ranges[name] = {"min": min(known), "max": max(known)}
@@ -98,11 +114,14 @@ def verdict(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "runs": len(runs),
         "done": len(done),
         "failed": failed,
+        "rejected": rejected,
         "reused": sum(run["reused"] for run in runs),
         "segments": segments,
         "ranges": ranges,
     }
 
+
+_BAD = ("fail", "error")
 
 # What a run has in the report when it failed: the same keys, nothing in them.
 _EMPTY: dict[str, Any] = {

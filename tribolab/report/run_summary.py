@@ -16,6 +16,7 @@ from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, flagged_spans, trace
 from tribolab.report.wording import (
+    SPREAD_OF,
     SYMBOLS,
     UNITS,
     duration,
@@ -130,7 +131,8 @@ _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
 def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
     name = main_quantity(friction)
     value = np.asarray(friction[name], float) if name in friction else np.array([])
-    std = _values(friction, f"{name}_std", value.size)
+    of = SPREAD_OF.get(name, name)
+    std = _values(friction, f"{of}_std", value.size)
     speed = _values(friction, "sliding_speed", value.size)
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
@@ -147,7 +149,7 @@ def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
         "relative_scatter": float(np.median(scatter)) if scatter.size else None,
         "relative_drift": _drift(friction, value),
         "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
-        "highlights": _highlights(speed, value, std, _values(friction, f"{name}_sem", value.size)),
+        "highlights": _highlights(speed, value, std, _values(friction, f"{of}_sem", value.size)),
     }
 
 

@@ -9,6 +9,8 @@ from typing import Any
 from tribolab.plot.labels import MINUS, number, speed_text
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
+# whose standard deviation and error are those of the quantity
+SPREAD_OF = {"half_loop": "friction_force"}
 SYMBOLS = {"friction_coefficient": "µ", "half_loop": "half loop", "friction_force": "F"}
 
 
