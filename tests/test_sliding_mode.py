@@ -109,8 +109,7 @@ def test_no_stick_slip_is_said_to_be_none_whatever_adhesion_would_allow(quiet):
     for work in (0.0, 0.02, None):
         found = sliding_mode(curve(plateau), None, quiet, Mode(work_of_adhesion=work))
         assert found.verdict == NO_STICK_SLIP
-        # nothing is said of trends, which no waveform shows
-        assert found.text == "no stick-slip at any speed"
+        assert found.text == "steady sliding, no stick-slip at any speed"
         assert "suspected" not in found.text
     assert sliding_mode(curve(plateau)).verdict == UNKNOWN
 
@@ -165,11 +164,43 @@ def test_frequency_goes_with_speed_or_it_does_not(saw):
     assert saw.attrs["scaling_exponent"] == pytest.approx(1, abs=0.05)
     assert "wavelength is fixed" in saw.attrs["scaling"]
     # a wavelength that grows as the speed is a fixed frequency
-    fixed = stick_slip_curve(slips("rounded", power=1.0))
+    fixed = stick_slip_curve(slips("sawtooth", power=1.0))
     assert abs(fixed.attrs["scaling_exponent"]) < 0.05
     assert "fixed" in fixed.attrs["scaling"] and "wavelength" not in fixed.attrs["scaling"]
+    ringing = sliding_mode(curve(plateau), None, fixed, Mode(work_of_adhesion=0.02))
+    assert ringing.verdict == UNEXPLAINED
+    assert any(one.side == "against" and "rings" in one.text for one in ringing.evidence)
+    assert "vibration" in ringing.decide[0]
     shrinking = stick_slip_curve(slips("rounded", power=-0.4))
     assert abs(shrinking.attrs["scaling_exponent"] - 1.4) < 3 * shrinking.attrs["scaling_error"]
+
+
+def test_a_sine_of_one_frequency_in_runs_of_one_speed_each_is_the_rigs():
+    fixed = stick_slip_curve(slips("rounded", power=1.0))
+    assert fixed["waveform"].values.tolist() == ["smooth sliding"] * fixed.sizes["sliding_speed"]
+    found = sliding_mode(curve(plateau), None, fixed, Mode(work_of_adhesion=0.02))
+    assert found.verdict == NO_STICK_SLIP
+    own = fixed.attrs["resonance_frequency_Hz"]
+    assert any("resonance" in one.text and f"{own:.3g} Hz" in one.text for one in found.evidence)
+    # a fixed wavelength is none
+    assert "resonance_frequency_Hz" not in stick_slip_curve(slips("rounded")).attrs
+
+
+def test_the_models_band_says_at_how_many_speeds_it_may_be_right(quiet):
+    measured = curve(plateau)
+    mu = measured["friction_coefficient"]
+    band = xr.Dataset({"friction_coefficient_low": 0.9 * mu, "friction_coefficient_high": 1.1 * mu})
+    inside = sliding_mode(measured, measured, quiet, band=band)
+    assert inside.numbers["speeds_in_band"] == inside.numbers["speeds_with_band"] == mu.size
+    assert any(f"{mu.size} of {mu.size} speeds" in one.text for one in inside.evidence)
+    beyond = sliding_mode(measured, measured, quiet, band=band + 0.3 * mu)
+    assert beyond.numbers["speeds_in_band"] == 0
+
+
+def test_an_oscillation_without_whole_cycles_is_told_without_drops(saw):
+    cut = saw.assign(drop=saw["drop"] * np.nan)
+    found = sliding_mode(curve(plateau), None, cut, Mode(work_of_adhesion=0.02))
+    assert not any("nan" in one.text for one in found.evidence)
 
 
 def test_scaling_needs_three_speeds(quiet, saw):

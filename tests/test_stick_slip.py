@@ -133,6 +133,25 @@ def test_irregular_stick_slip_is_seen_however_densely_it_is_sampled():
         assert looked_at(run)["waveform"].item() == "irregular"
 
 
+def test_a_sensor_whose_sign_is_turned_does_not_turn_sticks_into_slips():
+    run = simulate_trace("sawtooth", noise=0.01)
+    run["friction_force"] = run["friction_coefficient"]
+    run = run.drop_vars("friction_coefficient")
+    right, turned = looked_at(run), looked_at(run.assign(friction_force=-run["friction_force"]))
+    for name in ("waveform", "fall_share", "force_drop"):
+        assert turned[name].item() == right[name].item()
+
+
+def test_a_harmonic_of_the_mains_is_named_beside_its_fundamental_only():
+    rng = np.random.default_rng(0)
+    t = np.arange(40_000) / 1000
+    noise = 1 + 0.01 * rng.standard_normal(t.size)
+    both = noise + 0.01 * np.sin(2 * np.pi * 50 * t) + 0.005 * np.sin(2 * np.pi * 150 * t)
+    alone = noise + 0.005 * np.sin(2 * np.pi * 150 * t)
+    assert looked_at(a_run(both, time=t))["instrument"].item() == "mains at 50 Hz; mains at 150 Hz"
+    assert "mains" not in looked_at(a_run(alone, time=t))["instrument"].item()
+
+
 def test_where_the_speed_is_unknown_the_remark_says_what_the_segment_may_hold():
     run = simulate_trace("sawtooth", noise=0.01)
     known = looked_at(run)
@@ -363,5 +382,7 @@ def test_paper_on_paper_where_noise_and_spikes_rule_claims_no_stick_slip(shared_
     probable = found["class_probability"].squeeze().to_series().sort_values(ascending=False)
     assert set(probable.index[:2]) == {"smooth sliding", "sinus-like oscillation"}
     assert probable.iloc[1] > 0.2
+    assert "sinus-like oscillation is not excluded" in found["remark"].item()
+    assert "noise and spikes" in found["remark"].item()
     assert "mains at 50 Hz" in found["instrument"].item()
     assert found["spike_share"].item() > 0.001

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.compare.mode_words import SAW, SINE, friction_text, percent_text, speed_text
-from tribolab.friction.slip_curve import STEADY
+from tribolab.friction.slip_curve import FIXED_FREQUENCY, STEADY
 
 if TYPE_CHECKING:
     from tribolab.compare.sliding_mode import Mode
@@ -52,8 +52,9 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     first = int(np.argmin(speed))
     text = f"the traces oscillate at {count} of {slip.sizes['sliding_speed']} speeds ({kinds})"
     drop = float(moving["drop"].values[first])
-    text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
-    if "dominant_wavelength" in moving:
+    if np.isfinite(drop):  # an oscillation need not show whole cycles
+        text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
+    if np.isfinite(drop) and "dominant_wavelength" in moving:
         text += f" every {float(moving['dominant_wavelength'].values[first]) * 1e6:.3g} µm"
     if SAW in names and SINE not in names:
         text += ", slow rises and abrupt drops"
@@ -66,7 +67,10 @@ def adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
-        text = "the work of adhesion at magnification 1 is not known: no scan, medium or modulus"
+        text = (
+            "the work of adhesion at magnification 1 is not known: it takes scans, a modulus and "
+        )
+        text += "the medium's work of adhesion"
         return Evidence(NEUTRAL, text, "adhesion")
     value = f"γ_eff(1) = {1e3 * work:.2g} mJ/m²"
     span = ""
@@ -121,6 +125,9 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
     moving = _moving(slip)
     if moving.sizes["sliding_speed"] < 2:
         return None
+    moving = moving.isel(sliding_speed=np.flatnonzero(np.isfinite(moving["drop"].values)))
+    if moving.sizes["sliding_speed"] < 2:
+        return None
     speed, drop = moving["sliding_speed"].values, moving["drop"].values
     slow, fast = float(drop[0]), float(drop[-1])
     words = f"{friction_text(slow)} at {speed_text(speed[0])}"
@@ -131,6 +138,19 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
         end = f", gone at {speed_text(above.min())}" if above.size else ""
         return Evidence(FOR, f"drops weaken as the speed grows: {words}{end}", "speed")
     return Evidence(NEUTRAL, f"drops hardly depend on speed: {words}", "speed")
+
+
+def scaling(slip: xr.Dataset | None) -> Evidence | None:
+    """Whether something of a fixed frequency rings, whatever the speed."""
+    if slip is None:
+        return None
+    if (own := slip.attrs.get("resonance_frequency_Hz")) is not None:
+        text = f"an oscillation at {own:.3g} Hz keeps its frequency at all speeds: a resonance of "
+        return Evidence(NEUTRAL, text + "the rig, not counted as stick-slip", "traces")
+    if slip.attrs.get("scaling") == FIXED_FREQUENCY:
+        text = "the frequency does not go with the speed: something rings, as no fold that crosses "
+        return Evidence(AGAINST, text + "the contact does", "traces")
+    return None
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
@@ -155,11 +175,15 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
     off = numbers["model_misfit"]
     if np.isnan(off):
         return None
+    band = ""
+    if np.isfinite(inside := numbers["speeds_in_band"]):
+        band = f"; {inside:.0f} of {numbers['speeds_with_band']:.0f} speeds lie in the model's band"
     if off < SUFFICIENT:
         text = "the mixed-lubrication model is sufficient: its curve misses the measured one by"
-        return Evidence(AGAINST, f"{text} {percent_text(off)} of the largest friction", "curve")
+        text += f" {percent_text(off)} of the largest friction{band}"
+        return Evidence(AGAINST, text, "curve")
     text = "flow and load sharing alone do not explain the measured curve: the mixed-lubrication"
-    text += f" model misses it by {percent_text(off)} of the largest friction"
+    text += f" model misses it by {percent_text(off)} of the largest friction{band}"
     return Evidence(FOR, text, "curve")
 
 

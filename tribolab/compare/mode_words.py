@@ -53,12 +53,13 @@ def verdict_text(
         where = f" from {speed_text(speeds.min())} to {speed_text(speeds.max())}"
     if verdict == "no stick-slip":
         off = numbers["model_misfit"]
+        steady = "steady sliding, no stick-slip at any speed"
         if not modelled or np.isnan(off):
-            return "no stick-slip at any speed"
+            return steady
         if off < 0.10:
-            return "no stick-slip at any speed; the mixed-lubrication model is sufficient"
+            return f"{steady}; the mixed-lubrication model is sufficient"
         return (
-            "no stick-slip at any speed; the mixed-lubrication model is not sufficient, "
+            f"{steady}; the mixed-lubrication model is not sufficient, "
             "and the traces do not say why"
         )
     low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
@@ -92,16 +93,21 @@ def suggestions(
             )
         return tuple(found)
     if verdict == "stick-slip of unknown origin":
-        return ("scan the surface and give the work of adhesion: then γ_eff(1) can be computed",)
+        if known.work_of_adhesion is not None:
+            return ("change stiffness or mass of the rig: its own vibration would move with them",)
+        return (
+            "give what γ_eff(1) is computed from: scans of the surface, the rubber's modulus, the "
+            "medium's work of adhesion",
+        )
     if verdict == "local stick-slip":
         return (
             "change the stiffness of the rig: stick-slip of the rig as a whole would change",
             "measure the pull-off force: it has to vanish where γ_eff(1) = 0",
         )
-    if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
-        return ("slide more slowly: adhesion would allow an instability at lower speeds",)
     if verdict == "not known":
         return ("record the friction force itself, not only its mean",)
+    if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
+        return ("slide more slowly: adhesion would allow an instability at lower speeds",)
     return ()
 
 

@@ -11,7 +11,7 @@ from tribolab.compare import mode_evidence as evidence
 from tribolab.compare.mode_evidence import Evidence
 from tribolab.compare.mode_words import paragraph, suggestions, verdict_text
 from tribolab.compare.regimes import end_of_boundary, measured_regimes, model_regimes
-from tribolab.friction.slip_curve import STEADY
+from tribolab.friction.slip_curve import FIXED_FREQUENCY, STEADY
 from tribolab.quantities import stamp
 
 NO_STICK_SLIP = "no stick-slip"
@@ -70,7 +70,8 @@ class SlidingMode:
         ``dominant_wavelength`` [m], measured and computed ``friction_coefficient``.
     numbers
         ``boundary_end_m_s``, ``model_boundary_end_m_s``, ``uniform_friction``,
-        ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit``; NaN if unknown.
+        ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit``,
+        ``speeds_in_band`` of ``speeds_with_band``; NaN if unknown.
     """
 
     verdict: str
@@ -88,6 +89,7 @@ def sliding_mode(
     slip: xr.Dataset | None = None,
     known: Mode | None = None,
     *,
+    band: xr.Dataset | None = None,
     name: str = "the contact",
 ) -> SlidingMode:
     """Weigh what speaks for and against an adhesion-controlled sliding mode.
@@ -103,6 +105,8 @@ def sliding_mode(
         Stick-slip over speed, from `stick_slip_curve`; None if not looked for.
     known
         What else is known; see `Mode`.
+    band
+        From `model_uncertainty`: between which curves the model may lie.
     name
         What to call the contact in the text.
 
@@ -142,7 +146,7 @@ def sliding_mode(
     """
     known = known or Mode()
     curve = _curve(measured, model, slip, known.fluid)
-    numbers = _numbers(measured, model, curve, known)
+    numbers = _numbers(measured, model, curve, known) | _in_band(measured, band)
     found = tuple(
         one
         for one in (
@@ -150,6 +154,7 @@ def sliding_mode(
             evidence.adhesion(known),
             evidence.doubt(known),
             evidence.strength(slip),
+            evidence.scaling(slip),
             evidence.weakening(curve, slip),
             evidence.plateau(numbers, model),
             evidence.misfit(numbers),
@@ -184,7 +189,7 @@ def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
         return UNKNOWN
     if not oscillating(slip).size:
         return NO_STICK_SLIP
-    if known.work_of_adhesion is None:
+    if known.work_of_adhesion is None or slip.attrs.get("scaling") == FIXED_FREQUENCY:
         return UNEXPLAINED
     return SUSPECTED if known.work_of_adhesion > 0 else LOCAL
 
@@ -215,6 +220,27 @@ def _curve(
                 values = np.where(apart > 0.1, np.nan, slip[name].values[at])
                 data[name] = "sliding_speed", values
     return stamp(xr.Dataset(data, {"sliding_speed": speed}))
+
+
+def _in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
+    """At how many measured speeds friction lies in the model's band, within two errors."""
+    if band is None:
+        return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
+    place = np.log(band["sliding_speed"].values)
+    at = np.log(measured["sliding_speed"].values)
+    low, high = (
+        np.interp(at, place, band[f"friction_coefficient_{end}"].values, np.nan, np.nan)
+        for end in ("low", "high")
+    )
+    mu = measured["friction_coefficient"].values
+    error = np.zeros(mu.size)
+    if "friction_coefficient_sem" in measured:
+        error = 2 * np.nan_to_num(measured["friction_coefficient_sem"].values)
+    inside = (mu + error >= low) & (mu - error <= high)
+    return {
+        "speeds_in_band": float(inside.sum()),
+        "speeds_with_band": float(np.isfinite(low).sum()),
+    }
 
 
 def _numbers(

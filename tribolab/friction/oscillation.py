@@ -16,6 +16,7 @@ HARMONICS = 6
 _REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
 _SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
 _GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
+_FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
 _MAINS_CHANCE = 3e-3  # that noise passes for a line of the mains
 CYCLES = 4.0  # in a record: slower oscillations cannot be told from a wander
 _HUMP = 7  # bands that a hump in the spectrum covers
@@ -98,17 +99,19 @@ def find_mains(record: Record) -> tuple[Mains, ...]:
         return ()
     frequency, amplitude = amplitude_spectrum(record.time[:LONGEST], record.values[:LONGEST])
     found = []
-    for true in (50.0, 60.0, 100.0, 120.0, 150.0, 180.0):
+    for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
         reach = _GRID * true / 50 + frequency[1]
         near = np.flatnonzero(np.abs(frequency - true) <= reach)
-        around = np.abs(frequency - true) <= max(40 * frequency[1], 3 * reach)
+        around = np.abs(frequency - true) <= max(40 * frequency[1], 5 * reach)
         if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
             continue
         at = near[np.argmax(amplitude[near])]
         usual = np.median(amplitude[around] ** 2) / np.log(2)
         if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
             found.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
-    return tuple(found)
+    # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
+    names = {line.name for line in found}
+    return tuple(line for line in found if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)
 
 
 def above_lower(

@@ -10,12 +10,13 @@ import xarray as xr
 from scipy import stats
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.slip_table import NOT_EVALUATED
+from tribolab.friction.slip_table import NOT_EVALUATED, ringing
 from tribolab.friction.waveform import CLASSES
 from tribolab.quantities import stamp
 
 STEADY = CLASSES[0]
 RESONANCE = "resonance"
+FIXED_FREQUENCY = "frequency does not go with the speed: it is fixed"
 _MEANS = (
     "drop",
     "dominant_wavelength",
@@ -66,7 +67,8 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         ``dominant_wavelength`` [m], ``dominant_frequency`` [Hz], ``fall_share``,
         ``harmonic_content``, ``period_scatter``, and of all ``oscillation_swing``: a bound of what
         could be hidden where nothing oscillates. Segments whose oscillation is a resonance of the
-        rig count as smooth. Attributes ``scaling_exponent``, ``scaling_error``, ``scaling``.
+        rig, seen in one run or over all, count as smooth. Attributes ``scaling_exponent``,
+        ``scaling_error``, ``scaling`` and, of a resonance, ``resonance_frequency_Hz``.
 
     Raises
     ------
@@ -87,8 +89,11 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")
     speed = np.concatenate([s["sliding_speed"].values for s in slips])
     kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
-    ringing = np.concatenate([[RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
-    kind[ringing.astype(bool)] = STEADY
+    own = _column(slips, "dominant_frequency")
+    named = np.concatenate([[RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
+    # runs of one speed each show only together that a frequency ignores the speed
+    rings = named.astype(bool) | ringing(kind, own, speed)
+    kind[rings] = STEADY
     known = (kind != NOT_EVALUATED) & (speed > 0)
     order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
     edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
@@ -105,6 +110,8 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     result.attrs.update(
         scaling_exponent=found.exponent, scaling_error=found.error, scaling=found.text
     )
+    if rings.any():
+        result.attrs["resonance_frequency_Hz"] = float(np.nanmedian(own[rings]))
     return result
 
 
@@ -180,7 +187,7 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
     elif fixed_wavelength:
         text = "frequency goes with the speed: the wavelength is fixed"
     elif fixed_frequency:
-        text = "frequency does not go with the speed: it is fixed"
+        text = FIXED_FREQUENCY
     elif slope > 1:
         text = "frequency grows faster than the speed: the wavelength shrinks"
     else:

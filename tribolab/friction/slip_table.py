@@ -25,8 +25,46 @@ _OF_NOISE = (
     "mains_frequency",
     "mains_amplitude",
 )
-_DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
+DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
 _AGREE = 0.15  # drops and spectrum agree on the period to this
+
+
+SAME = 0.03  # a resonance keeps its frequency this well
+SPEEDS = 2.0  # over speeds that differ by this factor at least
+
+
+def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Find the segments whose oscillation keeps its frequency, whatever the speed.
+
+    Parameters
+    ----------
+    kind
+        Class of waveform; only a sinus-like oscillation is a resonance (segment).
+    frequency, speed
+        [Hz], [m/s] (segment).
+
+    Returns
+    -------
+    ndarray
+        True where other segments share the frequency within 3 % and the speeds of all of them
+        differ by a factor of two or more (segment).
+
+    Examples
+    --------
+    >>> kind = np.array(["sinus-like oscillation"] * 3)
+    >>> ringing(kind, np.array([11.0, 11.1, 20.0]), np.array([1e-3, 3e-3, 3e-3])).tolist()
+    [True, True, False]
+    """
+    sine = (kind == CLASSES[2]) & (frequency > 0) & (speed > 0)
+    result = np.zeros(kind.size, bool)
+    order = np.flatnonzero(sine)[np.argsort(frequency[sine], kind="stable")]
+    logs = np.log(frequency[order])
+    first = np.searchsorted(logs, logs - SAME, side="left")
+    last = np.searchsorted(logs, logs + SAME, side="right")
+    for k, (a, b) in enumerate(zip(first, last, strict=True)):
+        near = speed[order[a:b]]
+        result[order[k]] = near.max() >= SPEEDS * near.min()
+    return result
 
 
 class Row(NamedTuple):
@@ -71,14 +109,15 @@ def class_of(found: Examined | str) -> str:
     if isinstance(found, str):
         return NOT_EVALUATED
     probability = _probability(found)
-    if probability[0] > _DOUBT:
+    if probability[0] > DOUBT:
         return CLASSES[0]
     return CLASSES[1 + int(np.argmax(probability[1:]))]
 
 
-def most_probable(found: Examined) -> str:
-    """Return the class of highest probability, whether or not it is claimed."""
-    return CLASSES[int(np.argmax(_probability(found)))]
+def ranked(found: Examined) -> list[tuple[str, float]]:
+    """Return the classes with their probabilities, the most probable first, claimed or not."""
+    probability = _probability(found)
+    return [(CLASSES[k], float(probability[k])) for k in np.argsort(-probability)]
 
 
 def _probability(found: Examined) -> np.ndarray:

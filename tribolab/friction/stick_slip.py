@@ -13,11 +13,13 @@ from tribolab.friction.coefficient import belong, trimmed_slices
 from tribolab.friction.examine import Examined, Limits, examine
 from tribolab.friction.offsets import unloaded_rest
 from tribolab.friction.slip_table import (
+    DOUBT,
     class_of,
     class_table,
     event_list,
-    most_probable,
     oscillates,
+    ranked,
+    ringing,
     spectra,
     table,
 )
@@ -25,8 +27,7 @@ from tribolab.friction.stretches import name_of
 from tribolab.friction.waveform import CLASSES
 from tribolab.quantities import stamp
 
-SAME = 0.03  # a resonance keeps its frequency this well
-SPEEDS = 2.0  # over speeds that differ by this factor at least
+_SOME = 100_000  # samples of a segment that tell its sign
 _CUT = 3  # stretches of three samples at an extreme that say that the signal is cut off
 
 # of a run that has only forces, these are in N and have "force_" before their name
@@ -169,6 +170,14 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
     direction = segments["direction"].values.astype(float)
     if "friction_force" in run:
         force = run["friction_force"].values
+        # a sensor whose sign is turned would turn sticks into slips
+        means = [
+            d * np.nanmean(force[s][:_SOME])
+            for s, d in zip(parts, direction, strict=True)
+            if np.isfinite(force[s][:_SOME]).any()
+        ]
+        if means and max(means) < 0:
+            direction = -direction
         normal = run["normal_force"].values if "normal_force" in run else None
         zero = 0.0
         if normal is not None and "omitted_reason" in segments and len(parts):
@@ -194,7 +203,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
     elif "friction_coefficient" in run:
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
-        first = [ratio[s][:100_000] for s in parts]
+        first = [ratio[s][:_SOME] for s in parts]
         signed = any(np.nanmean(x) < 0 for x in first if np.isfinite(x).any())
         for part, sign in zip(parts, direction, strict=True):
             raw = ratio[part]
@@ -237,29 +246,28 @@ def _remark(found: Examined | str, cut: bool, speed: float) -> str:
         words.append("fewer than three whole cycles")
     if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
         words.append("noise and spikes hold more of the fluctuation than the oscillation")
-    likely = most_probable(found)
-    if likely != class_of(found):
-        words.append(f"not decided: {likely} is more probable, but smooth sliding not improbable")
+    likely, second = ranked(found)[:2]
+    if likely[0] != class_of(found):
+        text = f"not decided: {likely[0]} is more probable, but smooth sliding not improbable"
+        words.append(text)
+    elif likely[0] == CLASSES[0] and second[1] > DOUBT:
+        words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
+        if found.oscillation.share < 0.5:
+            words.append("noise and spikes hold more of the fluctuation")
     return "; ".join(words)
 
 
 def _instrument(found: list[Examined | str], speed: np.ndarray) -> list[str]:
     """Name what is the instrument's: lines of the mains, and lines that ignore the speed."""
+    kind = np.array([class_of(e) for e in found], dtype=object)
+    own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in found])
     texts = []
-    sines = [
-        (e.oscillation.frequency, v)
-        for e, v in zip(found, speed, strict=True)
-        if class_of(e) == CLASSES[2]
-    ]
-    frequency, speeds = np.array(sines).reshape(-1, 2).T
-    for e in found:
+    for e, rings in zip(found, ringing(kind, own, speed), strict=True):
         if isinstance(e, str):
             texts.append("")
             continue
         names = [f"mains at {line.name}" for line in e.oscillation.mains]
-        own = e.oscillation.frequency
-        alike = speeds[np.abs(np.log(frequency / own)) < SAME]
-        if class_of(e) == CLASSES[2] and alike.max() >= SPEEDS * alike.min():
-            names.append(f"resonance at {own:.4g} Hz")
+        if rings:
+            names.append(f"resonance at {e.oscillation.frequency:.4g} Hz")
         texts.append("; ".join(names))
     return texts

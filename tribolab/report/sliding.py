@@ -53,6 +53,7 @@ class CurveSlip:
     model: xr.Dataset | None
     shear_stress: float | None
     curve: xr.Dataset
+    band: xr.Dataset | None = None
 
 
 def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
@@ -73,15 +74,17 @@ def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
         for name in curve.run_names
         if name in files
     }
-    model, stress = None, None
+    model, stress, band = None, None, None
     for one in outcome.models:
         if one.curve == curve.name and one.done and "fit" in one.parts:
             model, fit = read_groups(folder / one.data_file, ("curve", "fit")).values()
             found = float(fit.attrs["corrected_shear_stress_Pa"])
             stress = found if found > 0 else None
+            if "uncertainty" in one.parts:
+                band = read_netcdf(folder / one.data_file, group="uncertainty")
     measured = read_netcdf(folder / curve.data_file)
     over_speed = stick_slip_curve(list(slips.values()))
-    return CurveSlip(curve, measured, slips, model, stress, over_speed)
+    return CurveSlip(curve, measured, slips, model, stress, over_speed, band)
 
 
 def stick_slip_table(slip: xr.Dataset) -> pd.DataFrame:
@@ -126,7 +129,7 @@ def judge_modes(
         if mine.work_of_adhesion and others:
             mine = replace(mine, rough_shear_stress=min(others))
         modes[curve.name] = sliding_mode(
-            one.measured, one.model, one.curve, mine, name=condition(curve)
+            one.measured, one.model, one.curve, mine, band=one.band, name=condition(curve)
         )
     return modes
 
