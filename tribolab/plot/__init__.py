@@ -22,6 +22,7 @@ from tribolab.plot.panels import strokes
 from tribolab.plot.reduce import envelope
 from tribolab.plot.runs import trace
 from tribolab.plot.sensitivity import model_sensitivity
+from tribolab.plot.spectrogram import slip_spectrogram
 from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
 from tribolab.plot.style import figure_data, paper_style, save, svg
 from tribolab.plot.surfaces import modulus, spectra, viscoelastic
@@ -47,6 +48,7 @@ __all__ = [
     "save",
     "slip_events",
     "slip_spectra",
+    "slip_spectrogram",
     "slip_traces",
     "shear_stress",
     "shear_stress_over_speed",

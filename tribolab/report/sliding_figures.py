@@ -63,6 +63,10 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
     moving = [one for one in found if _moves(one)]
     shown = _slowest(moving or lowest)
     planned.append(("spectra", "slip_spectra", "Spectra of friction", _marked(shown), shown))
+    runs = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in lowest)
+    runs = tuple((label, slip) for label, slip in runs if slip.sizes.get("frequency", 0))
+    runs = runs[:_MOST_SPECTRA]
+    planned.append(("spectrogram", "slip_spectrogram", "Spectrograms", _SPECTROGRAM, runs))
     events = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in moving)
     events = tuple((label, slip) for label, slip in events if slip.sizes.get("event", 0))
     planned.append(("events", "slip_events", "Events", _EVENTS, events))
@@ -78,6 +82,10 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
 _SPECTRA = (
     "Spectra of friction at the slowest speed. Orange: red and white noise, and the power that "
     "noise exceeds anywhere in one spectrum of a thousand."
+)
+_SPECTROGRAM = (
+    "Spectrograms of one run of each condition at the lowest load: power over that of red and "
+    "white noise, segment by segment. Dots: the dominant oscillation where one is claimed."
 )
 _EVENTS = "Events of one run of each condition, all speeds: share of events below a value."
 _MAP = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
@@ -189,6 +197,16 @@ def _spectra(task: SlipFigure) -> tuple[Figure, str]:
     return figure, "; ".join(said)
 
 
+def _spectrogram(task: SlipFigure) -> tuple[Figure, str]:
+    from tribolab import plot
+
+    said = []
+    for label, slip in task.shown:
+        count = int(np.isfinite(slip["dominant_frequency"].values).sum())
+        said.append(f"{label}: an oscillation in {count} of {slip.sizes['segment']} segments")
+    return plot.slip_spectrogram(dict(task.shown)), "; ".join(said)
+
+
 def _events(task: SlipFigure) -> tuple[Figure, str]:
     from tribolab import plot
 
@@ -221,4 +239,10 @@ def _modes(curve: xr.Dataset) -> str:
     return ", ".join(said) + " of the speeds"
 
 
-_KINDS = {"traces": _traces, "spectra": _spectra, "events": _events, "map": _map}
+_KINDS = {
+    "traces": _traces,
+    "spectra": _spectra,
+    "spectrogram": _spectrogram,
+    "events": _events,
+    "map": _map,
+}
