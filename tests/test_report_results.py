@@ -20,6 +20,7 @@ from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.report.results import write_report
 from tribolab.report.run_summary import RunTask, stick_slip_of, summarise_run
+from tribolab.report.tables import checks_table
 from tribolab.report.traces import as_text, flagged_spans, trace
 from tribolab.report.wording import plain_value, with_error
 
@@ -260,6 +261,19 @@ def test_the_table_of_runs_says_which_stick_slip_at_how_many_speeds(tmp_path, re
     quiet = {"class": "smooth sliding", "detail": ""}
     # the run that failed has none
     assert [run["stick_slip"] for run in report["runs"]] == [quiet] * len(RUNS) + [None]
+
+
+def test_every_check_of_every_run_stands_in_a_table():
+    rows = [
+        {"check": "spikes", "variable": "friction_force", "status": "pass", "value": 0.0,
+         "unit": "1", "message": "none"},
+        {"check": "load", "variable": "", "status": "skipped", "value": None, "unit": "",
+         "message": "no set-point"},
+    ]  # fmt: skip
+    table = checks_table({"one": rows, "two": rows[:1]})
+    assert table["run"].tolist() == ["one", "one", "two"]
+    assert table["status"].tolist() == ["pass", "skipped", "pass"]
+    assert list(checks_table({}).columns)[:3] == ["run", "check", "variable"]
 
 
 def test_a_run_without_speeds_counts_segments_and_one_too_short_is_not_evaluated():

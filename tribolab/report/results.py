@@ -271,3 +271,5 @@ def _write_tables(
     sources = pd.DataFrame(list(outcome.sources), columns=["file", "sha256", "bytes"])
     tables.write(sources, folder / "sources.csv")
     tables.write(findings, folder / "findings.csv")
+    checks = {name: one.facts["checks"] for name, one in summaries.items()}
+    tables.write(tables.checks_table(checks), folder / "checks.csv")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,6 +112,19 @@ def findings_table(findings: Sequence[dict[str, str]]) -> pd.DataFrame:
     table = pd.DataFrame(list(findings), columns=["severity", "run", "where", "message"])
     rank = table["severity"].map(SEVERITIES.index) if len(table) else None
     return table if rank is None else table.iloc[np.argsort(rank, kind="stable")]
+
+
+def checks_table(checks: Mapping[str, Sequence[Mapping[str, Any]]]) -> pd.DataFrame:
+    """Return every check of every run, also those that passed or were skipped.
+
+    Parameters
+    ----------
+    checks
+        By the run's name, as in report.json.
+    """
+    columns = ["check", "variable", "status", "value", "unit", "message"]
+    rows = [{"run": run} | dict(row) for run, mine in checks.items() for row in mine]
+    return pd.DataFrame(rows, columns=["run", *columns])
 
 
 def write(table: pd.DataFrame, path: Path) -> None:
