@@ -14,6 +14,7 @@ import xarray as xr
 from campaigns import RUNS, copied, fingerprint, simulated
 
 import tribolab
+import tribolab as tl
 from tribolab.campaign import pipeline, work
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.executor import WorkerDied, workers
@@ -77,6 +78,29 @@ def test_a_data_file_holds_signals_segments_and_friction_with_their_origin(done,
     raw = fingerprint(original.parent)
     used = [name for name in raw if name.startswith("raw/friction")]
     assert sources == {name: raw[name][0] for name in used}
+
+
+def test_opened_without_a_group_a_data_file_says_what_it_is_and_what_it_holds(done, original):
+    raw = fingerprint(original.parent)
+    for run, curve in ((done.runs[0], done.curves[0]), (done.runs[2], done.curves[1])):
+        with xr.open_dataset(done.folder / run.data_file) as root:
+            origin = root.attrs
+        assert origin["groups"].split("; ") == ["run", "segments", "friction", "stick_slip"]
+        assert origin["Conventions"].startswith("CF-") and run.name in origin["history"]
+        assert origin["tribolab_version"] == tribolab.__version__
+        signals = read_netcdf(done.folder / run.data_file, group="run").attrs
+        for key in ("source", "source_sha256", "config_sha256"):
+            assert origin[key] == signals[key]
+        assert tl.read(done.folder / run.data_file).attrs == signals
+
+        with xr.open_dataset(done.folder / curve.data_file) as data:
+            origin = data.attrs
+        names, sums = origin["source"].split("; "), origin["source_sha256"].split("; ")
+        files = {f"raw/friction/{name}": one for name, one in zip(names, sums, strict=True)}
+        assert len(files) == 2 * len(curve.run_names)
+        assert files == {name: raw[name][0] for name in files}
+        assert origin["tribolab_version"] == tribolab.__version__
+        assert len(origin["config_sha256"]) == 64 and origin["history"] and origin["Conventions"]
 
 
 def test_a_measured_curve_takes_its_runs_together(done):

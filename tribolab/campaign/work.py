@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.errors import ConfigError, OutputError, TribolabError
-from tribolab.provenance import sha256_of_file
+from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
 
 if TYPE_CHECKING:
@@ -83,10 +83,8 @@ def process_run(task: RunTask) -> RunRecord:
     run = task.run
     try:
         signals, segments, friction, slip, quality = _analyse(run)
-        write_data(
-            {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip},
-            task.folder / task.data_file,
-        )
+        groups = {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip}
+        write_data({None: _root(run, signals.attrs)} | groups, task.folder / task.data_file)
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others
@@ -129,6 +127,8 @@ def process_curve(task: CurveTask) -> None:
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
     curve.attrs.update(_labels(task.curve), runs="; ".join(task.curve.run_names))
+    shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
+    curve.attrs["config_sha256"] = sha256_of(shaped)
     write_data({None: curve}, task.folder / task.curve.data_file)
 
 
@@ -231,6 +231,19 @@ def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
             "leave sliding_speed out of its [[run]]"
         )
     return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}
+
+
+def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
+    """Attributes of the whole file, for those who open it without naming a group."""
+    import xarray as xr
+
+    origin = made(
+        f"friction of {run.name}",
+        source=attrs["source"],
+        source_sha256=attrs["source_sha256"],
+        config_sha256=run.config_sha256,
+    )
+    return xr.Dataset(attrs=_labels(run) | origin | {QUALITY: attrs[QUALITY]})
 
 
 def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:
