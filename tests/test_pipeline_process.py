@@ -21,6 +21,7 @@ from tribolab.campaign.executor import WorkerDied, workers
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.rig import read_truth
 
 
 @pytest.fixture(scope="module")
@@ -183,6 +184,33 @@ def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
     assert reused(outcome) == []
     friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
     assert friction.attrs["trim"] == 0.12
+
+
+def test_a_clock_shift_in_the_campaign_file_is_taken_and_makes_its_runs_anew(
+    campaign, done, tmp_path
+):
+    truth = read_truth(campaign.parent).facts["runs"]
+    shift = truth[RUNS[2]]["clock_shift_at_middle_s"]
+    edit(campaign, 'medium = "dry"\n', f'medium = "dry"\nclock_shift = "{1e3 * shift:.4f} ms"\n')
+    outcome = again(campaign, done, tmp_path / "new")
+    assert reused(outcome) == list(RUNS[:2])
+    given, estimated = (
+        read_netcdf(one.folder / one.runs[2].data_file, group="run").attrs
+        for one in (outcome, done)
+    )
+    assert (given["clock_shift_source"], estimated["clock_shift_source"]) == ("given", "estimated")
+    assert given["clock_shift_s"] == pytest.approx(shift, abs=1e-6)
+    assert given["clock_shift_s"] != estimated["clock_shift_s"]
+    [found] = [row for row in given["findings"] if row["check"] == "clock_shift"]
+    assert found["status"] == "pass" and "given" in found["message"]
+
+
+def test_a_clock_shift_without_a_second_log_is_told(campaign, tmp_path):
+    (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
+    edit(campaign, 'medium = "dry"\n', 'medium = "dry"\nclock_shift = "0.42 s"\n')
+    [run] = process(load_campaign(campaign), tmp_path).failed
+    assert "no second log (sb-r_dry_31N_02_motion.csv)" in run.reason
+    assert "leave clock_shift out" in run.reason
 
 
 def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_path, monkeypatch):

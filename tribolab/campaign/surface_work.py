@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -133,10 +133,12 @@ def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
     return tuple(source_of(file, label) for file, label in files)
 
 
-def named(sources: Iterable[Source]) -> dict[str, str]:
+def named(sources: Sequence[Source]) -> dict[str, str]:
     """Return ``source`` and ``source_sha256`` of files."""
-    labels, checksums = zip(*((label, checksum) for label, checksum, _ in sources), strict=True)
-    return {"source": "; ".join(labels), "source_sha256": "; ".join(checksums)}
+    return {
+        "source": "; ".join(label for label, _, _ in sources),
+        "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
+    }
 
 
 def known_surface(

@@ -203,7 +203,16 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     from tribolab.qc.run_checks import check_run
 
     files = list(run.files)
-    signals = read(files if len(files) > 1 else files[0], run.instrument)
+    signals = read(
+        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
+    )
+    if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
+        missing = signals.attrs.get("companion_missing", "")
+        raise ConfigError(
+            f"{signals.attrs['source']}: there is no second log"
+            f"{missing and f' ({missing})'} whose clock could be shifted; "
+            "leave clock_shift out of its [[run]]"
+        )
     if run.normal_force is not None:
         signals.attrs["set_normal_force_N"] = run.normal_force
     if run.sliding_speed is not None:
