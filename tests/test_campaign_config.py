@@ -94,6 +94,18 @@ def test_quantities_become_si(folder):
     assert campaign.output == folder / "results"
 
 
+def test_a_clock_shift_may_be_negative_and_wants_its_unit(folder):
+    def given(shift):
+        return WHOLE.replace('"31 N"\n', f'"31 N"\nclock_shift = {shift}\n')
+
+    assert [run.clock_shift for run in plan(load(folder, given('"-420 ms"'))).runs] == [
+        -0.42,
+        -0.42,
+        None,
+    ]
+    assert "run 1, clock_shift" in complaint(folder, given("0.42"))
+
+
 def test_files_become_runs_with_names_and_settings(folder):
     runs, _ = plan(load(folder, WHOLE))
     assert [run.name for run in runs] == ["sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "cycle"]

@@ -119,6 +119,16 @@ def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
 
 
 @pytest.mark.slow
+def test_a_model_names_the_files_of_its_curve_and_of_its_spectrum(outcome):
+    (model,) = outcome.models
+    root = read_netcdf(outcome.folder / model.data_file).attrs
+    pairs = dict(zip(root["source"].split("; "), root["source_sha256"].split("; "), strict=True))
+    used = {(Path(name).name, checksum) for name, checksum, _ in outcome.sources}
+    assert {(Path(name).name, checksum) for name, checksum in pairs.items()} == used
+    assert root["groups"].split("; ") == list(model.parts)
+
+
+@pytest.mark.slow
 def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     folder = outcome.folder
     report = json.loads((folder / "report.json").read_text())

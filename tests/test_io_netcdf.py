@@ -95,6 +95,15 @@ def test_groups_share_a_file_and_text_variables_survive(tmp_path):
         read_netcdf(file, group="friction")
 
 
+def test_the_root_of_a_file_of_groups_names_them(tmp_path):
+    file = tmp_path / "all.nc"
+    write_netcdf(xr.Dataset(attrs={"source": "a.csv"}), file)
+    for name in ("run", "segments"):
+        write_netcdf(example_run(60), file, group=name)
+    with xr.open_dataset(file) as root:
+        assert root.attrs == {"source": "a.csv", "groups": "run; segments"}
+
+
 def test_several_groups_are_read_at_once_and_travel_to_other_processes(tmp_path):
     file = tmp_path / "all.nc"
     parts = {"run": example_run(100), "second": example_run(60)}

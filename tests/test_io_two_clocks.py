@@ -149,7 +149,7 @@ def test_a_given_shift_is_taken_as_it_is_and_in_any_order_of_files(tmp_path):
 
 
 def test_a_shift_that_parts_the_logs_is_refused(tmp_path):
-    with pytest.raises(ReadError, match="do not overlap.*clock_shift="):
+    with pytest.raises(ReadError, match="do not overlap.*correct clock_shift="):
         tl.read(write_logs(tmp_path, 0.5), clock_shift=1e6)
 
 

@@ -14,12 +14,14 @@ import xarray as xr
 from campaigns import RUNS, copied, fingerprint, simulated
 
 import tribolab
+import tribolab as tl
 from tribolab.campaign import pipeline, work
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.executor import WorkerDied, workers
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.rig import read_truth
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +79,29 @@ def test_a_data_file_holds_signals_segments_and_friction_with_their_origin(done,
     raw = fingerprint(original.parent)
     used = [name for name in raw if name.startswith("raw/friction")]
     assert sources == {name: raw[name][0] for name in used}
+
+
+def test_opened_without_a_group_a_data_file_says_what_it_is_and_what_it_holds(done, original):
+    raw = fingerprint(original.parent)
+    for run, curve in ((done.runs[0], done.curves[0]), (done.runs[2], done.curves[1])):
+        with xr.open_dataset(done.folder / run.data_file) as root:
+            origin = root.attrs
+        assert origin["groups"].split("; ") == ["run", "segments", "friction", "stick_slip"]
+        assert origin["Conventions"].startswith("CF-") and run.name in origin["history"]
+        assert origin["tribolab_version"] == tribolab.__version__
+        signals = read_netcdf(done.folder / run.data_file, group="run").attrs
+        for key in ("source", "source_sha256", "config_sha256"):
+            assert origin[key] == signals[key]
+        assert tl.read(done.folder / run.data_file).attrs == signals
+
+        with xr.open_dataset(done.folder / curve.data_file) as data:
+            origin = data.attrs
+        names, sums = origin["source"].split("; "), origin["source_sha256"].split("; ")
+        files = {f"raw/friction/{name}": one for name, one in zip(names, sums, strict=True)}
+        assert len(files) == 2 * len(curve.run_names)
+        assert files == {name: raw[name][0] for name in files}
+        assert origin["tribolab_version"] == tribolab.__version__
+        assert len(origin["config_sha256"]) == 64 and origin["history"] and origin["Conventions"]
 
 
 def test_a_measured_curve_takes_its_runs_together(done):
@@ -159,6 +184,33 @@ def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
     assert reused(outcome) == []
     friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
     assert friction.attrs["trim"] == 0.12
+
+
+def test_a_clock_shift_in_the_campaign_file_is_taken_and_makes_its_runs_anew(
+    campaign, done, tmp_path
+):
+    truth = read_truth(campaign.parent).facts["runs"]
+    shift = truth[RUNS[2]]["clock_shift_at_middle_s"]
+    edit(campaign, 'medium = "dry"\n', f'medium = "dry"\nclock_shift = "{1e3 * shift:.4f} ms"\n')
+    outcome = again(campaign, done, tmp_path / "new")
+    assert reused(outcome) == list(RUNS[:2])
+    given, estimated = (
+        read_netcdf(one.folder / one.runs[2].data_file, group="run").attrs
+        for one in (outcome, done)
+    )
+    assert (given["clock_shift_source"], estimated["clock_shift_source"]) == ("given", "estimated")
+    assert given["clock_shift_s"] == pytest.approx(shift, abs=1e-6)
+    assert given["clock_shift_s"] != estimated["clock_shift_s"]
+    [found] = [row for row in given["findings"] if row["check"] == "clock_shift"]
+    assert found["status"] == "pass" and "given" in found["message"]
+
+
+def test_a_clock_shift_without_a_second_log_is_told(campaign, tmp_path):
+    (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
+    edit(campaign, 'medium = "dry"\n', 'medium = "dry"\nclock_shift = "0.42 s"\n')
+    [run] = process(load_campaign(campaign), tmp_path).failed
+    assert "no second log (sb-r_dry_31N_02_motion.csv)" in run.reason
+    assert "leave clock_shift out" in run.reason
 
 
 def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_path, monkeypatch):

@@ -11,11 +11,15 @@ from chromium import BROWSER, chromium
 from report_pages import Reader
 from typer.testing import CliRunner
 
+import tribolab
 from tribolab import cli
+from tribolab.io.netcdf import read_netcdf
+from tribolab.provenance import sha256_of_file
 from tribolab.report.paper.figures import COMPUTED, FIGURES, SIMULATED
 from tribolab.report.paper.laboratory import Laboratory
 from tribolab.report.paper.reproduce import reproduce
 from tribolab.studies.verdict import DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
+from tribolab.studies.xu2026 import CITATION
 
 AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
 # one load, three speeds, one profile: as few as still make every figure
@@ -54,6 +58,21 @@ def test_every_figure_is_there_with_its_origin_its_numbers_and_its_words(made, p
         assert len(pd.read_csv(made.folder / one["data"])) >= 2
         assert one["alt"] in said and re.search(r"\d", one["alt"].removeprefix(one["title"]))
         assert one["kinds"] and set(one["kinds"]) <= {COMPUTED, SIMULATED}
+
+
+def test_every_data_file_says_what_it_was_made_from(made):
+    files = sorted((made.folder / "data").glob("*.nc"))
+    assert {path.name.partition("_")[0] for path in files} >= {"curve", "dry", "wet", "spectrum"}
+    sums = {path.name: sha256_of_file(path) for path in made.folder.glob("simulated/raw/*/*")}
+    for path in files:
+        attrs = read_netcdf(path).attrs
+        assert len(attrs["config_sha256"]) == 64 and attrs["Conventions"] and attrs["history"]
+        assert attrs["tribolab_version"] == tribolab.__version__
+        if path.name.startswith(("dry_", "wet_")):  # from constants: there is no file
+            assert attrs["source"] == CITATION and "source_sha256" not in attrs
+        else:
+            names = [Path(name).name for name in attrs["source"].split("; ")]
+            assert attrs["source_sha256"].split("; ") == [sums[name] for name in names]
 
 
 def test_a_bound_is_met_or_not_and_has_no_percentage(made, page):

@@ -50,6 +50,20 @@ def test_a_fault_is_found_by_its_check(tmp_path, name):
     assert found.count()["error"] == 0
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_load_of_the_wrong_sign_is_readable_whatever_zero_the_cell_drew(tmp_path, seed):
+    """The cells of seeds 0, 3 and 4 read above zero even when no load is on."""
+    rig = Rig(Protocol(speeds=(1e-4,)))
+    sound = simulate_run("Sb-R", "dry", 31.0, seed=seed, rig=rig)
+    assert (sound.force_log.normal_force.min() > 0) == (seed in (0, 3, 4))
+    struck = inject(sound, "load_sign")
+    run = read(write(tmp_path, struck))
+    assert run.normal_force.min() < -29
+    found = check_run(run, normal_force=31.0)
+    assert "fail" in {row["status"] for row in found.rows if row["check"] == "schema"}
+    assert struck.facts["faults"][0]["severity"] == "fail"
+
+
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_drawn_from_its_seed_and_leaves_the_run_beneath_alone(name):
     where = condition(FAULTS[name])

@@ -295,6 +295,17 @@ def test_run_without_speed_is_an_error_that_names_what_is_needed():
         find_segments(run)
 
 
+def test_the_part_of_the_track_that_counts_is_in_the_result():
+    time = np.arange(1000) / 100
+    run = xr.Dataset({"position": ("time", 1e-3 * time)}, {"time": time})
+    found = find_segments(run, position_range=("7 mm", "2 mm"))
+    low, high = found.attrs["position_low_m"], found.attrs["position_high_m"]
+    assert (low, high) == pytest.approx((2e-3, 7e-3))
+    ends = run["position"].sel(time=[found.trimmed_start.item(), found.trimmed_stop.item()])
+    assert ends.values == pytest.approx([low, high], abs=2e-5)
+    assert not [name for name in find_segments(run).attrs if name.startswith("position")]
+
+
 def test_position_range_without_position_is_an_error():
     with pytest.raises(AnalysisError, match="position"):
         find_segments(velocity_run(np.ones(100)), position_range=(0, 1))

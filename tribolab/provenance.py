@@ -32,10 +32,73 @@ def history_line(action: str) -> str:
     return f"{now} tribolab {__version__}: {action}"
 
 
+def made(
+    action: str,
+    *,
+    source: str = "",
+    source_sha256: str = "",
+    config_sha256: str = "",
+) -> dict[str, str]:
+    """Return the attributes that every product carries, those that there are.
+
+    Parameters
+    ----------
+    action
+        What was done, in a few words, for the history line.
+    source, source_sha256
+        Names of the raw files and their checksums, each joined by ``"; "``. What was computed
+        from published constants has their citation as its source, and no file, so no checksum.
+    config_sha256
+        Checksum of the settings that shaped the product.
+
+    Examples
+    --------
+    >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
+    ['Conventions', 'history', 'source', 'tribolab_version']
+    """
+    from tribolab import __version__
+
+    attrs = {
+        "source": source,
+        "source_sha256": source_sha256,
+        "tribolab_version": __version__,
+        "config_sha256": config_sha256,
+        "history": history_line(action),
+        "Conventions": CONVENTIONS,
+    }
+    return {name: value for name, value in attrs.items() if value}
+
+
+def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
+    """Return ``source`` and ``source_sha256`` of what is made from several products.
+
+    Checksums are left out if one of the products has none: they would stand beside other names.
+
+    Parameters
+    ----------
+    products
+        Their attributes.
+
+    Examples
+    --------
+    >>> joined_sources([{"source": "a.csv", "source_sha256": "1f"}, {"source": "b.csv"}])
+    {'source': 'a.csv; b.csv'}
+    """
+    pairs = dict.fromkeys(
+        (str(attrs.get("source", "")), str(attrs.get("source_sha256", ""))) for attrs in products
+    )
+    columns = zip(*pairs, strict=True)
+    return {
+        name: "; ".join(values)
+        for name, values in zip(("source", "source_sha256"), columns, strict=False)
+        if all(values)
+    }
+
+
 def provenance(
     sources: Iterable[str | Path], action: str, config: Mapping[str, Any] | None = None
 ) -> dict[str, str]:
-    """Return the attributes that every product carries.
+    """Return the attributes of a product that is made from raw files.
 
     Parameters
     ----------
@@ -52,16 +115,10 @@ def provenance(
         ``source``, ``source_sha256``, ``tribolab_version``, ``history``, ``Conventions`` and,
         with `config`, ``config_sha256``. Several sources are joined by ``"; "``.
     """
-    from tribolab import __version__
-
     paths = [Path(source) for source in sources]
-    attrs = {
-        "source": "; ".join(path.name for path in paths),
-        "source_sha256": "; ".join(sha256_of_file(path) for path in paths),
-        "tribolab_version": __version__,
-        "history": history_line(action),
-        "Conventions": CONVENTIONS,
-    }
-    if config is not None:
-        attrs["config_sha256"] = sha256_of(config)
-    return attrs
+    return made(
+        action,
+        source="; ".join(path.name for path in paths),
+        source_sha256="; ".join(sha256_of_file(path) for path in paths),
+        config_sha256="" if config is None else sha256_of(config),
+    )

@@ -183,6 +183,8 @@ class RunEntry(Table):
     """Set-point of the normal force."""
     sliding_speed: _positive_si("m/s", "6 mm/min") | None = None
     """Set-point of the speed; it is the sliding speed where the files record none."""
+    clock_shift: _si("s", "0.42 s") | None = None
+    """What added to the companion log's clock gives the main log's; else the signals tell."""
     instrument: Text | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
     cycles: bool = False

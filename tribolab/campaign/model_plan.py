@@ -12,7 +12,7 @@ import numpy as np
 
 from tribolab.campaign.work import NETCDF
 from tribolab.errors import ReadError
-from tribolab.provenance import sha256_of
+from tribolab.provenance import joined_sources, sha256_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,6 +47,8 @@ class PlannedModel:
         Relative standard deviation of a run's friction level, and its degrees of freedom.
     missing
         What the campaign knows too little of; "" if a model can be computed.
+    source, source_sha256
+        Files that the curve and the spectrum were made from.
     config_sha256
         Checksum of all that shapes the result, the data included.
     """
@@ -61,6 +63,8 @@ class PlannedModel:
     repeatability: float
     freedom: int
     missing: str = ""
+    source: str = ""
+    source_sha256: str = ""
     config_sha256: str = field(default="", compare=False)
 
     @property
@@ -172,11 +176,9 @@ def _sealed(model: PlannedModel, folder: Path) -> PlannedModel:
 
     if model.missing:
         return model
-    data = [
-        read(folder / model.curve.data_file),
-        read(folder / model.surface_file, "psd"),
-        optional(folder / model.surface_file, "adhesion_loads"),
-    ]
+    curve, surface = read(folder / model.curve.data_file), folder / model.surface_file
+    data = [curve, read(surface, "psd"), optional(surface, "adhesion_loads")]
+    model = replace(model, **joined_sources([curve.attrs, read(surface).attrs]))
     facts = asdict(model) | {"data": [_digest(one) for one in data if one is not None]}
     return replace(model, config_sha256=sha256_of(facts))
 

@@ -15,7 +15,7 @@ from tribolab.campaign.model_plan import PlannedModel, optional, read
 from tribolab.campaign.outcome import Finding, ModelOutcome
 from tribolab.campaign.work import explain, write_data
 from tribolab.errors import AnalysisError, OutputError
-from tribolab.provenance import CONVENTIONS, history_line
+from tribolab.provenance import made
 from tribolab.quantities import stamp
 
 if TYPE_CHECKING:
@@ -303,8 +303,6 @@ def known_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
 
 
 def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:
-    from tribolab import __version__
-
     curve = model.curve
     return xr.Dataset(
         attrs={
@@ -314,10 +312,12 @@ def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:
             "curve": curve.name,
             "repeatability": model.repeatability,
             "freedom": model.freedom,
-            "tribolab_version": __version__,
-            "config_sha256": model.config_sha256,
-            "history": history_line(f"model of {curve.name}"),
-            "Conventions": CONVENTIONS,
             RECORD: json.dumps(record, ensure_ascii=False),
         }
+        | made(
+            f"model of {curve.name}",
+            source=model.source,
+            source_sha256=model.source_sha256,
+            config_sha256=model.config_sha256,
+        )
     )

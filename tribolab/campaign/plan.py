@@ -37,6 +37,8 @@ class PlannedRun:
         "" where the campaign file says nothing.
     normal_force, sliding_speed
         Set-points [N, m/s], if the campaign file gives them.
+    clock_shift
+        Between the clocks of the two logs [s], if the campaign file gives it.
     instrument
         Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
     segments, friction
@@ -54,6 +56,7 @@ class PlannedRun:
     medium: str
     normal_force: float | None
     sliding_speed: float | None
+    clock_shift: float | None
     instrument: str | None
     segments: dict[str, Any] = field(default_factory=dict)
     friction: dict[str, Any] = field(default_factory=dict)
@@ -184,6 +187,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
         "medium": entry.medium or "",
         "normal_force": entry.normal_force,
         "sliding_speed": entry.sliding_speed,
+        "clock_shift": entry.clock_shift,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction.model_dump(),
         "quality": campaign.quality_options(entry),

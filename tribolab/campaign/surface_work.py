@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from tribolab.campaign.outcome import Finding, SurfaceOutcome
 from tribolab.campaign.surface_plan import PlannedSurface
 from tribolab.campaign.work import Source, explain, source_of, write_data
 from tribolab.errors import OutputError
-from tribolab.provenance import CONVENTIONS, history_line
+from tribolab.provenance import made
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,6 +133,14 @@ def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
     return tuple(source_of(file, label) for file, label in files)
 
 
+def named(sources: Sequence[Source]) -> dict[str, str]:
+    """Return ``source`` and ``source_sha256`` of files."""
+    return {
+        "source": "; ".join(label for label, _, _ in sources),
+        "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
+    }
+
+
 def known_surface(
     path: Path, surface: PlannedSurface
 ) -> tuple[tuple[Source, ...], SurfaceOutcome] | None:
@@ -178,8 +187,6 @@ def _root(
     """Attributes of the whole file; checksums also of what could not be used."""
     import xarray as xr
 
-    from tribolab import __version__
-
     record = {
         "sources": sources,
         "findings": outcome.findings,
@@ -191,12 +198,11 @@ def _root(
         attrs={
             "surface": surface.name,
             "quality": outcome.quality,
-            "source": "; ".join(label for label, _, _ in sources),
-            "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
-            "tribolab_version": __version__,
-            "config_sha256": surface.config_sha256,
-            "history": history_line(f"spectrum and contact of {surface.name}"),
-            "Conventions": CONVENTIONS,
             RECORD: json.dumps(record, ensure_ascii=False),
         }
+        | made(
+            f"spectrum and contact of {surface.name}",
+            **named(sources),
+            config_sha256=surface.config_sha256,
+        )
     )

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.errors import ConfigError, OutputError, TribolabError
-from tribolab.provenance import sha256_of_file
+from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
 
 if TYPE_CHECKING:
@@ -83,10 +83,8 @@ def process_run(task: RunTask) -> RunRecord:
     run = task.run
     try:
         signals, segments, friction, slip, quality = _analyse(run)
-        write_data(
-            {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip},
-            task.folder / task.data_file,
-        )
+        groups = {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip}
+        write_data({None: _root(run, signals.attrs)} | groups, task.folder / task.data_file)
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others
@@ -129,6 +127,8 @@ def process_curve(task: CurveTask) -> None:
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
     curve.attrs.update(_labels(task.curve), runs="; ".join(task.curve.run_names))
+    shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
+    curve.attrs["config_sha256"] = sha256_of(shaped)
     write_data({None: curve}, task.folder / task.curve.data_file)
 
 
@@ -203,7 +203,16 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     from tribolab.qc.run_checks import check_run
 
     files = list(run.files)
-    signals = read(files if len(files) > 1 else files[0], run.instrument)
+    signals = read(
+        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
+    )
+    if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
+        missing = signals.attrs.get("companion_missing", "")
+        raise ConfigError(
+            f"{signals.attrs['source']}: there is no second log"
+            f"{missing and f' ({missing})'} whose clock could be shifted; "
+            "leave clock_shift out of its [[run]]"
+        )
     if run.normal_force is not None:
         signals.attrs["set_normal_force_N"] = run.normal_force
     if run.sliding_speed is not None:
@@ -231,6 +240,19 @@ def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
             "leave sliding_speed out of its [[run]]"
         )
     return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}
+
+
+def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
+    """Attributes of the whole file, for those who open it without naming a group."""
+    import xarray as xr
+
+    origin = made(
+        f"friction of {run.name}",
+        source=attrs["source"],
+        source_sha256=attrs["source_sha256"],
+        config_sha256=run.config_sha256,
+    )
+    return xr.Dataset(attrs=_labels(run) | origin | {QUALITY: attrs[QUALITY]})
 
 
 def _labels(what: PlannedRun | CurveOutcome) -> dict[str, str]:

@@ -73,7 +73,8 @@ def find_segments(
         ``samples`` of the trimmed part, and the run's labels (``set_speed``, ``step`` ...) where
         it has them. On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and
         ``omitted_reason``. Attributes ``trim`` and ``velocity_source`` (``"recorded"``,
-        ``"position"``, ``"step"`` or ``"set speed"``).
+        ``"position"``, ``"step"`` or ``"set speed"``); with a `position_range`,
+        ``position_low_m`` and ``position_high_m``.
 
     Raises
     ------
@@ -147,8 +148,11 @@ def _dataset(
     velocity = np.array([s.velocity for s in kept], float)
     trimmed_start = start + trim * (stop - start)
     trimmed_stop = stop - trim * (stop - start)
+    settings = {"trim": float(trim), "velocity_source": source}
     if position_range is not None:
-        trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, position_range)
+        low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
+        trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, low, high)
+        settings |= {"position_low_m": low, "position_high_m": high}
     first = np.searchsorted(time, trimmed_start, side="left")
     last = np.searchsorted(time, trimmed_stop, side="right")
     if source == "recorded":
@@ -179,21 +183,21 @@ def _dataset(
     result["omitted_start"] = "omitted", np.array([s.start for s in left], float)
     result["omitted_stop"] = "omitted", np.array([s.stop for s in left], float)
     result["omitted_reason"] = "omitted", np.array([s.kind for s in left], dtype=object)
-    return stamp(result, **run.attrs, trim=float(trim), velocity_source=source)
+    return stamp(result, **(run.attrs | settings))
 
 
 def _within(
     run: xr.Dataset,
     start: np.ndarray,
     stop: np.ndarray,
-    position_range: tuple[str | float, str | float],
+    low: float,
+    high: float,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Narrow each segment to the part between two positions."""
     if "position" not in run:
         raise AnalysisError(
             f"{name_of(run)}: position_range is given, but the run has no 'position'"
         )
-    low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
     time, position = finite(run, "position")
     start, stop = start.copy(), stop.copy()
     for i in range(start.size):

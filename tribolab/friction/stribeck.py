@@ -10,6 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
+from tribolab.provenance import joined_sources, made
 from tribolab.quantities import stamp
 
 FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
@@ -46,7 +47,8 @@ def measured_stribeck_curve(
         ``_std``, the pooled standard deviation within the segments (the paper's error bar);
         ``_sem``; ``_within``, the standard deviation of the observations of one run about the run's
         mean (NaN if no run has two); ``_between``, the standard deviation of the runs' means (NaN
-        for one run); ``runs`` and ``segments``.
+        for one run); ``runs`` and ``segments``. Attributes: the provenance, with the files of all
+        runs as its source.
 
     Raises
     ------
@@ -113,8 +115,8 @@ def measured_stribeck_curve(
     for count in ("runs", "segments"):
         data[count] = "sliding_speed", data[count][1].astype(int)
     curve = xr.Dataset(data, coords={"sliding_speed": columns[0]})
-    sources = "; ".join(dict.fromkeys(str(f.attrs.get("source", "")) for f in frictions))
-    return stamp(curve, source=sources, speed_tolerance=float(speed_tolerance))
+    origin = made("measured Stribeck curve", **joined_sources(f.attrs for f in frictions))
+    return stamp(curve, **origin, speed_tolerance=float(speed_tolerance))
 
 
 def _observations(friction: xr.Dataset, run: int) -> list[_Value]:

@@ -16,6 +16,7 @@ from tribolab.io.seal import is_sealed, seal, try_out, unseal
 if TYPE_CHECKING:
     import netCDF4
 
+GROUPS = "groups"  # attribute of the root of a file of groups
 CHUNK = 65_536  # samples; a default chunk would be the whole array
 _COMPRESSION = 2
 _MARK, _TUPLE = "json:", "json-tuple:"
@@ -57,8 +58,9 @@ def write_netcdf(
     Notes
     -----
     Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
-    dicts and lists among the attributes become JSON text behind the mark ``json:``. The file is
-    sealed (see `tribolab.io.seal`).
+    dicts and lists among the attributes become JSON text behind the mark ``json:``. In a file of
+    groups the root's attribute ``groups`` names them, for those who open the root alone. The file
+    is sealed (see `tribolab.io.seal`).
 
     Examples
     --------
@@ -83,6 +85,8 @@ def write_netcdf(
         if mode == "a" and path.is_file():
             unseal(path)
         encoded.to_netcdf(path, mode=mode, group=group, encoding=encoding, engine="netcdf4")
+        if group:
+            _name_groups(path)
         seal(path)
     except (OSError, ValueError, TypeError) as error:
         raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
@@ -185,6 +189,14 @@ def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
     data.encoding = {}
     data.set_close(None)  # it is in memory: an open file could not travel to another process
     return data
+
+
+def _name_groups(path: Path) -> None:
+    """Name the groups at the root: whoever opens a file without a group sees the root alone."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "a") as file:
+        file.setncattr(GROUPS, "; ".join(file.groups))
 
 
 def _storage(variable: xr.DataArray) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from tribolab.io.scan_formats import read_foreign
 from tribolab.io.scan_grid import even, gridded
 from tribolab.io.scan_results import is_results
 from tribolab.io.signature import File, peek
-from tribolab.provenance import CONVENTIONS, history_line, sha256_of_file
+from tribolab.provenance import made, sha256_of_file
 from tribolab.quantities import stamp
 
 PathLike = str | Path
@@ -132,10 +132,7 @@ def _read(
         raise ReadError(f"{path}: not one height is a number")
     x = scan.x.values
     return scan.assign_attrs(
-        source=path.name,
-        source_sha256=sha256,
-        history=history_line(f"read {path.name}"),
-        Conventions=CONVENTIONS,
+        **made(f"read {path.name}", source=path.name, source_sha256=sha256),
         pitch_m=float(x[-1] - x[0]) / (x.size - 1),
         length_m=float(x[-1] - x[0]),
     )

@@ -189,7 +189,7 @@ RIG_CHECKS = (
         "clock_shift",
         17,
         "Are the clocks of the two logs matched?",
-        "Give the shift (clock_shift), or record a common mark such as a start and a stop.",
+        "Give the shift (clock_shift in its [[run]]), or record a common mark, e.g. a start.",
         {
             "suspect": Limit(0.10, "1", "the usual trim, 10 % of the duration, takes up as much"),
             "fail": Limit(0.50, "1", "segments and forces no longer belong together"),

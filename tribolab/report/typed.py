@@ -11,6 +11,7 @@ _PYTHON_TO_COMMAND = (
         "name the dialect that says them with --instrument",
     ),
     (r"\binstrument=", "--instrument"),
+    (r"\bclock_shift=", "clock_shift in the [[run]] of a campaign file"),
     (
         r": use read_scans(\(\))?",
         "; 'tribolab check' takes it, a campaign under scans of a [[surface]]",
@@ -33,6 +34,8 @@ def as_typed(message: str) -> str:
     --------
     >>> as_typed("a.csv: two instruments fit; say which with instrument=")
     'a.csv: two instruments fit; say which with --instrument'
+    >>> as_typed("the logs do not overlap; give clock_shift=")
+    'the logs do not overlap; give clock_shift in the [[run]] of a campaign file'
     """
     for pattern, words in _PYTHON_TO_COMMAND:
         message = re.sub(pattern, words, message)

@@ -16,6 +16,7 @@ from tribolab.rig.runs import SimulatedRun
 
 Facts = dict[str, Any]
 Struck = tuple[xr.Dataset, xr.Dataset, Facts]
+_UNLOADED = 0.05  # of the greatest normal force; above it, load is on
 _FAST = 130.0  # Hz; slower logs do not show the lines of mains and rig
 
 
@@ -58,8 +59,15 @@ def _interval(run: SimulatedRun) -> np.ndarray:
 
 
 def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Turn the sign of the normal force."""
-    return _normal(run, -run.force_log.normal_force.values, {})
+    """Turn the sign of the normal force of a cell that was zeroed.
+
+    Whatever zero the cell has drawn, its readings at rest then lie on both sides of zero: were
+    all of them below, the reader would refuse the file before any check could see it.
+    """
+    values = run.force_log.normal_force.values
+    size = np.abs(values)
+    zero = float(np.median(values[size < _UNLOADED * size.max()]))
+    return _normal(run, zero - values, {"zero_N": zero})
 
 
 def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:

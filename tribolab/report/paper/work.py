@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribolab.provenance import made, sha256_of
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
@@ -62,18 +63,25 @@ def compute(task: Task) -> list[dict[str, Any]]:
 def _root(task: Task) -> xr.Dataset:
     import xarray as xr
 
-    from tribolab import __version__
-    from tribolab.provenance import CONVENTIONS, history_line
-
     return xr.Dataset(
-        attrs={
-            "surface": task.surface,
-            "references": xu2026.CITATION,
-            "tribolab_version": __version__,
-            "history": history_line(f"reproduce: {task.kind} {task.surface}"),
-            "Conventions": CONVENTIONS,
-        }
+        attrs={"surface": task.surface, "references": xu2026.CITATION}
+        | made(f"reproduce: {task.kind} {task.surface}", **_origin(task))
     )
+
+
+def _origin(task: Task) -> dict[str, str]:
+    """Return what a task's result is made from: files, or else the published constants alone.
+
+    There is no checksum of a file where there is no file; the settings are then the constants.
+    """
+    if task.scans is not None:
+        from tribolab.campaign.surface_work import named, sources_of
+
+        config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
+        return named(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
+    constants = (xu2026.system, xu2026.surface(task.surface))
+    config = {"constants": [asdict(one) for one in constants], "forces": task.forces}
+    return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
 
 
 def _published(task: Task) -> tuple[dict, list[dict[str, Any]]]:
