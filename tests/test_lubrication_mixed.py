@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from contact_cases import CONTACT, E_STAR, SURFACES, properties, reference_psd
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tribolab.contact.geometry import LineContact
@@ -249,16 +249,22 @@ def test_longer_domains_converge_and_matter_only_where_films_are_thick():
 @pytest.mark.slow
 @settings(properties, max_examples=8)
 @given(
-    modulus=st.floats(5.5, 9),
+    modulus=st.floats(5, 9),
     viscosity=st.floats(-3, 2),
     load=st.floats(-1.47, 1.47),
-    roughness=st.floats(-7, -4.3),
+    roughness=st.floats(-8, -4.3),
     name=st.sampled_from(SURFACES),
+    similar=st.booleans(),
 )
-def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, name):
+@example(6.2, 0.1, 0.0, -8.0, "Sb-S", False)  # heights near the cut-off of gaps
+@example(5.0, 0.1, 0.0, -8.0, "Sb-S", True)
+def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, name, similar):
     psd, contact = reference_psd(name), LineContact(0.07, 0.1, 10**modulus, 0.5)
     factor = 10**roughness / flow_factors(psd).rms_roughness
-    psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
+    if similar:
+        psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
+    else:  # the same waves, of another height
+        psd = psd * factor**2
     try:
         curve = stribeck_curve(
             contact,
@@ -270,7 +276,8 @@ def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, nam
             cells=200,
         )
     except AnalysisError as error:
-        assert "not thin beside the radius" in str(error) or "pressed flat" in str(error)
+        reasons = "not thin beside the radius", "pressed flat"
+        assert any(reason in str(error) for reason in reasons)
         return
     assert float(curve.residual.max()) < 1e-8
     assert float(np.abs(curve.load_balance).max()) < 1e-8

@@ -18,7 +18,7 @@ from tribolab.units import positive
 
 Variant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
-_COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
+COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
 _LUMP = 1e-4  # cut-offs under which gaps are counted in one cell
 _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
@@ -126,7 +126,7 @@ def gap_distributions(
     mean = np.atleast_1d(mean_separation(values, psd, modulus, gamma))
     openings, area = _openings(values / modulus, *spectrum_arrays(psd), gamma)
     smallest = positive(cutoff, "m", "cutoff")
-    closed = mean < _COMPLETE * smallest
+    closed = mean < COMPLETE * smallest
     if np.any(closed):
         raise AnalysisError(
             f"pressure: at {values[closed].min():.4g} Pa the contact is complete, its mean "
