@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
-from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, tail
+from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
-from tribolab.surface.moments import cumulative_at, spectrum_arrays
+from tribolab.surface.moments import cumulative_at
 from tribolab.units import positive
 
 Variant = Literal["flow", "plain"]
@@ -124,7 +124,7 @@ def gap_distributions(
             f"{np.min(values):g} Pa"
         )
     mean = np.atleast_1d(mean_separation(values, psd, modulus, gamma))
-    openings, area = _openings(values / modulus, *spectrum_arrays(psd), gamma)
+    openings, area = _openings(values / modulus, *rough_band(psd), gamma)
     smallest = positive(cutoff, "m", "cutoff")
     closed = mean < COMPLETE * smallest
     if np.any(closed):

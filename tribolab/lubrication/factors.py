@@ -13,6 +13,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import erfinv
 
 from tribolab.contact.gap import COMPLETE, gap_distributions
+from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
@@ -193,7 +194,7 @@ def flow_factors(
         )
     if rms_roughness(psd) == 0:
         raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
-    q, spectrum = spectrum_arrays(psd)
+    q, spectrum = rough_band(psd)
     smallest = positive(cutoff, "m", "cutoff")
     return replace(
         _tabulated(q.tobytes(), spectrum.tobytes(), percolation, smallest, gamma),
