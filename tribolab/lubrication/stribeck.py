@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import (
     FlowFactors,
     RoughBody,
+    check_rough_body,
     flow_factors,
     smooth_factors,
 )
@@ -66,7 +68,7 @@ def stribeck_curve(
     shear_stress: str | float,
     speed: str | ArrayLike,
     friction_factors: bool = True,
-    rough_body: RoughBody = "stationary",
+    rough_body: RoughBody | None = None,
     factors: FlowFactors | None = None,
     gamma: float = 0.45,
     cells: int = CELLS,
@@ -92,7 +94,8 @@ def stribeck_curve(
     friction_factors
         False takes phi_f = phi_fp = 1 and phi_fs = 0 in Eq. (4); flow keeps its factors.
     rough_body
-        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`.
+        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`, also that of
+        given `factors`. None is that of `factors`, or ``"stationary"`` without any.
     factors
         Factors to use instead of the effective-medium ones.
     gamma
@@ -200,7 +203,7 @@ def film_profile(
     viscosity: str | float,
     load: str | float,
     speed: str | float,
-    rough_body: RoughBody = "stationary",
+    rough_body: RoughBody | None = None,
     factors: FlowFactors | None = None,
     gamma: float = 0.45,
     cells: int = CELLS,
@@ -263,7 +266,7 @@ def _system(
     contact: LineContact,
     psd: xr.Dataset | None,
     viscosity: str | float,
-    rough_body: RoughBody,
+    rough_body: RoughBody | None,
     factors: FlowFactors | None,
     gamma: float,
     cells: int,
@@ -275,11 +278,11 @@ def _system(
     if not 0.2 <= domain <= 5:
         raise AnalysisError(f"domain: a length between 0.2 and 5 is wanted; got {domain:g}")
     if factors is None:
-        factors = (
-            smooth_factors(rough_body)
-            if psd is None
-            else flow_factors(psd, rough_body, gamma=gamma)
-        )
+        body = rough_body or "stationary"
+        factors = smooth_factors(body) if psd is None else flow_factors(psd, body, gamma=gamma)
+    elif rough_body is not None:
+        check_rough_body(rough_body)
+        factors = replace(factors, rough_body=rough_body)
     separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
     return _System(contact, psd, separation, factors, eta, cells, domain)
 
