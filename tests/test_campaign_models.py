@@ -114,6 +114,11 @@ def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
     carried = (profiles.contact_pressure + profiles.fluid_pressure).values
     for x, p in zip(profiles.x.values, carried, strict=True):  # the load, by the trapezium
         assert np.trapezoid(p, x) == pytest.approx(310.0, rel=2e-3)
+    for proof in ("residual", "load_balance", "flux_variation"):  # of every profile
+        assert profiles[proof].dims == ("sliding_speed",)
+        assert abs(profiles[proof]).max() < 1e-6
+    assert (profiles.iterations > 0).all()
+    assert profiles.attrs["cells"] == curve.attrs["cells"] == 400
     low, high = shear_stress_shift(read_netcdf(file, "uncertainty"))
     assert -0.5 < low < 0 < high < 0.5
 
@@ -137,7 +142,12 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     stress = read_netcdf(folder / record["data_file"], "fit").attrs["shear_stress_Pa"]
     table = pd.read_csv(folder / "tables/shear_stress.csv")
     assert record["fit"]["shear_stress_Pa"] == table.shear_stress_Pa[0] == stress
-    assert len(pd.read_csv(folder / "tables/stribeck_model.csv")) == 33
+    points = pd.read_csv(folder / "tables/stribeck_model.csv")
+    assert len(points) == 33
+    proof = points[["residual", "load_balance", "flux_variation"]]
+    assert (proof.abs() < 1e-6).all(axis=None)
+    assert (points.iterations > 0).all()
+    assert (points.cells == 400).all()
     kinds = [figure["kind"] for figure in report["model_figures"]]
     assert kinds == ["curve", "shear_stress", "effect", "factors", "profiles", "sensitivity"]
     page = html.unescape((folder / "report.html").read_text("utf-8"))

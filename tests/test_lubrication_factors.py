@@ -195,3 +195,11 @@ def test_the_table_by_name_carries_units_and_what_it_was_made_with():
 def test_what_has_no_factors_is_refused(call, error, words):
     with pytest.raises(error, match=words):
         call()
+
+
+def test_a_roughness_below_what_the_cut_off_resolves_is_refused_with_a_cure():
+    psd = reference_psd("Sb-S")
+    with pytest.raises(AnalysisError, match="cut-off of 1e-09 m cannot resolve.*psd=None"):
+        flow_factors(psd * (1e-10 / rms_roughness(psd)) ** 2)
+    with pytest.raises(AnalysisError, match="cannot resolve"):
+        flow_factors(psd, cutoff="1 mm")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from contact_cases import CONTACT, E_STAR, SURFACES, properties, reference_psd
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tribolab.contact.geometry import LineContact
@@ -34,7 +34,7 @@ def test_the_load_is_carried_and_shared_as_eq_5_says(name, speed):
     cells = np.gradient(found.x.values)  # not the solver's own widths
     carried = (found.pressure.values * cells).sum()
     assert carried == pytest.approx(310.0, rel=2e-3)
-    assert abs(found.attrs["load_balance"]) < 1e-8
+    assert abs(float(found.load_balance)) < 1e-8
     np.testing.assert_array_equal(
         found.pressure.values, found.contact_pressure.values + found.fluid_pressure.values
     )
@@ -42,7 +42,7 @@ def test_the_load_is_carried_and_shared_as_eq_5_says(name, speed):
     np.testing.assert_allclose(
         found.contact_pressure, table.pressure(found.separation.values), rtol=1e-12, atol=1e-200
     )
-    assert found.attrs["residual"] < 1e-9
+    assert float(found.residual) < 1e-9
 
 
 @pytest.mark.parametrize(("name", "speed"), CASES)
@@ -50,7 +50,7 @@ def test_the_flux_of_eq_3_is_constant_over_the_full_film(name, speed):
     """Taken from the printed profile alone, with phi_p and phi_s of the printed table."""
     found = profile(name, speed)
     factors = flow_factors(reference_psd(name))
-    full = np.flatnonzero(found.x.values < found.attrs["cavity_start_m"])
+    full = np.flatnonzero(found.x.values < float(found.cavity_start))
     x, u, p = (found[key].values for key in ("x", "separation", "fluid_pressure"))
     middle = (u[1:] + u[:-1]) / 2
     at = factors.at(middle)
@@ -59,23 +59,23 @@ def test_the_flux_of_eq_3_is_constant_over_the_full_film(name, speed):
         middle + factors.rms_roughness * at.phi_s
     )
     inside = slice(full[0], full[-1])
-    size = np.maximum(np.abs(found.attrs["flux"]), speed / 2 * middle[inside])
-    assert np.max(np.abs(flux[inside] - found.attrs["flux"]) / size) < 1e-6
-    assert found.attrs["flux_variation"] < 1e-6
+    size = np.maximum(np.abs(float(found.flux)), speed / 2 * middle[inside])
+    assert np.max(np.abs(flux[inside] - float(found.flux)) / size) < 1e-6
+    assert float(found.flux_variation) < 1e-6
 
 
 @pytest.mark.parametrize(("name", "speed"), CASES)
 def test_no_fluid_pulls_and_the_cavity_opens_towards_the_outlet(name, speed):
     found = profile(name, speed)
     p, u = found.fluid_pressure.values, found.separation.values
-    cavity = found.x.values >= found.attrs["cavity_start_m"]
+    cavity = found.x.values >= float(found.cavity_start)
     assert np.all(p >= 0)
     assert np.all(p[cavity] == 0)
     assert np.all(p[~cavity] > 0)
     factors = flow_factors(reference_psd(name))
     entrained = speed / 2 * (u + factors.rms_roughness * factors.at(u).phi_s)
     assert np.all(np.diff(entrained[cavity]) > 0)
-    assert entrained[cavity][0] >= found.attrs["flux"] * (1 - 1e-2)
+    assert entrained[cavity][0] >= float(found.flux) * (1 - 1e-2)
 
 
 @pytest.mark.parametrize("friction_factors", [True, False])
@@ -89,8 +89,8 @@ def test_friction_is_eq_4_integrated_over_the_printed_profile(name, speed, frict
     one = xr.ones_like(found.separation)
     shear = phi.shear_stress_factor + phi.shear_stress_correction if friction_factors else one
     dragged = phi.pressure_stress_factor if friction_factors else one
-    cavity = x >= found.attrs["cavity_start_m"]
-    covered = np.where(cavity, np.minimum(1, 2 * found.attrs["flux"] / speed / u), 1)
+    cavity = x >= float(found.cavity_start)
+    covered = np.where(cavity, np.minimum(1, 2 * float(found.flux) / speed / u), 1)
     couette = (shear.values * 1.4 * speed / u * covered * cells).sum() / 310
     # the flat slides to +x: where the fluid's pressure rises along x it is held back
     pressure = np.trapezoid(dragged.values * u / 2, p) / 310
@@ -249,16 +249,22 @@ def test_longer_domains_converge_and_matter_only_where_films_are_thick():
 @pytest.mark.slow
 @settings(properties, max_examples=8)
 @given(
-    modulus=st.floats(5.5, 9),
+    modulus=st.floats(5, 9),
     viscosity=st.floats(-3, 2),
     load=st.floats(-1.47, 1.47),
-    roughness=st.floats(-7, -4.3),
+    roughness=st.floats(-8, -4.3),
     name=st.sampled_from(SURFACES),
+    similar=st.booleans(),
 )
-def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, name):
+@example(6.2, 0.1, 0.0, -8.0, "Sb-S", False)  # heights near the cut-off of gaps
+@example(5.0, 0.1, 0.0, -8.0, "Sb-S", True)
+def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, name, similar):
     psd, contact = reference_psd(name), LineContact(0.07, 0.1, 10**modulus, 0.5)
     factor = 10**roughness / flow_factors(psd).rms_roughness
-    psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
+    if similar:
+        psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
+    else:  # the same waves, of another height
+        psd = psd * factor**2
     try:
         curve = stribeck_curve(
             contact,
@@ -270,7 +276,8 @@ def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, nam
             cells=200,
         )
     except AnalysisError as error:
-        assert "not thin beside the radius" in str(error) or "pressed flat" in str(error)
+        reasons = "not thin beside the radius", "pressed flat"
+        assert any(reason in str(error) for reason in reasons)
         return
     assert float(curve.residual.max()) < 1e-8
     assert float(np.abs(curve.load_balance).max()) < 1e-8

@@ -3,8 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from contact_cases import CONTACT, reference_psd
 
+from tribolab.compare.model_uncertainty import model_uncertainty
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.errors import AnalysisError, UnitError
 from tribolab.lubrication.patir_cheng import patir_cheng
@@ -164,7 +166,7 @@ def test_a_negative_speed_is_the_mirror_image():
     ahead, back = (film_profile(CONTACT, psd, 1.4, 310.0, v) for v in (1e-4, -1e-4))
     np.testing.assert_array_equal(back.x, -ahead.x[::-1])
     np.testing.assert_array_equal(back.separation, ahead.separation[::-1])
-    assert back.attrs["flux"] == -ahead.attrs["flux"]
+    assert float(back.flux) == -float(ahead.flux)
     assert np.all(np.diff(back.x.values) > 0)
 
 
@@ -221,3 +223,62 @@ ARGUMENTS = {
 def test_what_has_no_curve_is_refused_with_the_way_out(change, error, words):
     with pytest.raises(error, match=words):
         stribeck_curve(CONTACT, **ARGUMENTS | change)
+
+
+@pytest.mark.parametrize("side", ["before", "behind"])
+def test_zeros_beside_the_roughness_change_nothing(side):
+    """Beyond the one next to it, which the moments have as the foot of a line."""
+    psd = reference_psd("Sb-S")
+    q, c = psd.wavenumber.values, psd.psd_2d.values
+    if side == "before":
+        beside, zeros = np.insert(q, 0, q[0] / 1.01), np.insert(c, 0, 0.0)
+        far = np.concatenate([q[0] / [1000, 100, 10, 2], beside]), np.append([0.0] * 4, zeros)
+    else:
+        beside, zeros = np.append(q, q[-1] * 1.01), np.append(c, 0.0)
+        far = np.append(beside, q[-1] * np.array([2, 10, 100, 1000])), np.append(zeros, [0.0] * 4)
+    given = {"viscosity": 1.4, "load": 310.0, "shear_stress": "0.8 MPa", "speed": [1e-9, 1e-3]}
+    curves = [
+        stribeck_curve(CONTACT, spectrum(*one), **given) for one in ((beside, zeros), far, (q, c))
+    ]
+    np.testing.assert_array_equal(curves[0].friction_coefficient, curves[1].friction_coefficient)
+    np.testing.assert_allclose(
+        curves[2].friction_coefficient, curves[1].friction_coefficient, rtol=1e-3
+    )
+
+
+def test_a_band_is_found_for_a_spectrum_that_ends_with_zeros():
+    psd = reference_psd("Sb-S")
+    q, c = psd.wavenumber.values, psd.psd_2d.values
+    far = spectrum(np.append(q, q[-1] * np.array([1.01, 10, 100])), np.append(c, [0.0] * 3))
+    given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 8e5, "speed": [1e-3]}
+    found = model_uncertainty(CONTACT, far, **given, measured_to=1e6, cells=100)
+    assert {"Hurst exponent", "spectrum at short waves"} <= set(found.variation.values.tolist())
+    assert np.isfinite(found.largest_change).all()
+    assert float(found.friction_coefficient_low[0]) < float(found.friction_coefficient_high[0])
+
+
+def spectrum(q, c):
+    return xr.Dataset({"psd_2d": ("wavenumber", c)}, {"wavenumber": q})
+
+
+def test_the_rough_body_holds_for_given_factors_too():
+    h = 1e-6
+    given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0, "speed": [1e-3]}
+    psd = reference_psd("Sb-S")
+    still, moving, left, turned = (
+        stribeck_curve(CONTACT, psd, **given, **body, factors=factors)
+        for body, factors in [
+            ({}, patir_cheng(h)),
+            ({"rough_body": "moving"}, patir_cheng(h)),
+            ({}, patir_cheng(h, "moving")),
+            ({"rough_body": "stationary"}, patir_cheng(h, "moving")),
+        ]
+    )
+    assert still.rough_body == turned.rough_body == "stationary"
+    assert moving.rough_body == left.rough_body == "moving"
+    # less is entrained where the film is thin, so that more pressure builds up before it
+    assert float(still.minimum_separation[0]) > 1.01 * float(moving.minimum_separation[0])
+    np.testing.assert_array_equal(moving.minimum_separation, left.minimum_separation)
+    np.testing.assert_array_equal(still.minimum_separation, turned.minimum_separation)
+    with pytest.raises(AnalysisError, match="rough_body: 'movin' is none.*moving"):
+        film_profile(CONTACT, psd, 1.4, 310.0, 1e-3, "movin", factors=patir_cheng(h))

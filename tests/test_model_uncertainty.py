@@ -9,7 +9,7 @@ from tribolab.errors import AnalysisError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.surface.extrapolation import extrapolate
-from tribolab.surface.moments import band
+from tribolab.surface.moments import band, rms_roughness
 
 SPEEDS = np.array([1e-9, 1e-5, 1e-4, 1e-3, 1e-1])
 GIVEN = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.84e6, "speed": SPEEDS}
@@ -160,3 +160,11 @@ def test_what_has_no_band_is_refused(change, words):
     given = {**GIVEN, "speed": [1e-4], **change}
     with pytest.raises(AnalysisError, match=words):
         model_uncertainty(CONTACT, reference_psd("Sb-S"), **given)
+
+
+def test_a_band_is_found_for_a_roughness_near_the_cut_off_of_gaps():
+    psd = reference_psd("Sb-S")
+    fine = psd * (12e-9 / rms_roughness(psd)) ** 2
+    found = model_uncertainty(CONTACT, fine, **(GIVEN | {"speed": [1e-9, 1e-3]}))
+    assert "cut-off" in " ".join(found.variation.values.tolist())
+    assert np.all(found.friction_coefficient_low < found.friction_coefficient_high)

@@ -184,6 +184,11 @@ def test_the_runs_test_counts_all_orders():
     assert runs_p_value(np.array([0.3, 2.0])) == 1.0
 
 
+def measured_at(slowest, fastest):
+    """Friction at speeds where contact areas are so small that their squares are 0."""
+    return measured(0.02).assign_coords(sliding_speed=np.geomspace(slowest, fastest, SPEEDS.size))
+
+
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
@@ -192,12 +197,16 @@ def test_the_runs_test_counts_all_orders():
         (lambda: fit(measured(0.02), speed_range=("1 N", "2 N")), UnitError, "speed_range"),
         (lambda: fit(measured(0.02), free=("viscsity",)), AnalysisError, "mean 'viscosity'"),
         (lambda: fit(measured(0.02), area_enhancement=0.0), AnalysisError, "area_enhancement"),
+        (lambda: fit(measured(0.02), area_enhancement_error=-1), AnalysisError, "not negative"),
         (lambda: fit(-1 * measured(0.02)), AnalysisError, "negative at"),
         (
             lambda: fit_shear_stress(measured(0.02), CONTACT, None, 1.4, 310.0),
             AnalysisError,
             "do the bodies touch",
         ),
+        (lambda: fit(measured_at(0.1, 1)), AnalysisError, "do the bodies touch"),
+        (lambda: fit(measured_at(1, 10)), AnalysisError, "do the bodies touch"),
+        (lambda: fit(measured_at(1, 10), free=("viscosity",)), AnalysisError, "bodies touch"),
     ],
 )
 def test_what_cannot_be_fitted_is_refused(call, error, words):

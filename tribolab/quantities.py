@@ -152,6 +152,8 @@ _ROWS = [
     ("load_balance", "", "1", "relative error of the load"),
     ("flux_variation", "", "1", "relative spread of the flux over the full film"),
     ("iterations", "", "1", "steps of Newton's method"),
+    ("flux", "J", "m2/s", "volume of fluid that passes per time and length"),
+    ("cavity_start", "x_c", "m", "where the film ruptures"),
     # comparison
     ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
     ("used", "", "1", "1 where the point was fitted, else 0"),

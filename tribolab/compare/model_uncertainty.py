@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from tribolab.compare.variations import Base, Skipped, Variation, variations
 from tribolab.contact.geometry import LineContact
+from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import CELLS, stribeck_curve
@@ -105,6 +106,9 @@ def model_uncertainty(
     """
     known_to = None if measured_to is None else positive(measured_to, "1/m", "measured_to")
     error = None if shear_stress_error is None else _error_of_stress(shear_stress_error)
+    if psd is not None:  # where nothing is rough there is nothing to vary
+        rough = rough_band(psd)[0]
+        psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
     base = Base(psd, rough_body, friction_factors, gamma, known_to)
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     given = {

@@ -21,6 +21,7 @@ from tribolab.units import positive, to_si
 FREE = ("viscosity", "youngs_modulus")
 _LIKELY = 0.01  # probability of chi-square above which a range of speeds counts as described
 _FEWEST = 4  # speeds in such a range
+_ATOM = 1e-19  # m2, contact area under which the bodies do not touch
 _STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
 
 
@@ -196,6 +197,11 @@ def fit_shear_stress(
     eta = positive(viscosity, "Pa s", "viscosity")
     force = positive(load, "N/m", "load")
     enhancement = positive(area_enhancement, "1", "area_enhancement")
+    if not 0 <= area_enhancement_error < np.inf:
+        raise AnalysisError(
+            "area_enhancement_error: a standard error, finite and not negative, is wanted; got "
+            f"{area_enhancement_error:g}"
+        )
     speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
 
     def computed(extra: np.ndarray) -> xr.Dataset:
@@ -207,13 +213,17 @@ def fit_shear_stress(
         return stribeck_curve(body, psd, given.get("viscosity", eta), force, stress, speed, **model)
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
-    best = _profiled(computed, start, mu[used], error[used], used) if free else start
-    found = computed(best)
-    fluid, area = _parts(found)
-    if not np.any(area[used] > 0):
+    found, best = computed(start), start
+    least = _ATOM / (force * contact.length)
+    if not np.any(_parts(found)[1][used] > least):
         raise AnalysisError(
             "fit_shear_stress: at none of these speeds do the bodies touch; take lower speeds"
         )
+    if free:
+        best = _profiled(computed, start, mu[used], error[used], used)
+        found = computed(best)
+    fluid, area = _parts(found)
+    area = np.where(area > least, area, 0.0)
     stress = _regression(mu[used], fluid[used], area[used], error[used])
     residual = mu - fluid - stress * area
     freedom = int(used.sum()) - 1 - len(free)

@@ -134,7 +134,7 @@ def short_waves(base: Base) -> Variation | Skipped:
     cut = max(last, q[-1] / _COARSER)
     atom = np.pi / _ATOM
     longer = None
-    if q[-1] < atom and c[-1] > 0:
+    if q[-1] < atom and np.all(c[-2:] > 0):
         beyond = np.geomspace(q[-1], atom, 11)[1:]
         tail = c[-1] * (beyond / q[-1]) ** (-2 * (1 + _local_exponent(q, c)))
         longer = {"psd": _spectrum(np.append(q, beyond), np.append(c, tail))}
@@ -265,7 +265,11 @@ def _measured_to(base: Base) -> float | None:
 
 
 def _local_exponent(q: np.ndarray, c: np.ndarray) -> float:
-    """Hurst exponent of the power law that the spectrum ends with."""
+    """Hurst exponent of the power law that the spectrum ends with; NaN if it is no power law."""
+    rough = np.flatnonzero(c)[-2:]
+    if rough.size < 2:
+        return np.nan
+    q, c = q[rough], c[rough]
     return float(-np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2]) / 2 - 1)
 
 

@@ -10,15 +10,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
-from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, tail
+from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
-from tribolab.surface.moments import cumulative_at, spectrum_arrays
+from tribolab.surface.moments import cumulative_at
 from tribolab.units import positive
 
 Variant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
-_COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
+COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
 _LUMP = 1e-4  # cut-offs under which gaps are counted in one cell
 _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
@@ -124,9 +124,9 @@ def gap_distributions(
             f"{np.min(values):g} Pa"
         )
     mean = np.atleast_1d(mean_separation(values, psd, modulus, gamma))
-    openings, area = _openings(values / modulus, *spectrum_arrays(psd), gamma)
+    openings, area = _openings(values / modulus, *rough_band(psd), gamma)
     smallest = positive(cutoff, "m", "cutoff")
-    closed = mean < _COMPLETE * smallest
+    closed = mean < COMPLETE * smallest
     if np.any(closed):
         raise AnalysisError(
             f"pressure: at {values[closed].min():.4g} Pa the contact is complete, its mean "

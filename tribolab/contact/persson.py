@@ -209,6 +209,20 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
     return slope, wavenumber**3 * at_wavenumber(wavenumber, q, spectrum) / slope * steps
 
 
+def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return q and C as `spectrum_arrays`, less zeros at both ends but the one next to roughness.
+
+    No moment changes, since C is linear in the bin beside a zero; what is 0/0 where nothing is
+    rough, such as the gap that opens there, is never asked for.
+    """
+    q, spectrum = spectrum_arrays(psd)
+    rough = np.flatnonzero(spectrum)
+    if rough.size == 0:
+        return q, spectrum
+    part = slice(max(rough[0] - 1, 0), rough[-1] + 2)
+    return q[part], spectrum[part]
+
+
 def tail(y: np.ndarray, gamma: float) -> np.ndarray:
     """F(y) = int_y^inf (dt/t) [gamma + 3 (1 - gamma) erf(t)^2] exp(-t^2), to 1e-8 relative."""
     spline, lowest, highest = _tail_table(float(gamma))

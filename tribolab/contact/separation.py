@@ -13,13 +13,14 @@ from tribolab.contact.persson import (
     ROOT_PI,
     Pressure,
     pressure_values,
+    rough_band,
     slope_quadrature,
     tail,
     tail_slope,
 )
 from tribolab.errors import AnalysisError
 from tribolab.quantities import like
-from tribolab.surface.moments import rms_roughness, spectrum_arrays
+from tribolab.surface.moments import rms_roughness
 from tribolab.units import positive, to_si
 
 _MORE_THAN_EPS = 1e-14
@@ -209,7 +210,7 @@ def separation_table(
     '100000.000000'
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
-    q, spectrum = spectrum_arrays(psd)
+    q, spectrum = rough_band(psd)
     slope, weight = slope_quadrature(q, spectrum)
     height = rms_roughness(psd)
     # from where the asymptote holds to 1e-6 up to where u is below 1e-6 h_rms

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.special import erfinv
 
-from tribolab.contact.gap import gap_distributions
+from tribolab.contact.gap import COMPLETE, gap_distributions
+from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
@@ -193,7 +194,7 @@ def flow_factors(
         )
     if rms_roughness(psd) == 0:
         raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
-    q, spectrum = spectrum_arrays(psd)
+    q, spectrum = rough_band(psd)
     smallest = positive(cutoff, "m", "cutoff")
     return replace(
         _tabulated(q.tobytes(), spectrum.tobytes(), percolation, smallest, gamma),
@@ -215,7 +216,15 @@ def _tabulated(
     slope = np.sqrt(cumulative(*spectrum_arrays(psd), 3)[-1])
     closing = float(pressure_of.separation(float(np.sqrt(np.pi) * slope * erfinv(percolation))))
     above = closing + height * np.geomspace(_NEAR, _FAR, _POINTS)
-    below = np.geomspace(min(_LOW * height, closing / 3), closing, _POINTS // 3)
+    # under this hundredth part of the cut-off a contact counts as complete
+    lowest = max(min(_LOW * height, closing / 3), 2 * COMPLETE * cutoff)
+    if lowest > closing / 2:
+        raise AnalysisError(
+            f"psd: with h_rms = {height:.2g} m its channels close at a mean separation of "
+            f"{closing:.2g} m, which a cut-off of {cutoff:.2g} m cannot resolve: take the surface "
+            "for smooth, psd=None, or a smaller cut-off"
+        )
+    below = np.geomspace(lowest, closing, _POINTS // 3)
     conductance, entrained, correction, inverse = _averages(
         np.concatenate([below, above]), pressure_of, psd, percolation, cutoff, gamma
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import (
     FlowFactors,
     RoughBody,
+    check_rough_body,
     flow_factors,
     smooth_factors,
 )
@@ -39,6 +41,7 @@ from tribolab.quantities import labelled, stamp
 from tribolab.units import positive, to_si
 
 CELLS = 400
+PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
 REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
     "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
@@ -65,7 +68,7 @@ def stribeck_curve(
     shear_stress: str | float,
     speed: str | ArrayLike,
     friction_factors: bool = True,
-    rough_body: RoughBody = "stationary",
+    rough_body: RoughBody | None = None,
     factors: FlowFactors | None = None,
     gamma: float = 0.45,
     cells: int = CELLS,
@@ -91,7 +94,8 @@ def stribeck_curve(
     friction_factors
         False takes phi_f = phi_fp = 1 and phi_fs = 0 in Eq. (4); flow keeps its factors.
     rough_body
-        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`.
+        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`, also that of
+        given `factors`. None is that of `factors`, or ``"stationary"`` without any.
     factors
         Factors to use instead of the effective-medium ones.
     gamma
@@ -163,17 +167,24 @@ def stribeck_curve(
     )
     return stamp(
         data,
-        viscosity_Pa_s=system.viscosity,
-        youngs_modulus_Pa=contact.youngs_modulus,
-        poisson_ratio=contact.poisson_ratio,
-        radius_m=contact.radius,
+        **_facts(system),
         friction_factors="yes" if friction_factors else "no",
-        rough_body=system.factors.rough_body,
-        factors=system.factors.model,
-        cells=cells,
-        domain=float(domain),
-        references=REFERENCE,
     )
+
+
+def _facts(system: _System) -> dict[str, str | float | int]:
+    """Attributes that say what was computed, and on which grid."""
+    return {
+        "viscosity_Pa_s": system.viscosity,
+        "youngs_modulus_Pa": system.contact.youngs_modulus,
+        "poisson_ratio": system.contact.poisson_ratio,
+        "radius_m": system.contact.radius,
+        "rough_body": system.factors.rough_body,
+        "factors": system.factors.model,
+        "cells": system.cells,
+        "domain": float(system.domain),
+        "references": REFERENCE,
+    }
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
@@ -192,7 +203,7 @@ def film_profile(
     viscosity: str | float,
     load: str | float,
     speed: str | float,
-    rough_body: RoughBody = "stationary",
+    rough_body: RoughBody | None = None,
     factors: FlowFactors | None = None,
     gamma: float = 0.45,
     cells: int = CELLS,
@@ -210,8 +221,9 @@ def film_profile(
     xarray.Dataset
         Over ``x`` [m], the flat sliding to +x (at a negative speed to -x): ``separation`` [m],
         ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
-        ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``. The
-        attributes hold the proof of the point and the ``flux`` [m2/s].
+        ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``, the
+        ``flux`` [m2/s] and ``cavity_start`` [m], and the proof of the point: ``residual``,
+        ``load_balance``, ``flux_variation``, ``iterations``. Grid and system are attributes.
 
     Examples
     --------
@@ -236,30 +248,25 @@ def film_profile(
         "contact_area_ratio": _area(system, solid),
     }
     x = side * problem.mesh.x * problem.half_width
+    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
+    # variables, since several speeds that are put together lose attributes that differ
+    scalars = {
+        "flux": float(side * fields.flux[0] * unit),
+        "cavity_start": float(x[min(fields.front, x.size - 1)]),
+        **{name: getattr(solution, name) for name in PROOF},
+    }
     data = xr.Dataset(
-        {name: ("x", value[::side]) for name, value in values.items()},
+        {name: ("x", value[::side]) for name, value in values.items()} | scalars,
         coords={"x": x[::side], "sliding_speed": v, "load": force},
     )
-    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
-    return stamp(
-        data,
-        flux=float(side * fields.flux[0] * unit),
-        cavity_start_m=float(x[min(fields.front, x.size - 1)]),
-        residual=solution.residual,
-        load_balance=solution.load_balance,
-        flux_variation=solution.flux_variation,
-        iterations=solution.iterations,
-        rough_body=system.factors.rough_body,
-        factors=system.factors.model,
-        references=REFERENCE,
-    )
+    return stamp(data, **_facts(system))
 
 
 def _system(
     contact: LineContact,
     psd: xr.Dataset | None,
     viscosity: str | float,
-    rough_body: RoughBody,
+    rough_body: RoughBody | None,
     factors: FlowFactors | None,
     gamma: float,
     cells: int,
@@ -271,11 +278,11 @@ def _system(
     if not 0.2 <= domain <= 5:
         raise AnalysisError(f"domain: a length between 0.2 and 5 is wanted; got {domain:g}")
     if factors is None:
-        factors = (
-            smooth_factors(rough_body)
-            if psd is None
-            else flow_factors(psd, rough_body, gamma=gamma)
-        )
+        body = rough_body or "stationary"
+        factors = smooth_factors(body) if psd is None else flow_factors(psd, body, gamma=gamma)
+    elif rough_body is not None:
+        check_rough_body(rough_body)
+        factors = replace(factors, rough_body=rough_body)
     separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
     return _System(contact, psd, separation, factors, eta, cells, domain)
 
@@ -363,10 +370,7 @@ def _curve(
         "minimum_separation": film.min(axis=1) * problem.gap,
         "central_separation": central * problem.gap,
         "solid_load_share": solid @ problem.mesh.width / problem.load,
-        "residual": np.array([solution.residual for solution in solutions]),
-        "load_balance": np.array([solution.load_balance for solution in solutions]),
-        "flux_variation": np.array([solution.flux_variation for solution in solutions]),
-        "iterations": np.array([solution.iterations for solution in solutions]),
+        **{name: np.array([getattr(one, name) for one in solutions]) for name in PROOF},
     }
     return {name: values[back] for name, values in table.items()}
 

@@ -43,6 +43,7 @@ CURVE = [
     *("sliding_speed_m_s", "friction_coefficient", "friction_coefficient_couette"),
     *("friction_coefficient_pressure", "friction_coefficient_solid", "friction_without_factors"),
     *("minimum_separation_m", "central_separation_m", "contact_area_ratio", "solid_load_share"),
+    *("residual", "load_balance", "flux_variation", "iterations", "cells"),
 ]
 SENSITIVITY = [
     "curve",
@@ -85,7 +86,8 @@ def model_rows(outcome: Outcome, model: ModelOutcome) -> ModelRows:
 
     path = Path(outcome.folder) / model.data_file
     groups = read_groups(path, model.parts)
-    rows = ModelRows(model, None, frame(groups["curve"], "sliding_speed"))
+    curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
+    rows = ModelRows(model, None, curve)
     if "fit" in groups:
         attrs = groups["fit"].attrs
         rows.fit = {key: attrs[key] for key in _FITTED}
