@@ -144,7 +144,7 @@ def test_the_last_digits_of_a_gauge_are_roughness():
     gauge = profiles(1e-3 + digits)
     assert psd_1d(gauge, form="none").attrs["mean_square_height_m2"] > 0
     found = roughness_parameters(gauge, lambda_c=None)
-    assert float(found.Rq) == pytest.approx(5e-11, rel=1e-3)
+    assert found.Rq.item() == pytest.approx(5e-11, rel=1e-3)
 
 
 def test_a_perfect_plane_has_no_spectrum():

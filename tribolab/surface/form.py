@@ -84,8 +84,8 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     xarray.Dataset
         The scans without form, exactly zero where only rounding is left, and for each scan what
         was removed: ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan
-        (positive: hollow). Dropouts are left as they are and do not count in the fit. Attributes ``form_removed``, ``form_order``,
-        ``form_radius_m`` (mean radius, for a circle).
+        (positive: hollow). Dropouts are left as they are and do not count in the fit. Attributes
+        ``form_removed``, ``form_order``, ``form_radius_m`` (mean radius, for a circle).
 
     Raises
     ------

@@ -97,6 +97,7 @@ def roughness_parameters(
     deviation = parts if sampling_lengths and cut is not None else rows[..., None, :]
     if cut is None:  # else the filter's mean line is the zero of the profile
         deviation = deviation - deviation.mean(-1, keepdims=True)
+    slope = _slope(rows, pitch)
     given = scans.height.transpose(..., "x").values.reshape(-1, points)
     level = level_rows(given) | rounding_only(deviation.reshape(len(given), -1), given)
     refuse_level("roughness_parameters", scans, level)
@@ -113,7 +114,7 @@ def roughness_parameters(
         "Rz": np.ptp(parts, axis=-1).mean(-1),
         "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
         "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
-        "Rdq": np.sqrt(np.mean(_slope(rows, pitch) ** 2, -1)),
+        "Rdq": np.sqrt(np.mean(slope**2, -1)),
     }
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     applied = {"lambda_c_m": cut, "lambda_s_m": fine}
