@@ -21,6 +21,7 @@ from markupsafe import Markup
 from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
 from tribolab.report.sections import Section, shown_sections
+from tribolab.report.sliding_figures import traces_stems
 from tribolab.report.traces import as_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
@@ -192,6 +193,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "speeds": wording.speeds,
         "judge": judgement.judge,
         "trend_texts": judgement.trend_texts,
+        "traces_stems": traces_stems,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }
