@@ -25,7 +25,8 @@ from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.report.demo import DemoComparison
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.model_records import ModelRows
-from tribolab.report.model_words import is_described, judgement
+from tribolab.report.model_words import is_described, judgement, stress_interval
+from tribolab.report.page import note_of
 from tribolab.report.results import write_report
 from tribolab.report.terminal import truth_lines
 from tribolab.report.truth import Comparison
@@ -311,9 +312,33 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     planned = {task.name: draw_model(task) for task in plan_model_figures(outcome, rows)}
     assert set(planned) == {"m31", "m91", "model_surface_1"}  # and no figure of shear stresses
     assert "31 N: no shear stress describes this curve" in planned["m31"]["caption"]
+    assert "dotted: the model's viscous part" in planned["m31"]["caption"]
+    assert "full:" not in planned["m31"]["caption"]
     assert "no model at 31 N and 91 N" in planned["model_surface_1"]["caption"]
     loads = pd.read_csv(tmp_path / planned["model_surface_1"]["data"])
     assert not loads.series.str.startswith("model").any()
+
+
+def test_no_bar_of_a_shear_stress_goes_below_zero_and_the_numbers_are_kept():
+    table = pd.DataFrame({"surface": "Smooth", "normal_force_N": [31.0, 91.0]})
+    for name, values in {
+        "shear_stress_Pa": [0.12e6, 0.3e6],
+        "shear_stress_low_Pa": [-0.092e6, 0.2e6],
+        "shear_stress_high_Pa": [0.335e6, 0.4e6],
+        "corrected_shear_stress_Pa": [0.1e6, 0.25e6],
+        "corrected_shear_stress_error_Pa": [0.1e6, 0.05e6],
+    }.items():
+        table[name] = values
+    figure = tribolab.plot.shear_stress(table)
+    bars = [
+        box for one in figure.axes[0].containers for lines in one[2] for box in lines.get_segments()
+    ]
+    assert min(end for bar in bars for _, end in bar) == pytest.approx(0.0, abs=1e-12)
+    assert max(end for bar in bars for _, end in bar) == pytest.approx(0.4)
+    kept = tribolab.plot.figure_data(figure).shear_stress_low_Pa
+    assert kept.tolist() == [-0.092e6, 0.2e6]
+    assert stress_interval(-0.092e6, 0.335e6) == "up to 0.335: not told from 0"
+    assert note_of(["31 N: no line. Dots.", "91 N. Dots and lines."]) == "Dots and lines."
 
 
 def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):

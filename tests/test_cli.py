@@ -9,13 +9,17 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pandas as pd
 import pytest
 from campaigns import copied, fingerprint, simulated
+from reporting import made_outcome
 
 import tribolab
 from tribolab import cli
+from tribolab.campaign.config import Qc
+from tribolab.campaign.outcome import ModelOutcome
 from tribolab.report.progress import progress_bars
 
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
@@ -271,3 +275,20 @@ def test_ctrl_c_leaves_the_old_results_and_nothing_else(campaign):
     assert said == "tribolab: interrupted; results of before are as they were\n"
     assert fingerprint(results) == before
     assert list(campaign.parent.glob(".results.tribolab-*")) == []
+
+
+@pytest.mark.parametrize(
+    ("status", "fail_on", "code"),
+    [("failed", "fail", 1), ("failed", "suspect", 1), ("failed", "never", 0)]
+    + [("skipped", "suspect", 0), ("done", "suspect", 0)],
+)
+def test_a_model_that_failed_is_named_and_gives_exit_code_1(
+    tmp_path, capsys, status, fail_on, code
+):
+    made = made_outcome(tmp_path, [("one", "Sb-R", "glycerol", 31.0, 0.8)])
+    labels = {"curve": "curve0", "surface": "Sb-R", "medium": "glycerol", "normal_force": 31.0}
+    model = ModelOutcome("model_curve0", status=status, reason="no film was found", **labels)
+    campaign = made.campaign.model_copy(update={"qc": Qc(fail_on=fail_on)})
+    assert cli._show(replace(made, models=(model,), campaign=campaign), debug=False) == code
+    said = "tribolab: no model of Sb-R in glycerol at 31 N: no film was found"
+    assert (said in capsys.readouterr().err) == (status == "failed")

@@ -10,7 +10,9 @@ from tribolab.surface import self_affine
 from tribolab.surface.abel import Annuli
 from tribolab.surface.annuli import join
 from tribolab.surface.extrapolation import extrapolate
+from tribolab.surface.form import remove_form
 from tribolab.surface.psd import psd_1d, psd_2d
+from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.synthesis import synthesise_profiles
 
 PITCH = 0.5e-6
@@ -104,9 +106,61 @@ def test_what_has_no_spectrum_says_why(scans, words):
         psd_2d(scans)
 
 
+X = PITCH * np.arange(20_001)
+SMOOTH = {
+    "equal": np.full(X.size, 1e-6),
+    "tilted": 1e-6 + 0.01 * X,
+    "equal, far off": np.full(X.size, -3.7e-3),
+}
+
+
+@pytest.mark.parametrize("form", ["auto", "none", "tilt"])
+@pytest.mark.parametrize("kind", SMOOTH)
+def test_rounding_is_not_taken_for_roughness(kind, form):
+    scan = profiles(SMOOTH[kind])
+    for spectrum in (psd_1d, psd_2d):
+        with pytest.raises(AnalysisError, match="all heights are equal.*leave that scan out"):
+            spectrum(scan, form=form)
+    with pytest.raises(AnalysisError, match="roughness_parameters: .*but for rounding"):
+        roughness_parameters(remove_form(scan, "circle"))
+    for cut in ("auto", None):
+        with pytest.raises(AnalysisError, match="roughness_parameters: .*but for rounding"):
+            roughness_parameters(scan, lambda_c=cut)
+
+
+def test_the_one_level_scan_among_rough_ones_is_named():
+    scans = rough(4096)
+    scans.height[1] = 1e-6
+    with pytest.raises(AnalysisError, match="psd_1d: scan 2: all heights are equal"):
+        psd_1d(scans, form="none")
+    named = scans.assign(file=("scan", ["a.csv", "b.csv", "c.csv"]))
+    with pytest.raises(AnalysisError, match=r"psd_1d: b\.csv: all heights"):
+        psd_1d(named)
+
+
+def test_the_last_digits_of_a_gauge_are_roughness():
+    # 24 bits over the range: 1e-7 of the largest height, and no more than that
+    digits = np.random.default_rng(1).integers(0, 2, X.size) * 1e-10
+    gauge = profiles(1e-3 + digits)
+    assert psd_1d(gauge, form="none").attrs["mean_square_height_m2"] > 0
+    found = roughness_parameters(gauge, lambda_c=None)
+    assert found.Rq.item() == pytest.approx(5e-11, rel=1e-3)
+
+
+def test_a_perfect_plane_has_no_spectrum():
+    plane = 1e-6 + np.add.outer(0.3 * X[:200], 0.1 * X[:200])
+    for form in ("auto", "none", "tilt"):
+        scan = xr.Dataset({"height": (("y", "x"), plane)}, {"y": X[:200], "x": X[:200]})
+        with pytest.raises(AnalysisError, match="psd_2d: all heights are equal.*plane"):
+            psd_2d(scan, form=form)
+    with pytest.raises(AnalysisError, match=r"psd_2d\(\) takes its spectrum"):
+        psd_1d(scan)
+
+
 @pytest.mark.parametrize(
     ("height", "words"),
     [
+        (np.full((64, 64), 1e-6), "all heights are equal"),
         (np.zeros((64, 64)), "all heights are equal"),
         (np.full((64, 64), np.nan), "too\\s+few"),
         (np.where(np.eye(64) > 0, np.nan, np.arange(64.0)), "fill_dropouts"),

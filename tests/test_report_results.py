@@ -344,6 +344,18 @@ def test_drifting_and_backward_friction_is_said(tmp_path):
     assert page.count("%, significant</td>") == 2 and ">Steady</th>" not in page
 
 
+def test_evidence_leads_to_the_traces_of_its_own_surface(tmp_path):
+    runs = [("a", "Sand S", "dry", 31.0, 0.8), ("b", "sand/s", "dry", 31.0, 0.6)]
+    write_report(made := made_outcome(tmp_path, runs, speeds=[1e-5, 1e-3]))
+    page = (made.folder / "report.html").read_text(encoding="utf-8")
+    report = json.loads((made.folder / "report.json").read_text())
+    drawn = [Path(one["file"]).stem for one in report["sliding_figures"]]
+    for number, stem in ((1, "slip_traces_sand_s"), (2, "slip_traces_sand_s_2")):
+        assert stem in drawn and f'id="{stem}"' in page
+        section = page.split(f'<h3 id="mode-{number}">')[1].split("<h3", 1)[0]
+        assert f'href="#{stem}"' in section
+
+
 def test_a_broken_data_file_costs_only_its_own_place(tmp_path):
     made = made_outcome(
         tmp_path / "two",

@@ -194,6 +194,30 @@ def test_roughness_of_less_than_two_digits_is_quantisation():
     assert status(check_scans(fine), "form") == "pass"
 
 
+@pytest.mark.parametrize(
+    "height",
+    [np.full(4096, 1e-6), 1e-6 + 1e-8 * np.arange(4096), np.zeros(4096)],
+    ids=["equal", "tilted", "zero"],
+)
+def test_a_scan_without_roughness_fails(height):
+    found = check_scans(made(height))
+    assert status(found, "level") == "fail"
+    assert "rounding alone" in found.table.query("check == 'level'").message.item()
+    plane = height[:40] + height[:40, None]
+    axis = 1e-6 * np.arange(40)
+    data = xr.Dataset({"height": (("y", "x"), plane)}, {"y": axis, "x": axis})
+    assert status(check_scans(data), "level") == "fail"
+
+
+def test_a_map_with_level_rows_is_no_level_map():
+    steps = np.repeat(1e-9 * np.array([0, 1, 1, 0, 2, 1, 0, 0])[:, None], 512, axis=1)
+    data = xr.Dataset(
+        {"height": (("y", "x"), steps)}, {"x": 1e-6 * np.arange(512), "y": 1e-6 * np.arange(8)}
+    )
+    assert status(check_scans(data), "level") == "pass"
+    assert status(check_scans(made(np.round(rough(), 9))), "level") == "pass"
+
+
 # ---- odd input
 
 

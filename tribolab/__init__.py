@@ -36,6 +36,7 @@ _PUBLIC = {
     "read_scans": "tribolab.io.scans",
     "read_results": "tribolab.io.scan_results",
     "remove_form": "tribolab.surface.form",
+    "fill_dropouts": "tribolab.surface.form",
     "psd_1d": "tribolab.surface.psd",
     "psd_2d": "tribolab.surface.psd",
     "extrapolate": "tribolab.surface.extrapolation",
@@ -86,6 +87,7 @@ __all__ = [
     "read_scans",
     "read_results",
     "remove_form",
+    "fill_dropouts",
     "psd_1d",
     "psd_2d",
     "extrapolate",
@@ -153,7 +155,7 @@ if TYPE_CHECKING:
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
     from tribolab.surface.extrapolation import extrapolate
-    from tribolab.surface.form import remove_form
+    from tribolab.surface.form import fill_dropouts, remove_form
     from tribolab.surface.psd import psd_1d, psd_2d
     from tribolab.surface.roughness import roughness_parameters, spectral_roughness
 

@@ -386,6 +386,8 @@ def _show(outcome: Outcome, debug: bool) -> int:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))
+    if outcome.failed_models:
+        statuses.add("fail")  # as the findings call it
     return exit_code(statuses, outcome.campaign.qc.fail_on)
 
 

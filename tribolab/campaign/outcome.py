@@ -221,6 +221,11 @@ class Outcome:
         return tuple(run for run in self.runs if not run.done)
 
     @property
+    def failed_models(self) -> tuple[ModelOutcome, ...]:
+        """The models that should be there and are not; of one skipped too little is known."""
+        return tuple(model for model in self.models if model.status == "failed")
+
+    @property
     def segments(self) -> int:
         """Number of segments found in all runs."""
         return sum(run.segments for run in self.runs)

@@ -210,7 +210,8 @@ def shear_stress(
     -------
     matplotlib.figure.Figure
         Open symbols: effective, for the area without adhesion, with the 95 % interval. Filled:
-        corrected for adhesion, with 1.96 standard errors.
+        corrected for adhesion, with 1.96 standard errors. Bars end at zero, since no shear stress
+        is negative: one that reaches it is not told from zero. The numbers kept are not cut.
 
     Examples
     --------
@@ -237,9 +238,10 @@ def shear_stress(
             rows = table[table["surface"] == name].sort_values("normal_force_N")
             load, stress = rows["normal_force_N"].to_numpy(), rows["shear_stress_Pa"].to_numpy()
             ends = rows[["shear_stress_low_Pa", "shear_stress_high_Pa"]].to_numpy().T
-            bars = np.abs(ends - stress)
+            bars = _above_zero(stress, np.abs(ends - stress))
             corrected = rows["corrected_shear_stress_Pa"].to_numpy()
             error = 1.96 * rows["corrected_shear_stress_error_Pa"].to_numpy()
+            error = _above_zero(corrected, np.stack([error, error]))
             for y, bar, face, line in (
                 (stress, bars, "white", "--"),
                 (corrected, error, styles[name].colour, "-"),
@@ -261,6 +263,11 @@ def shear_stress(
         axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
         legend_above(figure, axes, title)
     return figure
+
+
+def _above_zero(value: np.ndarray, bars: np.ndarray) -> np.ndarray:
+    """Cut error bars (lower and upper; value) that reach below zero from a value above it."""
+    return np.stack([np.where(value > 0, np.minimum(bars[0], value), bars[0]), bars[1]])
 
 
 def friction_factor_effect(

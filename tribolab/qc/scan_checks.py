@@ -14,6 +14,7 @@ from tribolab.qc.flags import FAIL, SUSPECT, attach
 from tribolab.qc.register import Check, Count, Limit, Result, examine, resolve_limits
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
+from tribolab.surface.level import level_map
 
 
 def check_scans(
@@ -170,6 +171,23 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     return [*results, Result(status, "height", text, max(share))]
 
 
+def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    if not subject.usable:
+        return [Result("skipped", "height", "there are too few heights")]
+    if subject.is_map and not level_map(subject.rows):
+        return [Result("pass", "height", "the heights vary")]  # single rows may be level
+    level = subject.level
+    if not level:
+        return [Result("pass", "height", "the heights vary")]
+    names = [subject.profile_names[number] for number in level]
+    others = f" and in {len(names) - 1} more" if len(names) > 1 else ""
+    text = (
+        f"the heights vary by rounding alone in {names[0]}{others}: they are equal, or on a "
+        "perfect line or circle, and there is no roughness"
+    )
+    return [Result("fail", "height", text, len(level) / len(subject.usable), "1", names[0])]
+
+
 def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     radius = max(subject.stated("tip_radius_m"), default=None)
     if radius is None:
@@ -279,6 +297,15 @@ PROFILE_CHECKS = (
             "fail": Limit(0.95, "1", "what is left says nothing of the surface's slopes"),
         },
         _tip,
+    ),
+    Check(
+        "level",
+        10,
+        "Do the heights vary at all?",
+        "Look whether the export holds the heights, and enough of their digits; leave the scan "
+        "out.",
+        {},
+        _level,
     ),
 )
 

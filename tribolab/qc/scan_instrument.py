@@ -110,7 +110,7 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not sets and not results:
         return [Result("skipped", "Ra", "the instrument gives no results of its own")]
     _, profiles = subject.form
-    if subject.is_map or not profiles or float(np.ptp(profiles[0].height.values)) == 0.0:
+    if subject.is_map or not profiles or subject.level:
         return results or [Result("skipped", "Ra", "there is no profile to compare with")]
     cut = sets[0][2] if sets else float("nan")
     ours = [_ours(profile, cut) for profile in profiles]

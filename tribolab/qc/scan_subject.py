@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts, remove_form
+from tribolab.surface.level import level_rows
 from tribolab.surface.psd import psd_1d
 
 _FEWEST = 8  # heights of a profile: fewer have neither form nor roughness
@@ -104,6 +105,13 @@ class ScanSubject:
             return "tilt", [remove_form(profile, "tilt") for profile in self.filled]
 
     @cached_property
+    def level(self) -> list[int]:
+        """Numbers, among the usable rows, of those without roughness."""
+        _, profiles = self.form
+        flat = [level_rows(profile.height.values[None])[0] for profile in profiles]
+        return np.flatnonzero(flat).tolist()
+
+    @cached_property
     def spectra(self) -> list[xr.Dataset]:
         """Power spectrum of each profile; empty for a map, too few points or no heights."""
         if self.is_map:
@@ -111,8 +119,10 @@ class ScanSubject:
         _, profiles = self.form
         radius = max(self.stated("tip_radius_m"), default=None)
         spectra = []
+        if self.level:
+            return []
         for profile in profiles:
-            if profile.sizes["x"] < 256 or float(np.ptp(profile.height.values)) == 0.0:
+            if profile.sizes["x"] < 256:
                 return []
             one = profile.drop_vars(["form_tilt", "form_curvature", "dropout"], errors="ignore")
             spectra.append(psd_1d(one.expand_dims("scan"), form="none", tip_radius=radius))

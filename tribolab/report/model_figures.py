@@ -128,6 +128,8 @@ def draw_model(task: ModelFigure) -> dict[str, str]:
     with DRAWING:
         figure, numbers = draw(task)
         title = task.title + task.missing
+        if task.missing and task.kind == "curve":
+            caption = _CAPTION_OF_VISCOUS
         text, alt = f"{title}. {caption}", f"{title}. {numbers} {caption}"
         record = save_figure(figure, task.folder, task.file, text, alt)
     return record | {"kind": task.kind}
@@ -216,11 +218,18 @@ def _sensitivity(task: ModelFigure) -> tuple[Figure, str]:
     return figure, f"Moved most by: {most}."
 
 
+_MEASURED = (
+    "Points: measured, wide pale bars the standard deviation while sliding, narrow bars the "
+    "standard error; "
+)
+_CAPTION_OF_VISCOUS = (
+    _MEASURED + "dotted: the model's viscous part; open symbols: dry. Below: measured less that."
+)
+
 _KINDS: dict[str, tuple[Callable[[ModelFigure], tuple[Figure, str]], str]] = {
     "curve": (
         _curve,
-        "Points: measured, wide pale bars the standard deviation while sliding, narrow bars the "
-        "standard error; full: the model with the fitted shear stress; dashed: its solid part; "
+        _MEASURED + "full: the model with the fitted shear stress; dashed: its solid part; "
         "dotted: its viscous part; shaded: what the model does not know; open symbols: dry. Below: "
         "measured less model.",
     ),
@@ -228,7 +237,8 @@ _KINDS: dict[str, tuple[Callable[[ModelFigure], tuple[Figure, str]], str]] = {
     "shear_stress": (
         _shear_stress,
         "Open: as fitted, for the area without adhesion, with the 95 % interval, the spectrum's "
-        "error in it; filled: in the area that adhesion makes.",
+        "error in it; filled: in the area that adhesion makes. A bar that reaches zero: the shear "
+        "stress is not told from zero.",
     ),
     "effect": (_effect, "At the lowest load. Full: with them, dashed: without."),
     "factors": (

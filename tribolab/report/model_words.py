@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.labels import number, speed_text
+from tribolab.plot.labels import aligned, number, speed_text
 from tribolab.report.wording import percent
 
 if TYPE_CHECKING:
@@ -23,6 +23,21 @@ _NO_STRESS = "no shear stress describes this curve"
 def has_shear_stress(fit: xr.Dataset) -> bool:
     """Whether the fit found a shear stress; one that is not positive is none."""
     return bool(fit.attrs["shear_stress_Pa"] > 0)
+
+
+def stress_interval(low: float | None, high: float | None) -> str:
+    """Return the 95 % interval [Pa] of a shear stress in MPa; a shear stress is never negative.
+
+    Examples
+    --------
+    >>> stress_interval(0.8e6, 0.88e6), stress_interval(-0.092e6, 0.335e6)
+    ('0.800 to 0.880', 'up to 0.335: not told from 0')
+    """
+    if low is None or high is None:
+        return "–"
+    if low <= 0:
+        return f"up to {aligned(1e-6 * high)}: not told from 0"
+    return f"{aligned(1e-6 * low)} to {aligned(1e-6 * high)}"
 
 
 def is_described(words: str) -> bool:

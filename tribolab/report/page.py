@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -20,7 +20,9 @@ from markupsafe import Markup
 
 from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
+from tribolab.report.model_words import stress_interval
 from tribolab.report.sections import Section, shown_sections
+from tribolab.report.sliding_figures import traces_stems
 from tribolab.report.traces import as_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
@@ -192,6 +194,9 @@ def _environment(folder: Path) -> jinja2.Environment:
         "speeds": wording.speeds,
         "judge": judgement.judge,
         "trend_texts": judgement.trend_texts,
+        "traces_stems": traces_stems,
+        "stress_interval": stress_interval,
+        "note_of": note_of,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }
@@ -217,6 +222,19 @@ def data_address(svg: str) -> Markup:
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
     # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
     return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
+
+
+def note_of(captions: Iterable[str]) -> str:
+    """Return what stands once below figures of one kind: their captions without the titles.
+
+    Where they differ, the longest explains all that is drawn in any of them.
+
+    Examples
+    --------
+    >>> note_of(["31 N: no line. Points: measured.", "91 N. Points: measured; line: model."])
+    'Points: measured; line: model.'
+    """
+    return max((caption.split(". ", 1)[1] for caption in captions), key=len)
 
 
 def breakable(name: str) -> Markup:

@@ -17,7 +17,7 @@ from tribolab.report.wording import plain_value
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.outcome import CurveOutcome, Outcome
+    from tribolab.campaign.outcome import CurveOutcome, ModelOutcome, Outcome
     from tribolab.compare.sliding_mode import Mode, SlidingMode
     from tribolab.report.surface_records import SurfaceRows
 
@@ -134,8 +134,8 @@ def judge_modes(
     return modes
 
 
-def condition(curve: CurveOutcome) -> str:
-    """Name a curve by its surface, medium and load.
+def condition(curve: CurveOutcome | ModelOutcome) -> str:
+    """Name a curve or its model by its surface, medium and load.
 
     A curve whose runs name none of them is called by its own name.
     """

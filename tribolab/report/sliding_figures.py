@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -53,13 +53,13 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
     names = tuple(surface.name for surface in outcome.surfaces)
     lowest = _lowest(found)
     planned: list[tuple[str, str, str, str, tuple[Any, ...]]] = []
-    for surface in dict.fromkeys(one.outcome.surface for one in lowest):
-        stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in surface.lower()) or "runs"
+    stems = traces_stems(one.outcome.surface for one in lowest)
+    for surface, stem in stems.items():
         title = f"{surface or 'Runs'}: friction over sliding distance"
         caption = f"{title}. The slowest speeds of each medium, shifted up to be told apart."
         mine = [one for one in lowest if one.outcome.surface == surface]
         shown = _stretches(mine, outcome)
-        planned.append(("traces", f"slip_traces_{stem}", title, caption, shown))
+        planned.append(("traces", stem, title, caption, shown))
     moving = [one for one in found if _moves(one)]
     shown = _slowest(moving or lowest)
     planned.append(("spectra", "slip_spectra", "Spectra of friction", _marked(shown), shown))
@@ -77,6 +77,26 @@ def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[S
         for kind, stem, title, caption, shown in planned
         if shown
     ]
+
+
+def traces_stems(surfaces: Iterable[str]) -> dict[str, str]:
+    """Name the figure of each surface's traces: safe as a file's name, and no two alike.
+
+    Examples
+    --------
+    >>> traces_stems(["Sand S", "Sb-R", "sand/s", ""])
+    {'Sand S': 'slip_traces_sand_s', 'Sb-R': 'slip_traces_sb-r', 'sand/s': 'slip_traces_sand_s_2', \
+'': 'slip_traces_runs'}
+    """
+    stems: dict[str, str] = {}
+    for surface in dict.fromkeys(surfaces):
+        safe = "".join(c if c.isalnum() or c in "-_" else "_" for c in surface.lower())
+        stem, number = f"slip_traces_{safe or 'runs'}", 1
+        while stem in stems.values():
+            number += 1
+            stem = f"slip_traces_{safe or 'runs'}_{number}"
+        stems[surface] = stem
+    return stems
 
 
 _SPECTRA = (

@@ -129,10 +129,13 @@ def _computed(outcome: Outcome) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Say which runs, surfaces and scans failed and why."""
+    """Say which runs, surfaces, scans and models failed and why."""
+    from tribolab.report.sliding import condition
+
     failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
     for surface in outcome.surfaces:
         failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+    failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
         lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")

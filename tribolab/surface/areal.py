@@ -10,6 +10,7 @@ from tribolab.quantities import stamp
 from tribolab.surface.annuli import confidence_band
 from tribolab.surface.binning import correlation, log_bins, window
 from tribolab.surface.form import remove_form
+from tribolab.surface.level import level_map, refuse_level
 
 _FEWEST = 16
 
@@ -58,8 +59,7 @@ def psd_2d_of_map(
         raise AnalysisError(f"psd_2d: a map of {size} points is too small for a spectrum")
     if not np.isfinite(height).all():
         raise AnalysisError("psd_2d: the map holds NaN; fill the dropouts with fill_dropouts()")
-    if not np.ptp(height, axis=(1, 2)).all():
-        raise AnalysisError("psd_2d: all heights are equal, there is no roughness to transform")
+    refuse_level("psd_2d", scan, [level_map(one) for one in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     taper = np.outer(window(size[0]), window(size[1]))
     power, whole = np.zeros(size), 0.0

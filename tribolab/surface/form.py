@@ -8,6 +8,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError, nearest
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
+from tribolab.surface.level import rounding_only
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.
 FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
@@ -81,10 +82,10 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     Returns
     -------
     xarray.Dataset
-        The scans without form, and for each scan what was removed: ``form_tilt`` [1] and
-        ``form_curvature`` [1/m] at the middle of the scan (positive: hollow). Dropouts are left
-        as they are and do not count in the fit. Attributes ``form_removed``, ``form_order``,
-        ``form_radius_m`` (mean radius, for a circle).
+        The scans without form, exactly zero where only rounding is left, and for each scan what
+        was removed: ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan
+        (positive: hollow). Dropouts are left as they are and do not count in the fit. Attributes
+        ``form_removed``, ``form_order``, ``form_radius_m`` (mean radius, for a circle).
 
     Raises
     ------
@@ -133,7 +134,8 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     for first in range(0, len(rows), step):
         part = slice(first, first + step)
         fit = _circle if form == "circle" else _polynomial
-        residual[part], taken[part] = fit(rows[part], x, scale, basis)
+        left, taken[part] = fit(rows[part], x, scale, basis)
+        residual[part] = _without_rounding(left, rows[part])
     dims, shape = height.dims[:-1], height.shape[:-1]
     result = scans.assign(
         height=height.copy(data=residual.reshape(height.shape)),
@@ -154,6 +156,12 @@ def removed_order(scans: xr.Dataset) -> int:
 
 def _with(scans: xr.Dataset, action: str) -> str:
     return "\n".join([*filter(None, [scans.attrs.get("history", "")]), history_line(action)])
+
+
+def _without_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Make what is left of a perfect form zero, so that nobody takes rounding for roughness."""
+    level = rounding_only(left, rows)[:, None]
+    return np.where(level & np.isfinite(left), 0.0, left) if level.any() else left
 
 
 def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
@@ -224,7 +232,7 @@ def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
         for j in range(order + 1 - i)
     ]
     basis, rows = np.stack(terms, axis=-1), height.values.reshape(-1, y.size * x.size)
-    flat = rows - _least_squares(rows, basis) @ basis.T
+    flat = _without_rounding(rows - _least_squares(rows, basis) @ basis.T, rows)
     which = "the map" if len(rows) == 1 else f"{len(rows)} maps"
     history = _with(scans, f"removed a polynomial of order {order} from {which}")
     result = scans.assign(height=height.copy(data=flat.reshape(height.shape)))

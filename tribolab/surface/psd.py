@@ -14,6 +14,7 @@ from tribolab.surface.areal import psd_2d_of_map
 from tribolab.surface.binning import log_bins, shape, window
 from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.fourier import binned_power, fast_length
+from tribolab.surface.level import level_rows, refuse_level
 from tribolab.surface.reliability import trusted_band
 
 _FEWEST_POINTS = 64
@@ -58,7 +59,7 @@ def psd_1d(
     Raises
     ------
     AnalysisError
-        If the heights hold NaN, do not vary, or are too few.
+        If the heights hold NaN, are too few, or if those of a scan do not vary but for rounding.
 
     Notes
     -----
@@ -95,8 +96,7 @@ def psd_1d(
         raise AnalysisError(
             "psd_1d: the heights hold NaN or infinity; fill the dropouts with fill_dropouts()"
         )
-    if power.heights == 0:
-        raise AnalysisError("psd_1d: all heights are equal, there is no roughness to transform")
+    refuse_level("psd_1d", scans, level_rows(heights.data))
     spacing = 2 * np.pi / (length * pitch)
     mean = power.bins / (bins.counts * number) * pitch / (2 * np.pi * points)
     q = bins.nodes * spacing
@@ -218,6 +218,11 @@ def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
     if "height" not in scans or "x" not in scans.height.dims:
         raise AnalysisError(
             "psd_1d: scans with 'height' (scan, x) are wanted; read them with read_scans()"
+        )
+    if "y" in scans.height.dims:
+        raise AnalysisError(
+            "psd_1d: this is a map (y, x); psd_2d() takes its spectrum, and a single row of it, "
+            "e.g. scans.isel(y=0), is a profile"
         )
     others = [d for d in scans.height.dims if d != "x"]
     if len(others) > 1:

@@ -9,6 +9,7 @@ from tribolab.errors import AnalysisError
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface.filters import gaussian_filter
+from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
 from tribolab.units import to_si
 
@@ -46,7 +47,8 @@ def roughness_parameters(
     Raises
     ------
     AnalysisError
-        If the heights hold NaN, or the profile is shorter than two cut-offs.
+        If the heights hold NaN or do not vary but for rounding, or if the profile is shorter than
+        two cut-offs.
 
     Notes
     -----
@@ -95,9 +97,16 @@ def roughness_parameters(
     deviation = parts if sampling_lengths and cut is not None else rows[..., None, :]
     if cut is None:  # else the filter's mean line is the zero of the profile
         deviation = deviation - deviation.mean(-1, keepdims=True)
+    slope = _slope(rows, pitch)
+    given = scans.height.transpose(..., "x").values.reshape(-1, points)
+    level = level_rows(given) | rounding_only(deviation.reshape(len(given), -1), given)
+    refuse_level("roughness_parameters", scans, level)
     square = np.mean(deviation**2, -1)
     if not (square > 0).all():
-        raise AnalysisError("roughness_parameters: all heights are equal, the profile is level")
+        raise AnalysisError(
+            "roughness_parameters: a whole sampling length is level, its skewness is not defined; "
+            "cut the scan, or take sampling_lengths=False"
+        )
     dims = height.dims[:-1]
     values = {
         "Ra": np.abs(deviation).mean(-1).mean(-1),
@@ -105,7 +114,7 @@ def roughness_parameters(
         "Rz": np.ptp(parts, axis=-1).mean(-1),
         "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
         "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
-        "Rdq": np.sqrt(np.mean(_slope(rows, pitch) ** 2, -1)),
+        "Rdq": np.sqrt(np.mean(slope**2, -1)),
     }
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     applied = {"lambda_c_m": cut, "lambda_s_m": fine}

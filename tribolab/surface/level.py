@@ -1,0 +1,101 @@
+"""Heights that hold no roughness: equal, or on a perfect line or plane, but for rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+
+# Share of the largest height below which a deviation is rounding: floats carry 16 digits, of
+# which a fit of the form spoils a few; the best gauges resolve 8 and are never meant.
+ROUNDING = 1e-12
+_CHUNK = 1 << 20
+
+
+def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
+    """Tell for each row whether what is left of its heights is rounding.
+
+    Parameters
+    ----------
+    deviation
+        What is left [m] (row, ...) of the heights when the form is gone; NaN does not count.
+    heights
+        The heights [m] (row, x) themselves.
+
+    Returns
+    -------
+    numpy.ndarray
+        Truth (row). Rows without any height are not said to be level.
+
+    Examples
+    --------
+    >>> heights = np.array([[1e-6, 1e-6], [1e-6, 2e-6]])
+    >>> rounding_only(heights - heights.mean(1, keepdims=True), heights).tolist()
+    [True, False]
+    """
+    largest, left = (
+        np.where(np.isfinite(one), np.abs(one), 0.0).max(axis=-1) for one in (heights, deviation)
+    )
+    return (left <= ROUNDING * largest) & np.isfinite(deviation).any(axis=-1)
+
+
+def level_rows(height: np.ndarray) -> np.ndarray:
+    """Tell for each row (row, x) whether all its heights are equal or on one straight line.
+
+    Examples
+    --------
+    >>> level_rows(np.array([[1e-6, 1e-6, 1e-6], [1e-6, 2e-6, 3e-6], [0.0, 1e-9, 0.0]])).tolist()
+    [True, True, False]
+    """
+    rows, points = height.shape
+    way = np.linspace(0.0, 1.0, points)
+    step = max(1, _CHUNK // points)
+    found = np.zeros(rows, dtype=bool)
+    for first in range(0, rows, step):
+        part = np.asarray(height[first : first + step], dtype=float)
+        chord = part[:, :1] + (part[:, -1:] - part[:, :1]) * way
+        found[first : first + step] = rounding_only(part - chord, part)
+    return found
+
+
+def level_map(height: np.ndarray) -> bool:
+    """Tell whether the heights (y, x) of a map are equal or on one plane."""
+    return bool(level_rows(height).all() and level_rows(height.T).all())
+
+
+def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray) -> None:
+    """Raise an error that names the first scan that is level, if one is.
+
+    Parameters
+    ----------
+    who
+        The function that asks.
+    scans
+        The scans, for their names.
+    level
+        Truth (scan).
+
+    Raises
+    ------
+    AnalysisError
+        If a scan is level.
+    """
+    at = np.flatnonzero(level)
+    if not at.size:
+        return
+    if "file" in scans and np.size(scans["file"]) == len(level):
+        name = str(np.atleast_1d(scans["file"].values)[at[0]])
+    elif len(level) > 1:
+        name = f"scan {at[0] + 1}"
+    else:
+        name = str(scans.attrs.get("source", ""))
+    others = f" and {at.size - 1} more" if at.size > 1 else ""
+    where = f"{name}{others}: " if name else ""
+    raise AnalysisError(
+        f"{who}: {where}all heights are equal, or on a perfect line, plane or circle: but "
+        "for rounding there is no roughness. Look whether the file holds the heights and enough "
+        "of their digits, or leave that scan out"
+    )
