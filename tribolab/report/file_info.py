@@ -37,13 +37,20 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
     """Read a scan; what turns out to be none is told about as a run would be."""
+    from tribolab.io.scan_formats import NotSaidError
     from tribolab.io.scans import read_scans
 
     try:
         [scan] = read_scans([path], instrument, stack=False)
-    except ReadError:
+    except ReadError as error:
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
-            read(path)  # says which instruments there are
+            try:
+                read(path)  # says which instruments there are
+            except ReadError as as_run:
+                if isinstance(error, NotSaidError):
+                    what = f"{as_run}; taken for a profile or map, {error.lacking}"
+                    raise ReadError(what) from error
+                raise
         raise
     return scan
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
-from tribolab.report.typed import range_of
+from tribolab.report.typed import as_in_campaign, range_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,10 +129,15 @@ def _computed(outcome: Outcome) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Say which runs, surfaces and scans failed and why."""
-    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    """Say which runs, surfaces and scans failed and why, and what the campaign file may say."""
+    failed = [
+        f"{run.name} failed: {as_in_campaign(run.reason, '[[run]]')}" for run in outcome.failed
+    ]
     for surface in outcome.surfaces:
-        failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+        failed += [
+            f"surface {surface.name}: {as_in_campaign(finding.message, '[[surface]]')}"
+            for finding in surface.unreadable
+        ]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
         lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")
