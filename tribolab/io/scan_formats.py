@@ -16,6 +16,7 @@ from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.dialects import scan_dialects
 from tribolab.io.scan_grid import even
 from tribolab.io.scan_safety import formats_to_try
+from tribolab.io.signature import peek
 from tribolab.units import conversion, to_si
 
 
@@ -128,6 +129,11 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
             refused = error
     if reader is None:
         told = f" ({formats[0]}: {brief(refused)})" if len(formats) == 1 else ""
+        if not _is_text(path):
+            raise ReadError(
+                f"{path}: neither text nor a format that SurfaceTopography reads{told}; is it "
+                "damaged? Else export the profile as text"
+            )
         raise ReadError(
             f"{path}: neither a known dialect nor a format that SurfaceTopography reads{told}; "
             f"name the dialect with instrument=, one of {_dialects()}, or describe the file in a "
@@ -160,6 +166,13 @@ def _topography(
         given["unit"] = x_unit
     vertical = conversion(height_unit, "m")[0] if channel.unit is None else None
     return channel, channel.topography(**given), vertical
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return peek(path).format == "text"
+    except ReadError:
+        return False
 
 
 def _dialects() -> str:
