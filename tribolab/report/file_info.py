@@ -12,6 +12,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
 from tribolab.io.scan_results import read_results
 from tribolab.io.signature import peek
+from tribolab.qc.register import Count
 from tribolab.quantities import quantity
 from tribolab.report.typed import range_of
 
@@ -79,7 +80,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     low, high = float(scan["height"].min()), float(scan["height"].max())
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
-        lines.append(f"  {missing} points without a height")
+        lines.append(f"  {Count(missing):point|points} without a height")
     return lines + _attribute_lines(scan.attrs)
 
 
@@ -114,10 +115,10 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
     d = description
     title = f" ({d['title']})" if d["title"] else ""
     lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
-    sampling = f"  {d['rows']} rows over {d['duration_s']:.6g} s"
+    sampling = f"  {Count(d['rows']):row|rows} over {d['duration_s']:.6g} s"
     if d["interval_s"] is not None:
         sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
-    lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
+    lines.append(sampling + (f", {Count(d['steps']):step|steps}" if d["steps"] else ""))
     width = max((len(name) for name in d["columns"]), default=0)
     for name, column in d["columns"].items():
         span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
