@@ -239,7 +239,7 @@ def test_a_bad_scan_stands_in_the_findings_and_fails_the_command(campaign, outco
     done = CliRunner().invoke(app, ["run", str(mine), "--quiet", "--jobs", "1"])
     assert done.exit_code == 3
     assert "surface Sb-R: scan raw/profiles/sb-r_2.csv is left out" in done.stderr
-    assert "1 of 1 surfaces: spectrum, contact, adhesion" in done.stdout
+    assert "1 of 1 surface: spectrum, contact, adhesion" in done.stdout
     findings = pd.read_csv(mine.parent / "results/tables/findings.csv")
     first = findings.iloc[0]
     assert (first.severity, first["where"]) == ("fail", "surface Sb-R")

@@ -13,7 +13,7 @@ from tribolab import cli, rig
 from tribolab.io.kinds import kind_of
 from tribolab.qc import run_checks, scan_checks
 from tribolab.qc.register import Check
-from tribolab.report.typed import as_typed
+from tribolab.report.typed import as_in_campaign, as_typed
 from tribolab.rig.files import scan_file
 
 
@@ -154,11 +154,8 @@ def test_a_quick_answer_waits_for_no_library_that_it_does_not_need(shared_data):
 
 
 def test_a_map_and_a_single_scan_have_nothing_to_be_compared_with(tmp_path):
-    x, y = np.meshgrid(np.arange(20) * 1e-3, np.arange(20) * 1e-3)
-    z = np.random.default_rng(0).standard_normal(x.size)
     for number in (1, 2):
-        rows = np.column_stack([x.ravel(), y.ravel(), z])
-        np.savetxt(tmp_path / f"map_{number}.txt", rows, fmt="%.6f", delimiter=",")
+        headless_map(tmp_path / f"map_{number}.txt")
     found = told(*sorted(tmp_path.glob("*.txt")), "--instrument", "nanovea_map")
     for one in found["runs"]:
         [row] = [row for row in one["findings"] if row["check"] == "repeats"]
@@ -184,6 +181,54 @@ def test_the_terminal_names_options_and_not_arguments_of_functions(scans, tmp_pa
     assert done.exit_code == 3
     assert "say which with --instrument, one of" in done.stderr
     assert not re.search(r"\w=[ ,;]|\w\(\)", done.stderr)
+
+
+def headless_map(file):
+    """Write a map as profilometers export it: three columns of numbers and not a word."""
+    x, y = np.meshgrid(np.arange(20) * 1e-3, np.arange(20) * 1e-3)
+    z = np.random.default_rng(0).standard_normal(x.size)
+    rows = np.column_stack([x.ravel(), y.ravel(), z])
+    np.savetxt(file, rows, fmt="%.6f", delimiter=",")
+    return str(file)
+
+
+@pytest.mark.parametrize("command", ["info", "check"])
+def test_of_a_map_without_units_the_terminal_names_the_dialects_of_maps(tmp_path, command):
+    file = headless_map(tmp_path / "map.txt")
+    done = CliRunner().invoke(cli.app, [command, file])
+    assert done.exit_code == 3
+    said = re.search(r"or one of ([a-z_, 0-9]+) for a profile or map of heights,", done.stderr)
+    assert "nanovea_map" in said[1].split(", ") and "pcs_mtm" not in said[1]
+    assert done.stderr.rstrip().endswith(
+        "taken for a profile or map, the file states no units (xyz)"
+    )
+    assert not re.search(r"\w=|\w\(\)", done.stderr)
+    assert CliRunner().invoke(cli.app, [command, file, "-i", "nanovea_map"]).exit_code == 0
+
+
+def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_path):
+    (tmp_path / "raw").mkdir()
+    (tmp_path / "raw/odd.txt").write_text("one\ntwo\n")
+    headless_map(tmp_path / "raw/map.txt")
+    (tmp_path / "campaign.toml").write_text(
+        '[campaign]\nname = "a"\n[[surface]]\nname = "S"\nscans = "map.txt"\n'
+        '[[run]]\nfiles = "odd.txt"\n'
+    )
+    done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml"), "-q", "-j", "1"])
+    assert done.exit_code == 3
+    of_run, of_surface = done.stderr.splitlines()[:2]
+    assert 'say which with instrument = "..." in its [[run]], one of' in of_run
+    assert "pcs_mtm" in of_run and "nanovea_map" not in of_run
+    assert 'says them with instrument = "..." in its [[surface]], one of' in of_surface
+    assert "nanovea_map" in of_surface
+    assert "--instrument" not in done.stderr
+
+
+def test_a_file_in_the_wrong_table_of_a_campaign_is_told_the_right_one():
+    run = as_in_campaign("a: this looks like a profile (x): use read_scans", "[[run]]")
+    assert run == "a: this looks like a profile (x); it belongs under scans of a [[surface]]"
+    scan = as_in_campaign("a: this looks like a run (x): use read", "[[surface]]")
+    assert scan == "a: this looks like a run (x); it belongs in a [[run]]"
 
 
 def test_what_is_skipped_is_explained_in_words_of_the_campaign_file():

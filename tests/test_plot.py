@@ -1,5 +1,6 @@
 """The figures: nothing lost on the way to paper, no state left behind, words with units."""
 
+import re
 import subprocess
 import sys
 
@@ -337,3 +338,11 @@ def test_the_caption_of_spectra_names_only_what_is_marked():
     calm = slip.assign(dominant_frequency=slip.dominant_frequency * np.nan)
     assert "Blue: the strongest oscillation." in _marked([("dry", slip, 0)])
     assert "Blue" not in _marked([("dry", calm, 0)]) and "mains" not in _marked([("dry", calm, 0)])
+
+
+@pytest.mark.parametrize("ending", ["pdf", "ps"])
+def test_no_font_is_embedded_as_type_3_which_journals_refuse(tmp_path, ending):
+    figure = plot.stribeck(measured=made_curve("Sb-R"))
+    written = plot.save(figure, tmp_path / f"curve.{ending}").read_bytes()
+    assert re.search(rb"/(FontFile2|FontType 42)", written)
+    assert not re.search(rb"/Type3|/FontType 3", written)

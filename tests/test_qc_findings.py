@@ -10,7 +10,7 @@ import xarray as xr
 from tribolab.errors import ConfigError, UnitError
 from tribolab.io.schema_folder import schema_folder
 from tribolab.qc import catalogue
-from tribolab.qc.findings import exit_code
+from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.register import STATUSES, Check, Result
 from tribolab.qc.run_checks import RUN_CHECKS, check, check_run
 from tribolab.qc.scan_checks import SCAN_CHECKS
@@ -79,6 +79,12 @@ def test_every_check_answers_on_every_run(run):
             assert result.status in STATUSES and result.message
             if result.status == "skipped":
                 assert result.flags is None
+
+
+def test_one_thing_is_said_in_the_singular():
+    check = RUN_CHECKS["schema"]
+    found = Findings("a", ((check, Result("pass", "time", "fine")),))
+    assert found.summary == "a: pass (1 check passed)"
 
 
 def test_what_could_not_be_looked_at_is_skipped_and_says_why(run):

@@ -12,7 +12,7 @@ from tribolab.friction.segments import find_segments
 from tribolab.io.runs import read
 from tribolab.qc.run_checks import check_run
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
-from tribolab.rig.files import force_file, motion_file
+from tribolab.rig.files import force_file, motion_file, write_run
 
 SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
 
@@ -80,6 +80,21 @@ def test_a_lone_force_log_is_suspect_for_want_of_a_speed_not_a_crash(tmp_path):
     found = check_run(run)
     assert objections(found) == {"schema": "suspect"}
     assert "nothing tells the speed" in message(found, "schema")
+
+
+@pytest.mark.parametrize(
+    ("log", "cure"),
+    [
+        ("force", "Put sb-r_dry_31N_01_motion.csv beside this file, or give both."),
+        ("motion", "Give the log of the forces with this one if the instrument writes two"),
+    ],
+)
+def test_the_cure_of_a_lone_log_is_the_other_log_and_not_the_dialect(tmp_path, log, cure):
+    paths = write_run(simulate_run("Sb-R", "dry", rig=SHORT, seed=2005), tmp_path)
+    alone, other = sorted(paths, key=lambda path: not path.stem.endswith(log))
+    other.unlink()
+    [row] = [row for row in check_run(read(alone)).rows if row["cure"]]
+    assert row["check"] == "schema" and row["cure"].startswith(cure)
 
 
 # --- real files

@@ -208,6 +208,18 @@ def test_bad_profiles_say_what_is_wrong(tmp_path, content, words):
     assert "bad.csv" in str(caught.value)
 
 
+def test_bytes_are_no_map_for_want_of_a_header(tmp_path):
+    """A satellite's map is any bytes of twice a square number, so only its name can tell it."""
+    content = bytes(range(256)) * 200
+    assert len(content) == 2 * 160**2
+    (tmp_path / "a.csv").write_bytes(content)
+    (tmp_path / "a.hgt").write_bytes(content)
+    with pytest.raises(ReadError, match=r"a\.csv: neither text nor a format .* damaged"):
+        read_scans(tmp_path / "a.csv")
+    with pytest.raises(ReadError, match=r"does not say how large the scan is \(hgt\)"):
+        read_scans(tmp_path / "a.hgt")
+
+
 def test_no_such_file_and_no_such_pattern(tmp_path):
     with pytest.raises(ReadError, match="no such file"):
         read_scans(tmp_path / "a.csv")

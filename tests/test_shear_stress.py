@@ -9,6 +9,7 @@ from scipy import stats
 
 from tribolab.compare.shear_stress import fit_shear_stress, runs_p_value, shear_stress_ratio
 from tribolab.errors import AnalysisError, UnitError
+from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026
 
@@ -40,6 +41,26 @@ def test_the_truth_comes_back_from_exact_data():
     np.testing.assert_allclose(
         found.curve.friction_coefficient, EXACT.friction_coefficient, rtol=1e-6
     )
+
+
+def test_the_segments_of_a_run_are_fitted_as_the_curve_that_they_make():
+    curve = measured(0.02)
+    twice = xr.concat([curve, curve + 0.01], "sliding_speed").reset_index("sliding_speed")
+    segments = twice.reset_coords().swap_dims(sliding_speed="segment")
+    segments["friction_coefficient_std"] = 0.05 + 0 * segments.friction_coefficient
+    combined = measured_stribeck_curve([segments])
+    assert combined.sizes["sliding_speed"] == SPEEDS.size
+    found, wanted = fit(segments), fit(combined)
+    assert found.shear_stress == wanted.shear_stress
+    assert found.total_error == wanted.total_error
+    np.testing.assert_array_equal(found.curve.sliding_speed, combined.sliding_speed)
+
+
+def test_what_is_no_curve_is_refused_in_one_line_that_names_the_function_to_make_one():
+    other = measured(0.02).rename(sliding_speed="time")
+    with pytest.raises(AnalysisError, match="over 'time'; tl.measured_stribeck_curve") as told:
+        fit(other)
+    assert len(str(told.value)) < 200
 
 
 def test_the_error_bar_is_that_of_the_scatter_it_predicts():

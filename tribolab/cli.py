@@ -367,7 +367,6 @@ def _show(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
     from tribolab.qc.findings import exit_code
     from tribolab.report import terminal
-    from tribolab.report.typed import as_typed
 
     table = terminal.outcome_table(outcome)
     if table.row_count:
@@ -375,7 +374,7 @@ def _show(outcome: Outcome, debug: bool) -> int:
     for line in terminal.outcome_lines(outcome):
         typer.echo(line)
     for line in terminal.failure_lines(outcome):
-        typer.echo(f"tribolab: {as_typed(line)}", err=True)
+        typer.echo(f"tribolab: {line}", err=True)
     crashes = [curve.crash for curve in outcome.curves if curve.crash]
     for crash in crashes if debug else ():
         typer.echo(crash, err=True)

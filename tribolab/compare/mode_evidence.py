@@ -9,6 +9,7 @@ import xarray as xr
 
 from tribolab.compare.mode_words import SAW, SINE, friction_text, percent_text, speed_text
 from tribolab.friction.slip_curve import FIXED_FREQUENCY, STEADY
+from tribolab.qc.register import Count
 
 if TYPE_CHECKING:
     from tribolab.compare.sliding_mode import Mode
@@ -50,7 +51,8 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     names, counts = np.unique(moving["waveform"].values.astype(str), return_counts=True)
     kinds = " and ".join(names[np.argsort(-counts)])
     first = int(np.argmin(speed))
-    text = f"the traces oscillate at {count} of {slip.sizes['sliding_speed']} speeds ({kinds})"
+    every = Count(slip.sizes["sliding_speed"])
+    text = f"the traces oscillate at {count} of {every:speed|speeds} ({kinds})"
     drop = float(moving["drop"].values[first])
     if np.isfinite(drop):  # an oscillation need not show whole cycles
         text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"

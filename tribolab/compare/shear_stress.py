@@ -14,6 +14,7 @@ from scipy.special import comb
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, nearest
+from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.quantities import stamp
 from tribolab.units import positive, to_si
@@ -133,7 +134,8 @@ def fit_shear_stress(
     ----------
     measured
         ``friction_coefficient`` (sliding_speed) with ``_sem`` or, failing that, ``_std``. Points
-        that are not finite are left out, as is speed 0.
+        that are not finite are left out, as is speed 0. The segments of one run, as
+        `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first.
     contact, psd, viscosity, load
         As for `stribeck_curve`, with one load.
     speed_range
@@ -296,12 +298,16 @@ def _points(
     measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
     """Speeds, friction, errors, which to use, and where the errors come from."""
-    if "friction_coefficient" not in measured or measured["friction_coefficient"].dims != (
-        "sliding_speed",
-    ):
+    mu = measured.get("friction_coefficient")
+    if mu is not None and mu.dims == ("segment",):
+        measured = measured_stribeck_curve([measured])
+    elif mu is None or mu.dims != ("sliding_speed",):
+        over = (
+            "is not in it" if mu is None else f"is over {', '.join(map(repr, mu.dims)) or 'none'}"
+        )
         raise AnalysisError(
-            "measured: a 'friction_coefficient' over 'sliding_speed' alone is wanted; it has "
-            + ", ".join(f"{name} {data.dims}" for name, data in measured.data_vars.items())
+            f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}; "
+            "tl.measured_stribeck_curve makes such a curve from the results of friction_coefficient"
         )
     measured = measured.sortby("sliding_speed")
     speed = measured["sliding_speed"].values.astype(float)

@@ -13,7 +13,15 @@ from tribolab.errors import ConfigError, ReadError, nearest
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.schema_folder import schema_folder
 
-__all__ = ["Dialect", "is_scan", "json_schema", "known_dialects", "load_dialect", "recognise"]
+__all__ = [
+    "Dialect",
+    "is_scan",
+    "json_schema",
+    "known_dialects",
+    "load_dialect",
+    "recognise",
+    "scan_dialects",
+]
 
 
 def known_dialects() -> dict[str, Path]:
@@ -86,12 +94,16 @@ def recognise(path: str | Path) -> Dialect:
         raise ReadError(
             f"{file.path}: this looks like the results of a roughness tester: use read_results()"
         )
-    same_format = ", ".join(d.name for d in every if d.format == file.format and not is_scan(d))
+    alike = [dialect for dialect in every if dialect.format == file.format]
+    runs = ", ".join(dialect.name for dialect in alike if not is_scan(dialect))
+    scans = ", ".join(dialect.name for dialect in alike if is_scan(dialect))
+    ways = [f"one of {runs} for a run"] if runs else []
+    ways += [f"one of {scans} for a profile or map of heights (read_scans())"] if scans else []
+    ways.append("the path of a TOML description of your own (see raw_data_schema/README.md)")
     raise ReadError(
         f"{file.path}: no known instrument writes such a file ({file.format}); say which with "
-        f"instrument=, one of {same_format or 'none of this format'}, or the path of a TOML "
-        "description of your own (see raw_data_schema/README.md); a profile or map of heights is "
-        "read by read_scans()"
+        f"instrument=, {', or '.join(ways)}"
+        + ("" if scans else "; a profile or map of heights is read by read_scans()")
     )
 
 
@@ -104,6 +116,17 @@ def is_scan(dialect: Dialect) -> bool:
     (True, False)
     """
     return {"x", "height"} <= {column.quantity for column in dialect.column}
+
+
+def scan_dialects() -> list[Dialect]:
+    """Return the known dialects whose files hold a profile or map.
+
+    Examples
+    --------
+    >>> "nanovea_map" in [dialect.name for dialect in scan_dialects()]
+    True
+    """
+    return [dialect for dialect in map(load_dialect, known_dialects()) if is_scan(dialect)]
 
 
 def json_schema() -> dict[str, Any]:

@@ -13,9 +13,19 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
+from tribolab.io.dialects import scan_dialects
 from tribolab.io.scan_grid import even
 from tribolab.io.scan_safety import formats_to_try
+from tribolab.io.signature import peek
 from tribolab.units import conversion, to_si
+
+
+class NotSaidError(ReadError):
+    """A scan could be read, if its file said what `lacking` names."""
+
+    def __init__(self, path: Path, lacking: str, cure: str = "") -> None:
+        super().__init__(f"{path}: {lacking}{cure}")
+        self.lacking = lacking
 
 
 def read_foreign(
@@ -119,9 +129,15 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
             refused = error
     if reader is None:
         told = f" ({formats[0]}: {brief(refused)})" if len(formats) == 1 else ""
+        if not _is_text(path):
+            raise ReadError(
+                f"{path}: neither text nor a format that SurfaceTopography reads{told}; is it "
+                "damaged? Else export the profile as text"
+            )
         raise ReadError(
             f"{path}: neither a known dialect nor a format that SurfaceTopography reads{told}; "
-            "name the dialect with instrument=, or describe the file in a TOML dialect of your own"
+            f"name the dialect with instrument=, one of {_dialects()}, or describe the file in a "
+            "TOML dialect of your own"
         )
     with reader:
         yield reader
@@ -135,20 +151,32 @@ def _topography(
     given: dict[str, Any] = {}
     if channel.physical_sizes is None:
         if x_unit is None:
-            raise ReadError(
-                f"{path}: the file does not say how large the scan is ({_name(reader)})"
+            raise NotSaidError(
+                path, f"the file does not say how large the scan is ({_name(reader)})"
             )
         given["physical_sizes"] = tuple(float(n) for n in np.atleast_1d(channel.nb_grid_pts))
     if channel.unit is None:
         if x_unit is None or height_unit is None:
-            raise ReadError(
-                f"{path}: the file states no units ({_name(reader)}); say them with x_unit= and "
-                "height_unit=, e.g. x_unit='mm', height_unit='um', or name a dialect with "
-                "instrument="
+            raise NotSaidError(
+                path,
+                f"the file states no units ({_name(reader)})",
+                "; say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or "
+                f"name a dialect with instrument=, one of {_dialects()}",
             )
         given["unit"] = x_unit
     vertical = conversion(height_unit, "m")[0] if channel.unit is None else None
     return channel, channel.topography(**given), vertical
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return peek(path).format == "text"
+    except ReadError:
+        return False
+
+
+def _dialects() -> str:
+    return ", ".join(dialect.name for dialect in scan_dialects())
 
 
 def _name(reader: Any) -> str:

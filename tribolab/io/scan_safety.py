@@ -48,7 +48,10 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
             try_out(path)
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return list(dict.fromkeys([*sure, *_text_formats(path)]))
-    return [name for name in dict.fromkeys([*sure, *possible]) if name not in _TEXT or name in sure]
+    # any bytes of twice a square number make a map of "hgt", which has no mark but its name
+    unmarked = {*_TEXT} if path.suffix.lower() == ".hgt" else {*_TEXT, "hgt"}
+    every = dict.fromkeys([*sure, *possible])
+    return [name for name in every if name not in unmarked or name in sure]
 
 
 def _unpacks(path: Path) -> None:

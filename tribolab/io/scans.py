@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError
-from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect
+from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
 from tribolab.io.scan_formats import read_foreign
 from tribolab.io.scan_grid import even, gridded
 from tribolab.io.scan_results import is_results
@@ -84,7 +84,7 @@ def read_scans(
     files = _files(paths)
     dialect = load_dialect(instrument) if instrument is not None else None
     if dialect is not None and not is_scan(dialect):
-        scanning = ", ".join(d.name for d in _scan_dialects())
+        scanning = ", ".join(d.name for d in scan_dialects())
         raise ReadError(
             f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height'); "
             f"those that do are {scanning}"
@@ -111,10 +111,6 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
 @functools.cache  # the descriptions do not change while a program runs
 def _every_dialect() -> tuple[Dialect, ...]:
     return tuple(map(load_dialect, known_dialects()))
-
-
-def _scan_dialects() -> list[Dialect]:
-    return [dialect for dialect in _every_dialect() if is_scan(dialect)]
 
 
 def _read(

@@ -65,6 +65,9 @@ _RC = {
     # Letters as outlines: the figure looks the same wherever it is opened, with no font to fetch.
     "svg.fonttype": "path",
     "svg.hashsalt": "tribolab",
+    # TrueType: journals refuse the Type 3 fonts that are matplotlib's default.
+    "pdf.fonttype": 42,
+    "ps.fonttype": 42,
     "path.simplify": True,
 }
 

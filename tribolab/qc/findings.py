@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.errors import ConfigError, nearest
-from tribolab.qc.register import STATUSES, Check, Result
+from tribolab.qc.register import STATUSES, Check, Count, Result
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,7 +56,7 @@ class Findings:
                 "unit": result.unit,
                 "limits": dict(self.limits.get(check.name, {})),
                 "question": check.question,
-                "cure": check.cure if result.status in ("suspect", "fail") else "",
+                "cure": (result.cure or check.cure) if result.status in ("suspect", "fail") else "",
             }
             for check, result in self.results
         ]
@@ -93,7 +93,7 @@ class Findings:
         objecting = {n for n, found in by_check.items() if found & {"suspect", "fail", "error"}}
         passed = {n for n, found in by_check.items() if "pass" in found} - objecting
         skipped = len(by_check) - len(objecting) - len(passed)
-        parts = [f"{len(passed)} checks passed"]
+        parts = [f"{Count(len(passed)):check|checks} passed"]
         parts += [f"{len(objecting)} objected"] if objecting else []
         parts += [f"{skipped} had nothing to look at"] if skipped else []
         return f"{self.name}: {self.status} ({', '.join(parts)})"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
-from tribolab.qc.register import Result, Skip
+from tribolab.qc.register import Count, Result, Skip
 from tribolab.qc.subject import RunSubject
 
 
@@ -46,7 +46,8 @@ def by_segment(
         return [Result("pass", variable, text, float(values[worst]), flags=samples)]
     where = f"{subject.segment_label(worst)}"
     status = "fail" if (flags[bad] == FAIL).any() else "suspect"
-    text = f"{what}: {values[worst]:+.2%} in {where}; {bad.size} of {flags.size} segments"
+    text = f"{what}: {values[worst]:+.2%} in {where}; {bad.size} of "
+    text += f"{Count(flags.size):segment|segments}"
     return [Result(status, variable, text, float(values[worst]), "1", where, bad.size, samples)]
 
 

@@ -16,7 +16,7 @@ _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments wi
 
 def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     run = subject.run
-    results = [Result("suspect", "", text) for text in schema.lacks(run)]
+    results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
     for name, unit in schema.wrong_units(run).items():
         results.append(Result("fail", name, f"{name} is in '{unit}', not in SI"))
     for name, span in schema.RANGES.items():

@@ -34,7 +34,8 @@ class Result:
     """What one check found on one variable.
 
     `noted` says that a status "pass" or "skipped" is worth a reader's while: something is there,
-    too little to object to or to decide by.
+    too little to object to or to decide by. `cure` stands instead of the check's, where that
+    would lead astray.
     """
 
     status: str
@@ -46,6 +47,7 @@ class Result:
     count: int = 0
     flags: np.ndarray | None = field(default=None, repr=False, compare=False)
     noted: bool = False
+    cure: str = ""
 
 
 @dataclass(frozen=True)

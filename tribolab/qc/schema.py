@@ -68,16 +68,25 @@ def wrong_units(run: xr.Dataset) -> dict[str, str]:
     return found
 
 
-def lacks(run: xr.Dataset) -> list[str]:
-    """Say what a friction run needs and this one has not."""
+def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
+    """Say what a friction run needs and this one has not, and the cure of each."""
     missing = []
     if not any(name in run for name in FRICTION):
-        missing.append("no friction was recorded (none of " + ", ".join(FRICTION) + ")")
+        missing.append(
+            (
+                "no friction was recorded (none of " + ", ".join(FRICTION) + ")",
+                "Give the log of the forces with this one if the instrument writes two; if the "
+                "file holds friction, let the dialect name its column.",
+            )
+        )
     if not any(name in run for name in SPEED) and "set_speed_m_s" not in run.attrs:
         text = "nothing tells the speed (none of " + ", ".join(SPEED) + ")"
+        cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
         if "companion_missing" in run.attrs:
-            text += f": the companion log {run.attrs['companion_missing']} is not there"
-        missing.append(text)
+            other = run.attrs["companion_missing"]
+            text += f": the companion log {other} is not there"
+            cure = f"Put {other} beside this file, or give both."
+        missing.append((text, cure))
     return missing
 
 

@@ -11,7 +11,7 @@ from tribolab.friction.coefficient import SIGNIFICANT
 from tribolab.friction.lines import Line
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
-from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.register import Check, Count, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject
 
 
@@ -69,7 +69,7 @@ def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("pass", signal, "friction opposes the motion everywhere", flags=samples)]
     first = int(np.flatnonzero(wrong)[0])
     where = subject.segment_label(first)
-    text = f"friction drives the motion in {int(wrong.sum())} segments, first in {where}"
+    text = f"friction drives the motion in {Count(wrong.sum()):segment|segments}, first in {where}"
     unit = "1" if name == "friction_coefficient" else "N"
     value, count = float(values[first]), int(wrong.sum())
     return [Result("fail", signal, text, value, unit, where, count, samples)]
@@ -99,7 +99,8 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     worst = int(np.argmax(np.where(open_, np.abs(change), -1.0)))
     where = subject.segment_label(worst)
     text = (
-        f"not decided in {open_.sum()} of {open_.size} segments, too few effective samples: "
+        f"not decided in {open_.sum()} of {Count(open_.size):segment|segments}, too few "
+        "effective samples: "
         f"{change[worst]:+.2%} along {where}, {samples[worst]:.2g} effective samples, "
         f"p = {chance[worst]:.2g}"
     )
@@ -156,8 +157,8 @@ def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
     if not unknown.any():
         return [Result("pass", "sliding_speed", "the speed of every segment is known")]
     text = (
-        f"the speed of {int(unknown.sum())} of {unknown.size} segments is unknown: start, stop "
-        "and rest may be inside them"
+        f"the speed of {int(unknown.sum())} of {Count(unknown.size):segment|segments} is "
+        "unknown: start, stop and rest may be inside"
     )
     where, count = subject.segment_label(int(np.argmax(unknown))), int(unknown.sum())
     return [Result("suspect", "sliding_speed", text, where=where, count=count)]

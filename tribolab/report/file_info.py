@@ -12,6 +12,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
 from tribolab.io.scan_results import read_results
 from tribolab.io.signature import peek
+from tribolab.qc.register import Count
 from tribolab.quantities import quantity
 from tribolab.report.typed import range_of
 
@@ -37,13 +38,20 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
     """Read a scan; what turns out to be none is told about as a run would be."""
+    from tribolab.io.scan_formats import NotSaidError
     from tribolab.io.scans import read_scans
 
     try:
         [scan] = read_scans([path], instrument, stack=False)
-    except ReadError:
+    except ReadError as error:
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
-            read(path)  # says which instruments there are
+            try:
+                read(path)  # says which instruments there are
+            except ReadError as as_run:
+                if isinstance(error, NotSaidError):
+                    what = f"{as_run}; taken for a profile or map, {error.lacking}"
+                    raise ReadError(what) from error
+                raise
         raise
     return scan
 
@@ -72,7 +80,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     low, high = float(scan["height"].min()), float(scan["height"].max())
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
-        lines.append(f"  {missing} points without a height")
+        lines.append(f"  {Count(missing):point|points} without a height")
     return lines + _attribute_lines(scan.attrs)
 
 
@@ -107,10 +115,10 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
     d = description
     title = f" ({d['title']})" if d["title"] else ""
     lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
-    sampling = f"  {d['rows']} rows over {d['duration_s']:.6g} s"
+    sampling = f"  {Count(d['rows']):row|rows} over {d['duration_s']:.6g} s"
     if d["interval_s"] is not None:
         sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
-    lines.append(sampling + (f", {d['steps']} steps" if d["steps"] else ""))
+    lines.append(sampling + (f", {Count(d['steps']):step|steps}" if d["steps"] else ""))
     width = max((len(name) for name in d["columns"]), default=0)
     for name, column in d["columns"].items():
         span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")

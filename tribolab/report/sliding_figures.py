@@ -13,7 +13,7 @@ from tribolab.friction.waveform import CLASSES
 from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition
-from tribolab.report.wording import span, with_error
+from tribolab.report.wording import many, span, with_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -231,7 +231,8 @@ def _events(task: SlipFigure) -> tuple[Figure, str]:
     from tribolab import plot
 
     said = [
-        f"{label}: {slip.sizes['event']} events, drops of µ from {span(slip['event_drop'].values)}"
+        f"{label}: {many(slip.sizes['event'], 'event')}, "
+        f"drops of µ from {span(slip['event_drop'].values)}"
         for label, slip in task.shown
     ]
     return plot.slip_events(dict(task.shown)), "; ".join(said)

@@ -11,7 +11,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
-from tribolab.report.typed import range_of
+from tribolab.qc.register import Count
+from tribolab.report.typed import as_in_campaign, range_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,7 +84,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     """Say how many runs were done, taken over and failed, and where the report is."""
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
-    line = f"{len(done)} of {len(outcome.runs)} runs, {outcome.segments} segments"
+    line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
+    line += f", {Count(outcome.segments):segment|segments}"
     if reused:
         line += f"; {reused} unchanged since the last time"
     lines = [line]
@@ -101,7 +103,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     if known := [surface for surface in outcome.surfaces if surface.files]:
         done = sum(surface.done for surface in known)
-        lines.append(f"{done} of {len(known)} surfaces: {_computed(outcome)}")
+        lines.append(f"{done} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
 
@@ -129,12 +131,17 @@ def _computed(outcome: Outcome) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Say which runs, surfaces, scans and models failed and why."""
+    """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     from tribolab.report.sliding import condition
 
-    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    failed = [
+        f"{run.name} failed: {as_in_campaign(run.reason, '[[run]]')}" for run in outcome.failed
+    ]
     for surface in outcome.surfaces:
-        failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+        failed += [
+            f"surface {surface.name}: {as_in_campaign(finding.message, '[[surface]]')}"
+            for finding in surface.unreadable
+        ]
     failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
@@ -186,14 +193,13 @@ def _not_described(results: Path) -> str:
     import pandas as pd
 
     from tribolab.report.model_words import is_described
-    from tribolab.report.wording import many
 
     path = results / "tables" / "shear_stress.csv"
     if not path.is_file():
         return ""
     fits = pd.read_csv(path)
     fits = fits[[not is_described(words) for words in fits.judgement]]
-    said = [f"{many(n, 'curve')} of {name}" for name, n in fits.surface.value_counts().items()]
+    said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
     verb = "is" if len(fits) == 1 else "are"
     return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
 
@@ -201,7 +207,7 @@ def _not_described(results: Path) -> str:
 def _counted(table: pd.DataFrame) -> str:
     count = table.status.value_counts()
     said = ", ".join(f"{number} {status}" for status, number in count.items())
-    return f"{len(table)} numbers, {said}"
+    return f"{Count(len(table)):number|numbers}, {said}"
 
 
 def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:

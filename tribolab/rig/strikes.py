@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError
+from tribolab.qc.register import Count
 from tribolab.rig.runs import SimulatedRun
 
 Facts = dict[str, Any]
@@ -252,7 +253,8 @@ def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
     if not speeds or (wanted > 1 and max(speeds) < 2 * min(speeds)):
         raise ConfigError(
             f"fault '{name}' does not show in this run: its log is faster than {_FAST:g} Hz at "
-            f"{len(set(speeds))} speeds, {wanted} are wanted (with --small there is one)"
+            f"{Count(len(set(speeds))):speed|speeds}, {wanted} are wanted (with "
+            "--small there is one)"
         )
 
 
