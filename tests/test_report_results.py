@@ -263,6 +263,20 @@ def test_the_table_of_runs_says_which_stick_slip_at_how_many_speeds(tmp_path, re
     assert [run["stick_slip"] for run in report["runs"]] == [quiet] * len(RUNS) + [None]
 
 
+def test_the_part_of_the_track_that_counts_is_told(tmp_path):
+    def part(run, segments, friction):
+        segments.attrs |= {"position_low_m": 0.005, "position_high_m": 0.032}
+        return run, segments, friction
+
+    made = replace(_one(tmp_path, part), curves=())
+    write_report(made)
+    report = json.loads((made.folder / "report.json").read_text())
+    valid(report)
+    assert report["runs"][0]["position_range_m"] == [0.005, 0.032]
+    assert any("outside positions 5 to 32 mm" in one["message"] for one in report["findings"])
+    assert "5 to 32 mm; the rest of each stroke" in (made.folder / "report.html").read_text()
+
+
 def test_every_check_of_every_run_stands_in_a_table():
     rows = [
         {"check": "spikes", "variable": "friction_force", "status": "pass", "value": 0.0,

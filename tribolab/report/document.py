@@ -136,6 +136,7 @@ _EMPTY: dict[str, Any] = {
     "sliding_speed_max_m_s": None,
     "offset": "",
     "trim": None,
+    "position_range_m": None,
     "velocity_source": "",
     "instrument": "",
     "quality": "",

@@ -83,6 +83,7 @@ def summarise_run(task: RunTask) -> RunSummary:
     facts = {
         **_of_record(run),
         **_of_friction(friction),
+        "position_range_m": position_range(segments),
         "stick_slip": stick_slip_of(slip),
         "omitted": _omitted(segments),
         "segments": table.to_dict("records"),
@@ -92,6 +93,12 @@ def summarise_run(task: RunTask) -> RunSummary:
     return RunSummary(
         task.run.name, plain_value(facts), table, tuple(findings), task.key, packed, fine
     )
+
+
+def position_range(segments: xr.Dataset) -> list[float] | None:
+    """Return the part of the track that counts [m], where the campaign file names one."""
+    ends = [segments.attrs.get(f"position_{end}_m") for end in ("low", "high")]
+    return None if None in ends else [float(end) for end in ends]
 
 
 def main_quantity(friction: xr.Dataset) -> str:
@@ -292,6 +299,9 @@ def _findings(
         say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
+    if (track := position_range(segments)) is not None:
+        low, high = (f"{1e3 * end:.4g}" for end in track)
+        say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
     for entry in _omitted(segments):
         text = f"{many(entry['intervals'], 'interval')}, {duration(entry['duration_s'])}"
         say("note", "left out", f"{entry['reason']}: {text}")
