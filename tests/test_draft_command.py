@@ -62,6 +62,18 @@ def test_the_command_shows_writes_and_tells_what_comes_next(tmp_path, monkeypatc
     assert info.exit_code == 0 and "2 rows over 0.5 s" in info.stdout
 
 
+def test_the_command_that_comes_next_reads_a_profile_too(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rows = "".join(f"{n / 2000:.4f};{n % 7 / 10}\n" for n in range(200))
+    (tmp_path / "odd profile.csv").write_text(f"x [mm];z [um]\n{rows}")
+    done = command("dialect", "odd profile.csv")
+    assert (done.exit_code, done.stderr) == (0, "")
+    [following] = re.findall(r"next:  tribolab (.*)", done.stdout)
+    read = command(*shlex.split(following))
+    assert (read.exit_code, read.stderr) == (0, "")
+    assert "200 points" in read.stdout
+
+
 def test_the_command_refuses_with_the_exit_codes_of_the_house(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text("Time [s],Fx [N]\n0,1\n1,2\n")

@@ -358,6 +358,19 @@ def test_drifting_and_backward_friction_is_said(tmp_path):
     assert page.count("%, significant</td>") == 2 and ">Steady</th>" not in page
 
 
+@pytest.mark.parametrize("note", ["Simulated <by> a rig.", None])
+def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
+    made = made_outcome(tmp_path, [("one", "Sb-R", "dry", 31.0, 0.8)], samples=60)
+    about = made.campaign.campaign.model_copy(update={"note": note})
+    campaign = made.campaign.model_copy(update={"campaign": about})
+    campaign._file = made.campaign.file
+    write_report(replace(made, campaign=campaign))
+    valid(json.loads((made.folder / "report.json").read_text()))
+    top = (made.folder / "report.html").read_text(encoding="utf-8").split("</header>")[0]
+    assert ("<strong>Note:</strong> Simulated &lt;by&gt; a rig.</p>" in top) == bool(note)
+    assert ("campaign" in table(made, "findings")["where"].tolist()) == bool(note)
+
+
 def test_evidence_leads_to_the_traces_of_its_own_surface(tmp_path):
     runs = [("a", "Sand S", "dry", 31.0, 0.8), ("b", "sand/s", "dry", 31.0, 0.6)]
     write_report(made := made_outcome(tmp_path, runs, speeds=[1e-5, 1e-3]))

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tribolab import rig
+from tribolab.campaign.config import load_campaign
 from tribolab.errors import ConfigError, ReadError
 from tribolab.rig.files import fixed_table, force_file, motion_file
 
@@ -117,6 +118,11 @@ def test_files_say_what_the_logs_say(tmp_path):
     assert list(motion) == ["Time [s]", *scales]
     for column, name in scales.items():
         np.testing.assert_allclose(motion[column] * 1e-3, run.motion_log[name], atol=1e-13)
+
+
+def test_the_campaign_says_that_it_is_simulated_with_stand_in_spectra(campaign):
+    note = load_campaign(campaign).campaign.note
+    assert "virtual rig" in note and "stand-in spectra" in note
 
 
 def test_truth_reads_back(campaign):

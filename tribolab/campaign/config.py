@@ -86,6 +86,8 @@ class About(Table):
     """Folder of the raw files, relative to this file."""
     output: Text = "results"
     """Folder of the results, relative to this file."""
+    note: Text | None = None
+    """What every reader of the report should know first; it stands at its top."""
 
 
 class Contact(Table):

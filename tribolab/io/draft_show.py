@@ -62,16 +62,9 @@ def print_next(draft: Draft, written: Path, console: Console) -> None:
         console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
     console.print(f"written: {escape(str(written))}", soft_wrap=True)
     file, toml = shlex.quote(str(draft.path)), shlex.quote(str(written))
-    if draft.kind == "run":
-        console.print(
-            f"next:  tribolab info {escape(file)} --instrument {escape(toml)}", soft_wrap=True
-        )
-    else:
-        call = f"read_scans({str(draft.path)!r}, instrument={str(written)!r})"
-        console.print(
-            f"next, in Python:  from tribolab.io.scans import read_scans; {escape(call)}",
-            soft_wrap=True,
-        )
+    console.print(
+        f"next:  tribolab info {escape(file)} --instrument {escape(toml)}", soft_wrap=True
+    )
 
 
 def _written(draft: Draft) -> list[str]:

@@ -27,6 +27,7 @@ from tribolab.report.surface_records import SurfaceRows, surface_record, surface
 from tribolab.report.traces import trace_points
 
 if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 
 Progress = Callable[[str, int, int], None]
@@ -59,7 +60,8 @@ def write_report(
         (folder / name).mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda stage, done, total: None)
 
-    findings = [_failure(run) for run in outcome.runs if not run.done]
+    findings = _notes(outcome.campaign)
+    findings += [_failure(run) for run in outcome.runs if not run.done]
     findings += [_left_out(run) for run in outcome.runs if run.quality in ("fail", "error")]
     # what the others wait for begins first; meanwhile the rows of the tables are read here
     runs = _RunFigures(outcome, executor)
@@ -115,6 +117,12 @@ def write_report(
     }
     write_page(document, folder, traces)
     tell("page", 1, 1)
+
+
+def _notes(campaign: Campaign) -> list[dict[str, str]]:
+    """Return the campaign file's own note as a finding, which the top of the page shows."""
+    text = campaign.campaign.note
+    return [{"severity": "note", "run": "", "where": "campaign", "message": text}] if text else []
 
 
 def _failure(run: RunOutcome) -> dict[str, str]:

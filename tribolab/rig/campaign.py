@@ -26,6 +26,10 @@ from tribolab.rig.runs import run_name, simulate_run
 from tribolab.studies import xu2026
 
 Law = Callable[[np.ndarray], np.ndarray]
+_NOTE = (
+    "Simulated by a virtual rig, not measured. The surfaces have stand-in spectra with the paper's "
+    "roughness and slope, because the authors' own spectra are not published."
+)
 _SMALL_SPEEDS = (4.64e-6, 1e-4, 2.15e-3)
 
 
@@ -293,7 +297,8 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
         f"# After {xu2026.CITATION}.\n"
         "[campaign]\n"
         'name = "PMMA on PDMS, dry and in glycerol (virtual rig)"\n'
-        'raw = "raw"\n',
+        'raw = "raw"\n'
+        f'note = "{_NOTE}"\n',
         "[contact]\n"
         f'radius = "{100 * s.radius:g} cm"\n'
         f'length = "{100 * s.length:g} cm"\n'
