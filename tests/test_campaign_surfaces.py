@@ -149,6 +149,9 @@ def test_every_value_lies_between_its_bounds(outcome):
             assert (table[column] <= table[value]).all(), column
             assert (table[value] <= table[high]).all(), column
     file, table = outcome.folder / outcome.surfaces[0].data_file, "tables/adhesion.csv"
+    loads = read_netcdf(file, group="adhesion_loads")
+    growth, low, high = (loads[f"area_enhancement{end}"] for end in ("", "_low", "_high"))
+    assert (low <= growth).all() and (growth <= high).all() and (low < high).all()
     curve = read_netcdf(file, group="adhesion")
     low, high = (curve[f"contact_area_ratio_{end}"] for end in ("low", "high"))
     assert (low <= curve.contact_area_ratio).all() and (curve.contact_area_ratio <= high).all()

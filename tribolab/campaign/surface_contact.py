@@ -217,8 +217,13 @@ def _adhesion(
         point["work_of_adhesion"] = medium.work_of_adhesion
         point["macroscopic_work_of_adhesion"] = macroscopic
         point["pull_off"] = np.int8(macroscopic > 0)
+        growth = [point["area_enhancement"].values]
         for ending, work in (("_low", medium.low), ("_high", medium.high)):
             bound = adhesion(bounding, spectra[ending], modulus, max(work, 0))
+            growth.append(bound.area_enhancement.values[1 : 1 + at_loads.size])
+            if at_loads.size:  # the ratio of two areas need not be extreme where an area is
+                other = spectra["_low" if ending == "_high" else "_high"]
+                growth.append(adhesion(at_loads, other, modulus, max(work, 0)).area_enhancement)
             areas = bound.contact_area_ratio.values
             through = PchipInterpolator(np.log(grid[::3]), np.log(areas[1 + at_loads.size :]))
             outer = np.minimum if ending == "_low" else np.maximum
@@ -228,6 +233,8 @@ def _adhesion(
             point[f"contact_area_ratio{ending}"] = ("load", areas[1 : 1 + at_loads.size])
             at_rest = float(bound.effective_work_of_adhesion[0, 0])
             point[f"macroscopic_work_of_adhesion{ending}"] = at_rest
+        for ending, outermost in (("_low", np.min), ("_high", np.max)):
+            point[f"area_enhancement{ending}"] = ("load", outermost(growth, axis=0))
         curves.append(curve)
         if loads is not None and contact is not None:
             point = point.assign_coords(load=loads["load"]).drop_vars("pressure", errors="ignore")
