@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Groups = dict[str, xr.Dataset]
 _STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
+_SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's
 _PER_DECADE = 10
 _ENDINGS = ("", "_low", "_high")
 
@@ -300,6 +301,8 @@ def _rubber(
         else:
             path, label = surface.modulus_file
             modulus, origin = read_modulus(path), label
+            softest = modulus.angular_frequency[0]
+            findings.extend(_far_from(stiffness, float(modulus(softest).real), softest, label))
         speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
         ratio = surface.contact["poisson_ratio"]
         friction = viscoelastic_friction(speed, loads.pressure, psd, modulus, ratio)
@@ -321,3 +324,15 @@ def _rubber(
     if surface.modulus_file is None:
         text = "rubber friction is computed with a stand-in modulus: an order of magnitude only"
         findings.append(Finding("note", text))
+
+
+def _far_from(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
+    """Say where a measured modulus cannot be that of the body whose contact is computed."""
+    if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
+        return []
+    text = (
+        f"rubber friction is computed with a modulus of {slow / 1e6:.3g} MPa at {frequency:.3g} "
+        f"rad/s ({label}), the contact with youngs_modulus = {stiffness / 1e6:.3g} MPa: are both "
+        "of the same rubber, and in the same units?"
+    )
+    return [Finding("note", text)]
