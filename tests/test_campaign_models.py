@@ -141,6 +141,12 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     jsonschema.validate(report, json.loads(SCHEMA.read_text()))
     (record,) = report["models"]
     stress = read_netcdf(folder / record["data_file"], "fit").attrs["shear_stress_Pa"]
+    growth, low, high, error = (
+        record["fit"][f"area_enhancement{end}"] for end in ("", "_low", "_high", "_error")
+    )
+    assert low <= growth <= high
+    # with 95 % the error reaches both bounds
+    assert growth - 1.961 * error < low < high < growth + 1.961 * error
     table = pd.read_csv(folder / "tables/shear_stress.csv")
     assert record["fit"]["shear_stress_Pa"] == table.shear_stress_Pa[0] == stress
     points = pd.read_csv(folder / "tables/stribeck_model.csv")

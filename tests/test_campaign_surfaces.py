@@ -149,6 +149,9 @@ def test_every_value_lies_between_its_bounds(outcome):
             assert (table[column] <= table[value]).all(), column
             assert (table[value] <= table[high]).all(), column
     file, table = outcome.folder / outcome.surfaces[0].data_file, "tables/adhesion.csv"
+    loads = read_netcdf(file, group="adhesion_loads")
+    growth, low, high = (loads[f"area_enhancement{end}"] for end in ("", "_low", "_high"))
+    assert (low <= growth).all() and (growth <= high).all() and (low < high).all()
     curve = read_netcdf(file, group="adhesion")
     low, high = (curve[f"contact_area_ratio_{end}"] for end in ("low", "high"))
     assert (low <= curve.contact_area_ratio).all() and (curve.contact_area_ratio <= high).all()
@@ -321,6 +324,11 @@ def test_a_stiff_body_is_no_rubber_unless_its_modulus_is_given(tmp_path, profile
     assert rubber.attrs["modulus"] == "raw/dma.csv"
     assert (rubber.friction_coefficient > 0).all()
     assert not any("stand-in" in message for message in said(measured, "note"))
+    assert not any("youngs_modulus" in message for message in said(measured, "note"))
+    other = CONTACT_TABLE | {"youngs_modulus": 1.5e6}
+    measured = processed(tmp_path, profiles[:1], contact=other, modulus_file=(file, "raw/dma.csv"))
+    [message] = [text for text in said(measured, "note") if "youngs_modulus" in text]
+    assert "2e+03 MPa at 6.28 rad/s (raw/dma.csv)" in message and "= 1.5 MPa" in message
 
 
 def test_a_part_that_crashes_costs_only_itself(tmp_path, profiles, monkeypatch):

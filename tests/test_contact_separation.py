@@ -139,3 +139,11 @@ def test_noise_on_a_measured_spectrum_does_not_spoil_the_table():
     np.testing.assert_allclose(table.separation(p), mean_separation(p, noisy, E_STAR), rtol=1e-4)
     q, c = spectrum_arrays(noisy)
     assert at_wavenumber(q, q, c).min() == 0
+
+
+def test_separations_of_what_is_not_a_number_are_none_and_of_lists_of_text_are_values():
+    table = separation_table(reference_psd("Sb-S"), "2 MPa")
+    found = table.separation(np.array([np.nan, 42e3]))
+    assert np.isnan(found[0]) and np.isfinite(found[1])
+    assert table.separation(["42 kPa"])[0] == found[1]
+    assert table.pressure(["1 um"])[0] == table.pressure(1e-6)

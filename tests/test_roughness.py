@@ -120,6 +120,7 @@ def test_cumulative_roughness_grows_and_bounds_bracket():
         (lambda: roughness_parameters(profile(np.zeros(40_000)), lambda_c=None), "equal"),
         (lambda: roughness_parameters(profile(np.full(40_000, np.nan))), "fill_dropouts"),
         (lambda: roughness_parameters(wave(1e-4), lambda_c="15 mm"), "shorter than two"),
+        (lambda: roughness_parameters(wave(1e-4), lambda_c=np.nan), "lambda_c: a positive"),
         (lambda: gaussian_filter(wave(1e-4), 1e-7), "two points"),
         (lambda: roughness_parameters(profile(np.arange(6.0)), lambda_c=None), "seven points"),
     ],

@@ -6,8 +6,8 @@ import xarray as xr
 
 from tribolab import units
 from tribolab.errors import TribolabError, UnitError
-from tribolab.quantities import QUANTITIES, quantity, stamp
-from tribolab.units import conversion, to_si
+from tribolab.quantities import QUANTITIES, labelled, quantity, stamp
+from tribolab.units import conversion, positive, to_si
 
 
 @pytest.mark.parametrize(
@@ -73,3 +73,28 @@ def test_stamp_refuses_unknown_names_and_names_the_nearest():
 
 def test_derived_quantities_follow_their_base():
     assert quantity("friction_force_sem").unit == "N"
+
+
+def test_lists_of_text_are_quantities_like_text_and_numbers():
+    assert labelled(["42 kPa", 1e5, np.str_("0.1 MPa")], "pressure").values.tolist() == [
+        42e3,
+        1e5,
+        1e5,
+    ]
+    over = xr.DataArray(["310 N/m", "9.1 N/cm"], dims="run")
+    assert labelled(over, "load").values.tolist() == [310.0, 910.0]
+    assert labelled(over, "load").dims == ("run",)
+
+
+@pytest.mark.parametrize(
+    "wrong", [["42 kN"], ["42"], [None, 1.0], [[1.0], [1.0, 2.0]], {}, [1j], ["x", 1.0]]
+)
+def test_what_is_no_quantity_is_refused_by_its_name(wrong):
+    with pytest.raises(UnitError, match="pressure: "):
+        labelled(wrong, "pressure")
+
+
+@pytest.mark.parametrize("wrong", [["310 N/m"], None, {}])
+def test_several_values_where_one_is_wanted_are_refused(wrong):
+    with pytest.raises(UnitError, match="load: one number"):
+        positive(wrong, "N/m", "load")

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, TribolabError, nearest
+from tribolab.errors import AnalysisError, TribolabError, UnitError, nearest
 from tribolab.units import to_si
 
 
@@ -305,19 +305,51 @@ def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
     return result
 
 
+def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
+    """Return a quantity as an array of SI floats; entries may be text with a unit.
+
+    Raises
+    ------
+    UnitError
+        If a text has no unit or one of another dimension, or an entry is no number.
+
+    Examples
+    --------
+    >>> si_values(["42 kPa", "0.1 MPa"], "pressure")
+    array([ 42000., 100000.])
+    """
+    unit = quantity(name).unit
+    try:
+        if np.asarray(value).dtype.kind in "fiub":
+            return np.asarray(value, dtype=float)
+        # as objects: an array of text would turn the numbers beside it into text without a unit
+        entries = np.asarray(value, dtype=object)
+        numbers = [
+            to_si(str(one), unit, name=name) if isinstance(one, str) else float(one)
+            for one in entries.ravel()
+        ]
+    except (TypeError, ValueError) as error:
+        raise UnitError(
+            f"{name}: numbers in {unit}, or text such as '1 {unit}', are wanted; got {value!r:.60}"
+        ) from error
+    return np.array(numbers, dtype=float).reshape(entries.shape)
+
+
 def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
     """Return a quantity as a DataArray of floats, whichever way it was given.
 
     Parameters
     ----------
     value
-        Text with a unit, a number, a one-dimensional array (it becomes its own coordinate) or a
-        DataArray (any dims), in the quantity's SI unit.
+        Text with a unit, a number, a one-dimensional array or list of either (it becomes its own
+        coordinate) or a DataArray (any dims); numbers are in the quantity's SI unit.
     name
         The quantity.
 
     Raises
     ------
+    UnitError
+        If a text has no unit or one of another dimension, or an entry is no number.
     AnalysisError
         If an array has two or more dimensions and no names for them.
 
@@ -327,9 +359,10 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
     ('pressure',)
     """
     if isinstance(value, xr.DataArray):
-        return value.astype(float)
-    number = to_si(value, quantity(name).unit, name=name) if isinstance(value, str) else value
-    values = np.asarray(number, dtype=float)
+        if value.dtype.kind in "fiub":
+            return value.astype(float)
+        return value.copy(data=si_values(value.values, name))
+    values = si_values(value, name)
     if values.ndim > 1:
         raise AnalysisError(
             f"{name}: an array with two or more dimensions must be a DataArray that names them"

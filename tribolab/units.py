@@ -174,8 +174,13 @@ def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
     """
     if isinstance(value, bool):
         raise UnitError(f"{name}: a number with a unit is wanted, e.g. '1 {si_unit}'; got {value}")
-    if isinstance(value, int | float):
-        return float(value)
+    if not isinstance(value, str):
+        try:
+            return float(value)
+        except (TypeError, ValueError) as error:
+            raise UnitError(
+                f"{name}: one number, or text such as '1 {si_unit}', is wanted; got {value!r:.60}"
+            ) from error
     match = _NUMBER.match(value)
     if not match:
         raise UnitError(f"{name}: '{value}' has no number; write e.g. '1 {si_unit}'")
@@ -204,7 +209,7 @@ def positive(value: str | float, unit: str, name: str) -> float:
     >>> positive("2 MPa", "Pa", "effective_modulus")
     2000000.0
     """
-    number = to_si(value if isinstance(value, str) else float(value), unit, name=name)
+    number = to_si(value, unit, name=name)
     if not 0 < number < math.inf:
         raise AnalysisError(f"{name}: a positive, finite value in {unit} is wanted; got {number:g}")
     return number

@@ -103,7 +103,9 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     else:
         # friction that helps the motion is no model: the best that is one has no shear stress
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
-        groups["fit"] = _beside(fit, measured)
+        _, low, high = _enhancement(model, folder)
+        bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
+        groups["fit"] = _beside(fit, measured).assign_attrs(bounds)
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
@@ -126,7 +128,7 @@ def _fit(
 ) -> ShearStressFit:
     from tribolab.compare.shear_stress import fit_shear_stress
 
-    enhancement, error = _enhancement(model, folder)
+    enhancement, low, high = _enhancement(model, folder)
     runs = float(np.median(measured["runs"].values))
     return fit_shear_stress(
         measured,
@@ -136,28 +138,23 @@ def _fit(
         load,
         speed_range=model.settings["fit_speeds"],
         area_enhancement=enhancement,
-        area_enhancement_error=error,
+        # the bounds lie unevenly: the error reaches the farther one with 95 %
+        area_enhancement_error=max(enhancement - low, high - enhancement) / _95,
         common_error=model.repeatability / np.sqrt(runs),
         common_freedom=model.freedom,
         curve=computed,
     )
 
 
-def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float]:
-    """Area with adhesion over that without, at the load; its error from the bounds."""
+def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
+    """Area with adhesion over that without, at the load, and the bounds on it."""
     path = folder / model.surface_file
-    found, loads = optional(path, "adhesion_loads"), optional(path, "loads")
+    found = optional(path, "adhesion_loads")
     if found is None or model.curve.medium not in found.medium.values:
-        return 1.0, 0.0
-    place = {"normal_force": model.curve.normal_force}
-    at = int(np.argmin(np.abs(found["normal_force"].values.ravel() - place["normal_force"])))
+        return 1.0, 1.0, 1.0
+    at = int(np.argmin(np.abs(found["normal_force"].values.ravel() - model.curve.normal_force)))
     mine = found.sel(medium=model.curve.medium).isel(load=at)
-    ends = (
-        float(mine[f"contact_area_ratio{end}"] / loads[f"contact_area_ratio{end}"][at])
-        for end in ("_low", "_high")
-    )
-    low, high = sorted(ends)
-    return float(mine["area_enhancement"]), (high - low) / (2 * _95)
+    return tuple(float(mine[f"area_enhancement{ending}"]) for ending in ("", "_low", "_high"))
 
 
 def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:

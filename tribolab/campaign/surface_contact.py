@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Groups = dict[str, xr.Dataset]
 _STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
+_SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's
 _PER_DECADE = 10
 _ENDINGS = ("", "_low", "_high")
 
@@ -217,8 +218,13 @@ def _adhesion(
         point["work_of_adhesion"] = medium.work_of_adhesion
         point["macroscopic_work_of_adhesion"] = macroscopic
         point["pull_off"] = np.int8(macroscopic > 0)
+        growth = [point["area_enhancement"].values]
         for ending, work in (("_low", medium.low), ("_high", medium.high)):
             bound = adhesion(bounding, spectra[ending], modulus, max(work, 0))
+            growth.append(bound.area_enhancement.values[1 : 1 + at_loads.size])
+            if at_loads.size:  # the ratio of two areas need not be extreme where an area is
+                other = spectra["_low" if ending == "_high" else "_high"]
+                growth.append(adhesion(at_loads, other, modulus, max(work, 0)).area_enhancement)
             areas = bound.contact_area_ratio.values
             through = PchipInterpolator(np.log(grid[::3]), np.log(areas[1 + at_loads.size :]))
             outer = np.minimum if ending == "_low" else np.maximum
@@ -228,6 +234,8 @@ def _adhesion(
             point[f"contact_area_ratio{ending}"] = ("load", areas[1 : 1 + at_loads.size])
             at_rest = float(bound.effective_work_of_adhesion[0, 0])
             point[f"macroscopic_work_of_adhesion{ending}"] = at_rest
+        for ending, outermost in (("_low", np.min), ("_high", np.max)):
+            point[f"area_enhancement{ending}"] = ("load", outermost(growth, axis=0))
         curves.append(curve)
         if loads is not None and contact is not None:
             point = point.assign_coords(load=loads["load"]).drop_vars("pressure", errors="ignore")
@@ -293,6 +301,8 @@ def _rubber(
         else:
             path, label = surface.modulus_file
             modulus, origin = read_modulus(path), label
+            softest = modulus.angular_frequency[0]
+            findings.extend(_far_from(stiffness, float(modulus(softest).real), softest, label))
         speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
         ratio = surface.contact["poisson_ratio"]
         friction = viscoelastic_friction(speed, loads.pressure, psd, modulus, ratio)
@@ -314,3 +324,15 @@ def _rubber(
     if surface.modulus_file is None:
         text = "rubber friction is computed with a stand-in modulus: an order of magnitude only"
         findings.append(Finding("note", text))
+
+
+def _far_from(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
+    """Say where a measured modulus cannot be that of the body whose contact is computed."""
+    if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
+        return []
+    text = (
+        f"rubber friction is computed with a modulus of {slow / 1e6:.3g} MPa at {frequency:.3g} "
+        f"rad/s ({label}), the contact with youngs_modulus = {stiffness / 1e6:.3g} MPa: are both "
+        "of the same rubber, and in the same units?"
+    )
+    return [Finding("note", text)]

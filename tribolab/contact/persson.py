@@ -15,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import erf, exp1
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import labelled, like, stamp_array
+from tribolab.quantities import labelled, like, si_values, stamp_array
 from tribolab.surface.moments import (
     at_wavenumber,
     cumulative,
@@ -23,7 +23,7 @@ from tribolab.surface.moments import (
     refined,
     spectrum_arrays,
 )
-from tribolab.units import positive, to_si
+from tribolab.units import positive
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 ROOT_PI = np.sqrt(np.pi)
@@ -269,8 +269,7 @@ def pressure_values(pressure: str | Pressure) -> np.ndarray:
     AnalysisError
         If one is negative.
     """
-    number = to_si(pressure, "Pa", name="pressure") if isinstance(pressure, str) else pressure
-    values = np.asarray(number, dtype=float)
+    values = si_values(pressure, "pressure")
     if np.any(values < 0):
         raise AnalysisError(
             f"pressure: without adhesion it cannot be negative; the lowest is {np.nanmin(values):g}"

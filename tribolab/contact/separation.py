@@ -19,9 +19,9 @@ from tribolab.contact.persson import (
     tail_slope,
 )
 from tribolab.errors import AnalysisError
-from tribolab.quantities import like
+from tribolab.quantities import like, si_values
 from tribolab.surface.moments import rms_roughness
-from tribolab.units import positive, to_si
+from tribolab.units import positive
 
 _MORE_THAN_EPS = 1e-14
 
@@ -108,7 +108,7 @@ class Separation:
         """
         values = pressure_values(pressure)
         log_far, slope_far, p_near, u_near, steep = self._ends
-        with np.errstate(divide="ignore", over="ignore"):
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # NaN stays NaN
             log_p = np.log(values)
             u = self._invert(np.clip(log_p, log_far, np.log(p_near)))
             far = self.table_separation[0] + (log_p - log_far) / slope_far
@@ -152,9 +152,7 @@ class Separation:
 
     @staticmethod
     def _separations(separation: str | Pressure) -> np.ndarray:
-        if isinstance(separation, str):
-            separation = to_si(separation, "m", name="separation")
-        values = np.asarray(separation, dtype=float)
+        values = si_values(separation, "separation")
         if np.any(values < 0):
             raise AnalysisError(
                 f"separation: it cannot be negative; the lowest is {np.nanmin(values):g} m"

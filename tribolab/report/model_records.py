@@ -24,6 +24,7 @@ _FITTED = (
     *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_common_error_Pa"),
     *("shear_stress_total_error_Pa", "shear_stress_half_interval_Pa"),
     *("area_enhancement", "area_enhancement_error"),
+    *("area_enhancement_low", "area_enhancement_high"),
     *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa"),
     *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
     *("valid_speed_low_m_s", "valid_speed_high_m_s"),

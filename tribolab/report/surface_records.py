@@ -43,7 +43,8 @@ ADHESION = [
     "pull_off",
     *("normal_force_N", "load_N_m", "pressure_Pa", "contact_area_ratio_no_adhesion"),
     *(f"contact_area_ratio{end}" for end in _BAND),
-    *("area_enhancement", "hertz_width_m", "jkr_width_m"),
+    *(f"area_enhancement{end}" for end in _BAND),
+    *("hertz_width_m", "jkr_width_m"),
 ]
 
 

@@ -11,7 +11,7 @@ from tribolab.quantities import stamp
 from tribolab.surface.filters import gaussian_filter
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
-from tribolab.units import to_si
+from tribolab.units import positive, to_si
 
 
 def roughness_parameters(
@@ -135,7 +135,7 @@ def _long_cutoff(
     if lambda_c is None:
         return None, False
     if lambda_c != "auto":
-        return to_si(lambda_c, "m", "lambda_c"), False
+        return positive(lambda_c, "m", "lambda_c"), False
     if "lambda_c_m" in scans.attrs:
         return float(scans.attrs["lambda_c_m"]), True
     return min(0.8e-3, length / 5), False
