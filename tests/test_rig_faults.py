@@ -10,7 +10,19 @@ from tribolab.errors import ConfigError, ReadError
 from tribolab.io.runs import read
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
-from tribolab.rig import FAULTS, Protocol, Rig, inject, read_truth, simulate_campaign, simulate_run
+from tribolab.report.checks import check_files
+from tribolab.rig import (
+    FAULTS,
+    Protocol,
+    Rig,
+    inject,
+    read_truth,
+    scans,
+    simulate_campaign,
+    simulate_run,
+)
+from tribolab.rig.faults import known_fault
+from tribolab.rig.faulty_scans import SCAN_FAULTS_BY_NAME, write_faulty_scans
 from tribolab.rig.files import fixed_table, force_file, motion_file
 
 SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
@@ -112,6 +124,56 @@ def test_the_truth_of_a_campaign_tells_where_each_fault_is(tmp_path):
             for kind in ("faulty", "sound")
         ]
         assert (raw[0] == raw[1]) == (not faults)
+
+
+@pytest.mark.parametrize("name", SCAN_FAULTS_BY_NAME)
+def test_a_fault_of_scans_survives_its_file_and_is_found_where_the_truth_says(tmp_path, name):
+    clean = scans("Sb-R", SCAN_FAULTS_BY_NAME[name].fewest, seed=5, length=6e-3)
+    told = write_faulty_scans(clean, [name], tmp_path, 5)
+    assert told
+    for one in check_files(sorted(tmp_path.iterdir())):
+        for fault in told.get(one.name, {"faults": []})["faults"]:
+            found = {r["status"] for r in one.findings.rows if r["check"] == fault["check"]}
+            assert max(map(STATUSES.index, found)) >= STATUSES.index(fault["severity"])
+        if one.name not in told:
+            assert one.status == "pass"
+
+
+def test_a_campaign_takes_faults_of_scans_and_tells_which_file_has_them(tmp_path):
+    one_speed = Rig(Protocol(speeds=(2.15e-3,)))
+    wanted = ["odd_scan", "scan_dropouts", "dropouts"]
+    for folder, faults in (("faulty", wanted), ("sound", [])):
+        simulate_campaign(
+            tmp_path / folder, small=True, n_repeats=1, seed=4, rig=one_speed, faults=faults
+        )
+    facts = read_truth(tmp_path / "faulty").facts
+    odd, spotty = facts["scans"]
+    assert odd.startswith("smooth_") and spotty == "sb-r_1.csv"
+    assert facts["scans"][odd]["faults"] == [
+        {
+            "name": "odd_scan",
+            "what": SCAN_FAULTS_BY_NAME["odd_scan"].what,
+            "severity": "fail",
+            "check": "repeats",
+        }
+    ]
+    of_runs = [fault["name"] for run in facts["runs"].values() for fault in run.get("faults", [])]
+    assert of_runs == ["dropouts"]
+    profiles = tmp_path / "faulty/raw/profiles"
+    # one is no odd one: the surface got as many scans as it takes
+    assert len(list(profiles.glob("smooth_*.csv"))) == 3
+    assert b",\n" in (profiles / spotty).read_bytes()
+    assert b",\n" not in (tmp_path / "sound/raw/profiles" / spotty).read_bytes()
+    assert read_truth(tmp_path / "sound").facts["scans"] == {}
+
+
+def test_a_wrong_name_lists_every_fault_as_the_help_promises(tmp_path):
+    with pytest.raises(ConfigError, match="known are") as told:
+        simulate_campaign(tmp_path / "x", faults="?")
+    listed = str(told.value).partition("known are ")[2].split(", ")
+    assert listed == sorted({*FAULTS, *SCAN_FAULTS_BY_NAME})
+    with pytest.raises(ConfigError, match=f"known are {', '.join(sorted(FAULTS))}$"):
+        known_fault("?")
 
 
 def test_what_cannot_be_is_refused_with_a_reason(tmp_path):

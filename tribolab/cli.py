@@ -181,7 +181,9 @@ def simulate(
     fault: Annotated[
         list[str] | None,
         typer.Option(
-            help="Put this fault into one run; may be given again. A wrong name lists them.",
+            help="Put this fault into one run, or into the scans of one surface (dropouts and "
+            "saturation: of a run, with scan_ before them of scans); may be given again. A wrong "
+            "name lists them.",
             show_default=False,
         ),
     ] = None,

@@ -56,16 +56,27 @@ def brief(error: BaseException, most: int = 300) -> str:
 _MOST = 60  # letters of a word; what a damaged file calls a name may have any length
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+_LISTED = 20
+
+
+def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
     """Return a hint naming the known words nearest to `word`, ready to end an error message.
+
+    Without any that is near, it names those known: at most `most`, None for all.
 
     >>> nearest("viscosty", ["viscosity", "radius"])
     "; did you mean 'viscosity'?"
     >>> len(nearest("Time", ["[" * 100_000]))  # of a damaged file
     76
+    >>> nearest("x", ["left", "right", "up"], most=2)
+    '; known are left, right and 1 more'
     """
     known = [one if len(one) <= _MOST else f"{one[:_MOST]} ..." for one in known]
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
     if close:
         return "; did you mean " + " or ".join(repr(c) for c in close) + "?"
-    return "; known are " + ", ".join(sorted(known)[:20]) if known else ""
+    if not known:
+        return ""
+    listed = sorted(known)[:most]
+    more = f" and {len(known) - len(listed)} more" if len(listed) < len(known) else ""
+    return f"; known are {', '.join(listed)}{more}"

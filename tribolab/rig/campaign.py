@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from tribolab.errors import ConfigError
-from tribolab.rig.faults import known_fault
+from tribolab.rig.faults import Fault
+from tribolab.rig.faulty_scans import fault_of_campaign, write_faulty_scans
 from tribolab.rig.files import FIRST_DAY, write_run, write_scans
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
@@ -88,8 +89,10 @@ def simulate_campaign(
     rig
         Protocol and sensors.
     faults
-        Names of faults (`tribolab.rig.faults.FAULTS`): each strikes one run, the first that it can
-        happen in and that has none yet. The truth says which.
+        Names of faults. Of runs (`tribolab.rig.faults.FAULTS`): each strikes one run, the first
+        that it can happen in and that has none yet. Of scans
+        (`tribolab.rig.faulty_scans.SCAN_FAULTS_BY_NAME`): each strikes the scans of one surface, of
+        which there are then as many as it takes to see it. The truth says which files carry it.
     progress
         Called as ``progress(stage, done, total)``.
     jobs
@@ -178,13 +181,15 @@ def _jobs(
 
 
 def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Give each fault to the run that has the fewest among those it can happen in."""
+    """Give each fault to the run, or the surface, that has the fewest it can happen in."""
     for name in faults:
-        fault = known_fault(name)
+        fault = fault_of_campaign(name)
+        of_run = isinstance(fault, Fault)
         able = [
             k
             for k, job in enumerate(work)
-            if job.number and fault.suits(job.condition.surface, job.condition.medium)
+            if bool(job.number) == of_run
+            and (not of_run or fault.suits(job.condition.surface, job.condition.medium))
         ]
         if not able:
             raise ConfigError(
@@ -192,7 +197,8 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
                 "and the campaign has no such run"
             )
         k = min(able, key=lambda k: len(work[k].faults))
-        work[k] = replace(work[k], faults=(*work[k].faults, name))
+        n_scans = work[k].scans if of_run else max(work[k].scans, fault.fewest)
+        work[k] = replace(work[k], faults=(*work[k].faults, name), scans=n_scans)
     return work
 
 
@@ -216,16 +222,18 @@ def _run_all(
     pool: Executor | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, dict[str, Any]]:
-    """Do the jobs here or in other processes; facts of the runs, in the order of the jobs."""
+    """Do the jobs here or in other processes; facts of runs and of scans with faults, in order."""
     do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
     # laws first: repeats share one, wherever each of them is simulated
     laws = dict(zip(conditions, do(_law, conditions), strict=True))
     work = [replace(job, law=laws.get(job.condition)) for job in work]
-    facts: dict[str, dict[str, Any]] = {}
-    for done, (name, fact) in enumerate(do(_do, work), start=1):
-        if fact:
-            facts[name] = fact
+    facts: dict[str, dict[str, Any]] = {"runs": {}, "scans": {}}
+    for done, (job, (name, fact)) in enumerate(zip(work, do(_do, work), strict=True), start=1):
+        if job.number:
+            facts["runs"][name] = fact
+        else:
+            facts["scans"].update(fact)
         if progress:
             progress("simulate", done, len(work))
     return facts
@@ -236,13 +244,18 @@ def _law(condition: _Condition) -> Law:
 
 
 def _do(job: _Job) -> tuple[str, dict[str, Any]]:
-    """Make one run's two files and its truth, or the scans of one surface."""
+    """Make one run's two files and its truth, or the scans of one surface; say what is true."""
     c = job.condition
     if not job.number:
         stem = c.surface.lower()
         data = scans(c.surface, job.scans, seed=_generator(job.seed, stem))
-        write_scans(data, job.folder / "raw/profiles")
-        return stem, {}
+        folder = job.folder / "raw/profiles"
+        if not job.faults:
+            write_scans(data, folder)
+            return stem, {}
+        # a stream of its own: scans beneath the faults are those of a campaign without
+        rng = _generator(job.seed, f"{stem} faults")
+        return stem, write_faulty_scans(data, job.faults, folder, rng)
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
     run = simulate_run(
         c.surface,
@@ -281,7 +294,7 @@ def _write_facts(
                 name: {"origin": xu2026.STAND_IN, **asdict(xu2026.surface(name))} for name in names
             },
             "references": xu2026.CITATION,
-            "runs": facts,
+            **facts,
         },
         indent=1,
         allow_nan=False,

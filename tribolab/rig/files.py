@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -137,15 +137,29 @@ def write_run(
     return force, motion
 
 
-def scan_file(x: np.ndarray, height: np.ndarray) -> bytes:
-    """One profile as the stylus instrument exports it; both in m."""
-    pitch, length = (x[1] - x[0]) * 1e6, (x[-1] - x[0]) * 1e3
+def scan_file(
+    x: np.ndarray,
+    height: np.ndarray,
+    *,
+    tip_radius: float = xu2026.profilometer.tip_radius,
+    pitch: float | None = None,
+    length: float | None = None,
+    results: Mapping[str, float] | None = None,
+) -> bytes:
+    """One profile as the stylus instrument exports it, all in m.
+
+    Pitch and length are what the file states, by default what is true; `results` are the
+    instrument's own Ra and Rq, which it does not export by default.
+    """
+    pitch = x[1] - x[0] if pitch is None else pitch
+    length = x[-1] - x[0] if length is None else length
     head = (
         "# Surftest profile\n"
-        f"# tip radius: {xu2026.profilometer.tip_radius * 1e6:g} um\n"
-        f"# pitch: {pitch:g} um\n"
-        f"# length: {length:g} mm\n"
-        "x [mm],z [um]\n"
+        f"# tip radius: {tip_radius * 1e6:g} um\n"
+        f"# pitch: {pitch * 1e6:g} um\n"
+        f"# length: {length * 1e3:g} mm\n"
+        + "".join(f"# {name}: {1e6 * value:.7f} um\n" for name, value in (results or {}).items())
+        + "x [mm],z [um]\n"
     )
     return head.encode() + fixed_table([(x * 1e3, 4), (height * 1e6, 3)], ",")
 

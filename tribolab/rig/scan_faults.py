@@ -36,6 +36,8 @@ class ScanFault:
         Name of the check on scans that should find it.
     strike
         ``strike(scans, rng) -> scans``; changes nothing in place.
+    fewest
+        Scans of one surface in which it can be seen.
     """
 
     name: str
@@ -43,6 +45,7 @@ class ScanFault:
     severity: str
     check: str
     strike: Strike
+    fewest: int = 1
 
 
 def exported(scans: xr.Dataset) -> xr.Dataset:
@@ -178,7 +181,8 @@ def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     places *= x[-1] / places[-1]
     rows = [np.interp(places, x, row) for row in scans.height.values]
     brought = [even("scan", places, row) for row in rows]
-    return _changed(scans, np.stack([b[1] for b in brought]), **brought[0][2])
+    resampled = _changed(scans, np.stack([b[1] for b in brought]), **brought[0][2])
+    return resampled.assign_coords(recorded_x=("x", places))  # as it stands in the file
 
 
 def _wrong_length(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
@@ -229,7 +233,9 @@ _ALL = (
         "uneven", "The traverse's speed wavers; x is recorded.", "suspect", "spacing", _uneven
     ),
     ScanFault("wrong_length", "The header states a longer scan.", "fail", "length", _wrong_length),
-    ScanFault("odd_scan", "One scan of three is of another surface.", "fail", "repeats", _odd_scan),
+    ScanFault(
+        "odd_scan", "One scan of three is of another surface.", "fail", "repeats", _odd_scan, 3
+    ),
     ScanFault(
         "wrong_results",
         "The instrument's results are in inches.",

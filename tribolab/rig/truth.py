@@ -20,7 +20,8 @@ class Truth:
     ----------
     facts
         What stands in ``truth.json``: seed, the rig's parameters, surfaces, and for each run its
-        law, offsets and clocks under ``facts["runs"][name]``.
+        law, offsets and clocks under ``facts["runs"][name]``; for each scan with faults those, the
+        check that has to find them and how grave they are under ``facts["scans"][file name]``.
     segments
         For each run's name the table of its constant-speed segments.
 
