@@ -342,7 +342,7 @@ def test_the_caption_of_spectra_names_only_what_is_marked():
 
 @pytest.mark.parametrize("ending", ["pdf", "ps"])
 def test_no_font_is_embedded_as_type_3_which_journals_refuse(tmp_path, ending):
-    figure = plot.stribeck(measured=made_curve("Sb-R"))
+    figure = plot.stribeck(made_curve())
     written = plot.save(figure, tmp_path / f"curve.{ending}").read_bytes()
     assert re.search(rb"/(FontFile2|FontType 42)", written)
     assert not re.search(rb"/Type3|/FontType 3", written)

@@ -76,7 +76,7 @@ def test_page_opens_without_a_word_and_asks_nothing_of_the_network(browser, resu
             "Promise.all(Array.from(document.images, i => { i.loading = 'eager';"
             "return i.decode().then(() => i.naturalWidth) }))"
         )
-    assert len(widths) == 3 + 2 + 1 + 4 and min(widths) > 300
+    assert len(widths) == 3 + 2 + 1 + 5 and min(widths) > 300
 
 
 @pytest.mark.slow
@@ -336,7 +336,7 @@ def test_figures_and_charts_are_described_in_words_and_numbers(results):
     reader = Reader(page_of(results))
     said = [image["alt"] for image in reader.all("img")]
     said += [d["aria-label"] for d in reader.all("div") if "plot" in d.get("class", "").split()]
-    assert len(said) == 3 + 3 + 2 + 1 + 3 + 4
+    assert len(said) == 3 + 3 + 2 + 1 + 3 + 5
     for words in said:
         assert re.search(r"µ (from|=) [01]\.\d|Hz stands out|smooth sliding at \d", words) or (
             "no oscillation stands out" in words

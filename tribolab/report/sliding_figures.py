@@ -223,7 +223,8 @@ def _spectrogram(task: SlipFigure) -> tuple[Figure, str]:
     said = []
     for label, slip in task.shown:
         count = int(np.isfinite(slip["dominant_frequency"].values).sum())
-        said.append(f"{label}: an oscillation in {count} of {slip.sizes['segment']} segments")
+        where = f"in {count} of {many(slip.sizes['segment'], 'segment')} an oscillation stands out"
+        said.append(f"{label}: {where if count else 'no oscillation stands out'}")
     return plot.slip_spectrogram(dict(task.shown)), "; ".join(said)
 
 
