@@ -42,7 +42,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     moving = _moving(slip)
     count = moving.sizes["sliding_speed"]
     if count == 0:
-        text = "no stick-slip is seen in any trace"
+        text = "no stick-slip is seen at any speed"
         if "oscillation_swing" in slip and np.isfinite(slip["oscillation_swing"]).any():
             worst = float(slip["oscillation_swing"].max())
             text += f"; swings of friction above {friction_text(worst)} would have been seen"
