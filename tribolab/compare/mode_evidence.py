@@ -69,10 +69,8 @@ def adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
-        text = (
-            "the work of adhesion at magnification 1 is not known: it takes scans, a modulus and "
-        )
-        text += "the medium's work of adhesion"
+        text = "the work of adhesion at magnification 1 is not known: it takes scans, a modulus "
+        text += "and the medium's work of adhesion"
         return Evidence(NEUTRAL, text, "adhesion")
     value = f"γ_eff(1) = {1e3 * work:.2g} mJ/m²"
     span = ""
@@ -125,8 +123,6 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return None
     moving = _moving(slip)
-    if moving.sizes["sliding_speed"] < 2:
-        return None
     moving = moving.isel(sliding_speed=np.flatnonzero(np.isfinite(moving["drop"].values)))
     if moving.sizes["sliding_speed"] < 2:
         return None

@@ -98,15 +98,14 @@ def examine(
     lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
     form = describe_waveform(view.values, lag, events)
     if events.drop.size:
-        finer = coarse(part, max(1, size // 2))
-        excess = _excess(view, finer, found, events, form, hysteresis)
+        excess = _excess(part, view, found, events, form, hysteresis)
         events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
     return Examined(found, events, form, hysteresis, noise, spikes / n, force)
 
 
 def _excess(
+    part: Record,
     view: Record,
-    finer: Record,
     found: Oscillation,
     events: Events,
     form: Waveform,
@@ -119,7 +118,8 @@ def _excess(
     mean = float(np.mean(events.drop))
     if form.period_scatter < ALIKE:  # the cycles lie on one another
         means = {1: abrupt_drop, 2: smooth_drop}.get(int(np.argmax(kind)))
-        drop = means(finer, events) if means else np.nan
+        finer = max(1, round(view.spacing / part.spacing) // 2)  # means round off what is abrupt
+        drop = means(coarse(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off

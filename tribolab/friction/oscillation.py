@@ -273,8 +273,9 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
     """
     mean = start
     frequency, power = fine.frequency[2:], ((fine.power - floor) * fine.width)[2:]
+    logs = np.log(frequency)
     for _ in range(_ROUNDS):
-        weight = power * np.exp(-0.5 * (np.log(frequency / mean) / _BREADTH) ** 2)
+        weight = power * np.exp(-0.5 * ((logs - np.log(mean)) / _BREADTH) ** 2)
         total, moment = float(weight.sum()), float(frequency @ weight)
         if not min(total, moment) > 0:  # nothing but white noise
             return mean, np.nan
