@@ -118,8 +118,8 @@ def adhesion(
         "area_enhancement": (dims, ratio.reshape(shape)),
         "apparent_contact_area_ratio": over_both(area),
         "effective_work_of_adhesion": over_both(solved.binding),
-        "iterations": (dims, solved.iterations.reshape(shape)),
-        "residual": (dims, solved.residual.reshape(shape)),
+        "root_search_steps": (dims, solved.iterations.reshape(shape)),
+        "balance_residual": (dims, solved.residual.reshape(shape)),
     }
     return stamp(
         xr.Dataset(data, coords=pressure_coords(over))

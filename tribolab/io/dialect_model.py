@@ -23,6 +23,7 @@ from pydantic import (
 
 from tribolab.errors import TribolabError, nearest
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.turns import Counted, reciprocal
 from tribolab.units import base_unit, conversion, to_si
 
 
@@ -165,7 +166,8 @@ class Column(_Strict):
         if (self.name is None) == (self.position is None):
             raise ValueError(f"column '{self.quantity}': give either name or position")
         if self.unit is not None:
-            _check_unit(self.unit, quantity(self.quantity).unit)
+            known = quantity(self.quantity)
+            _check_unit(self.unit, known.unit, known.bare)
         return self
 
 
@@ -188,8 +190,13 @@ class Value(_Strict):
         if re.compile(self.pattern).groups < 1:
             raise ValueError(f"value '{self.name}': the pattern needs a group ( ) for the value")
         if self.unit is not None:
-            _check_unit(self.unit, self.si_unit)
+            _check_unit(self.unit, self.si_unit, self.bare)
         return self
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it, if the name is a quantity."""
+        return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
 
     @property
     def si_unit(self) -> str:
@@ -208,7 +215,10 @@ class Value(_Strict):
 
     def _own_unit(self) -> str:
         """SI unit of the unit given: of a quantity of its kind, else of base units."""
-        for unit in dict.fromkeys(known.unit for known in QUANTITIES.values()):
+        units = dict.fromkeys(known.unit for known in QUANTITIES.values())
+        if reciprocal(str(self.unit)):  # cycles stay cycles
+            units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
+        for unit in units:
             with contextlib.suppress(TribolabError):
                 conversion(str(self.unit), unit)
                 return unit
@@ -292,8 +302,8 @@ class Dialect(_Strict):
         return self
 
 
-def _check_unit(unit: str, si_unit: str) -> None:
+def _check_unit(unit: str, si_unit: str, bare: Counted | None = None) -> None:
     try:
-        conversion(unit, si_unit)
+        conversion(unit, si_unit, bare)
     except TribolabError as error:
         raise ValueError(str(error)) from error
