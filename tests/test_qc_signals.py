@@ -185,14 +185,14 @@ def test_noise_and_weak_waves_have_no_periods():
 
 
 def test_values_beyond_belief_and_beyond_physics_are_told_apart():
-    kelvin = schema.RANGES["temperature"]
+    kelvin = schema.ranges()["temperature"]
     assert schema.in_range(np.array([293.0, 20.0, -3.0, np.nan]), kelvin).tolist() == [
         GOOD,
         SUSPECT,
         FAIL,
         NOT_EVALUATED,
     ]
-    for span in schema.RANGES.values():
+    for span in schema.ranges().values():
         assert span.lowest <= span.low < span.high <= span.highest and span.reason
 
 

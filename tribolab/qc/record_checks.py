@@ -19,7 +19,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
     for name, unit in schema.wrong_units(run).items():
         results.append(Result("fail", name, f"{name} is in '{unit}', not in SI"))
-    for name, span in schema.RANGES.items():
+    for name, span in schema.ranges().items():
         if name not in run:
             continue
         flags = schema.in_range(run[name].values, span)
