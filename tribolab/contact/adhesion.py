@@ -72,9 +72,9 @@ def adhesion(
     `nodes` from 200 changes areas by less than 0.1 %.
 
     ``balance_residual`` is the misfit of Eq. (11) at the largest wavenumber, relative to its terms;
-    at the other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa for a
-    smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant if
-    gamma_eff(1) > 0.
+    at the other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa
+    for a smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant
+    if gamma_eff(1) > 0.
 
     References
     ----------

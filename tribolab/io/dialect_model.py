@@ -24,7 +24,7 @@ from pydantic import (
 from tribolab.errors import TribolabError, nearest
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
-from tribolab.units import base_unit, conversion, to_si
+from tribolab.units import base_unit, conversion, positive, to_si
 
 
 def _is_pattern(text: str) -> str:
@@ -126,10 +126,17 @@ class Time(_Strict):
     rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
     rate_unit: str = "Hz"
     restart: Literal["error", "continue"] = Field(
-        "error", description="'continue': the clock starts anew at each step or file"
+        "error",
+        description="'continue': where the clock starts anew (in a table, at a step, in a file), "
+        "time goes on",
     )
-    on_repeat: Literal["error", "drop"] = Field(
-        "error", description="'drop': rows whose time is not later than all before are left out"
+    wrap: str | None = Field(
+        None, description="the clock's counter begins anew after this time, e.g. '65.536 s'"
+    )
+    on_repeat: Literal["error", "drop", "interpolate"] = Field(
+        "error",
+        description="rows whose time is not later than all before: 'drop' leaves them out, "
+        "'interpolate' gives them times evenly between their neighbours'",
     )
     start_pattern: Pattern | None = Field(
         None, description="group 1 is the date and time at which a step (or the file) starts"
@@ -142,9 +149,23 @@ class Time(_Strict):
             raise ValueError("source = 'rate' and rate (or rate_pattern) belong together")
         if self.rate:
             to_si(self.rate, "Hz", "time.rate")
+        if self.wrap:
+            positive(self.wrap, "s", "time.wrap")
         if bool(self.start_pattern) != bool(self.start_format):
             raise ValueError("start_pattern and start_format belong together")
         return self
+
+
+class Rows(_Strict):
+    """What may be lost of a table's rows."""
+
+    left_out: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="share of the rows that may be left out because it is meant; beyond it, and "
+        "beyond the limits of the check `rows_left_out`, the run is suspect or fails",
+    )
 
 
 class Column(_Strict):
@@ -275,6 +296,7 @@ class Dialect(_Strict):
     text: Text = Text()
     header: Header = Header()
     time: Time = Time()
+    rows: Rows = Rows()
     speed: Speed = Speed()
     pair: Pair | None = None
     marks: Marks | None = None
