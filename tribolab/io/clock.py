@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError
-from tribolab.io.clock_faults import Faults, find_faults, first_fault
+from tribolab.io.clock_faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.pieces import Content, Piece, last_match
 from tribolab.units import to_si
@@ -162,11 +162,7 @@ def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
         dialect.time.on_repeat == "interpolate" and faults.starts
     ):
         raise ReadError(_refusal(time, row, faults, where, dialect))
-    good = ~(faults.missing | faults.astray)
-    highest = np.fmax.accumulate(np.where(good, time, np.nan))
-    later = np.ones(len(time), dtype=bool)
-    later[1:] = ~(time[1:] <= highest[:-1])
-    good &= later
+    good = ~rows_at_fault(time, faults)
     if not good.any():
         raise ReadError(f"{where}: not one time is a finite number")
     if dialect.time.on_repeat == "interpolate":

@@ -89,6 +89,22 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
     return Faults(starts, astray, missing)
 
 
+def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
+    """Which rows have no time of their own: missing, astray, or not later than all before.
+
+    Parameters
+    ----------
+    time
+        [s] (time), its parts joined.
+    faults
+        What is wrong with it.
+    """
+    good = ~(faults.missing | faults.astray)
+    highest = np.fmax.accumulate(np.where(good, time, np.nan))
+    good[1:] &= ~(time[1:] <= highest[:-1])
+    return ~good
+
+
 class _Search:
     """Goes through the falls of a clock, which are few, in their order."""
 

@@ -97,10 +97,14 @@ def _time_table(understood: Understood) -> str:
             lines[1] += "    # guessed: rows are counted as seconds"
             lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
             lines.append('# source = "rate"\n# rate = "? Hz"')
-    if understood.on_repeat:
-        lines.append('on_repeat = "drop"    # guessed: leave out rows that are not later')
+    if understood.on_repeat == "drop":
+        lines.append('on_repeat = "drop"    # guessed: leave out rows that repeat the one before')
+    elif understood.on_repeat:
+        lines.append(
+            'on_repeat = "interpolate"    # guessed: rows that are not later get times between'
+        )
     if understood.restart:
-        lines.append('restart = "continue"    # the clock starts anew at each step')
+        lines.append('restart = "continue"    # the clock starts anew, or wraps')
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
