@@ -83,6 +83,9 @@ class Text(_Strict):
     decimal: Literal[".", ","] = Field(".", description="decimal mark")
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
     end: Pattern | None = Field(None, description="a line matching this ends the table")
+    skip_lines: Pattern | None = Field(
+        None, description="lines below the header matching this are passed over: comments, marks"
+    )
 
     @model_validator(mode="after")
     def _delimiter_is_usable(self) -> Self:

@@ -68,6 +68,8 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.append("missing = [" + ", ".join(map(_text, understood.missing)) + "]")
     if layout.end:
         lines.append(f"end = {_pattern(layout.end)}")
+    if layout.skip_lines:
+        lines.append(f"skip_lines = {_pattern(layout.skip_lines)}    # guessed: the table goes on")
     return "\n".join(lines) + "\n"
 
 
