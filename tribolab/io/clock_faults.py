@@ -21,7 +21,13 @@ _ASTRAY = 50  # at most one row in so many goes astray in one go (or ten rows)
 _TICKS = [10.0**k for k in range(-9, 1)]
 # what counters hold: bits of ticks, and a day; a clock that falls by one of them has wrapped
 COUNTERS = tuple(
-    sorted({2.0**bits * tick for bits in (8, 10, 12, 15, 16, 20, 24, 31, 32) for tick in _TICKS})
+    sorted(
+        {
+            2.0**bits * tick
+            for bits in (8, 10, 12, 14, 15, 16, 18, 20, 24, 31, 32)
+            for tick in _TICKS
+        }
+    )
 )
 COUNTERS += (43_200.0, 86_400.0)
 

@@ -18,7 +18,7 @@ from tribolab.io.clock import Mended
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.pieces import Content
 
-_ROWS = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
+ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 
 
 def row_attributes(
@@ -62,6 +62,22 @@ def _counted(kept: int, reasons: Mapping[str, int]) -> dict[str, Any]:
     return attrs
 
 
+def rows_in_words(attrs: Mapping[str, Any]) -> str:
+    """Say how many rows of the file are not in the run, and why; empty where all are.
+
+    Examples
+    --------
+    >>> rows_in_words(
+    ...     {"rows_in_file": 50, "rows_left_out": 1, "rows_left_out_why": "1 cut short at the end"}
+    ... )
+    '1 of 50 rows (2.00%): 1 cut short at the end'
+    """
+    lost, rows = int(attrs.get("rows_left_out", 0)), int(attrs.get("rows_in_file", 0))
+    if not lost or not rows:
+        return ""
+    return f"{lost} of {rows} rows ({lost / rows:.2%}): {attrs.get('rows_left_out_why', '')}"
+
+
 def with_companion_rows(merged: xr.Dataset, run: xr.Dataset, motion: xr.Dataset) -> xr.Dataset:
     """Add to a merged run's attributes what its two logs lost, and what only one of them covers.
 
@@ -72,7 +88,9 @@ def with_companion_rows(merged: xr.Dataset, run: xr.Dataset, motion: xr.Dataset)
     run, motion
         The logs (time).
     """
-    companion = {f"companion_{key}": motion.attrs[key] for key in _ROWS if key in motion.attrs}
+    companion = {
+        f"companion_{key}": motion.attrs[key] for key in ROW_ATTRIBUTES if key in motion.attrs
+    }
     if alone := run.sizes["time"] - merged.sizes["time"]:
         companion["rows_not_covered"] = alone
     return merged.assign_attrs(companion)

@@ -15,7 +15,12 @@ from tribolab.errors import ReadError
 from tribolab.io.clock import join_clocks, mended_time, set_time
 from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.pieces import Content, read_content
-from tribolab.io.row_counts import row_attributes, with_companion_rows
+from tribolab.io.row_counts import (
+    ROW_ATTRIBUTES,
+    row_attributes,
+    rows_in_words,
+    with_companion_rows,
+)
 from tribolab.io.signature import peek
 from tribolab.io.values import single_values, step_values
 from tribolab.provenance import CONVENTIONS, history_line
@@ -163,7 +168,8 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
     dict
         ``file``, ``instrument``, ``title``, ``columns`` (quantity -> label, unit, minimum and
         maximum in SI), ``not_used``, ``rows``, ``duration_s``, ``interval_s`` (median),
-        ``longest_interval_s``, ``steps`` and ``metadata``.
+        ``longest_interval_s``, ``steps``, ``left_out`` (rows of the file that are not in the run,
+        and why; empty if all are) and ``metadata``.
 
     Raises
     ------
@@ -188,7 +194,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
     known = known_dialects()
     title = load_dialect(instrument or name).title if instrument or name in known else ""
     known_attrs = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
-    known_attrs |= {"columns_not_used", "columns_used", "instrument"}
+    known_attrs |= {"columns_not_used", "columns_used", "instrument", *ROW_ATTRIBUTES}
     unused = str(run.attrs.get("columns_not_used", ""))
     return {
         "file": str(path),
@@ -201,6 +207,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
         "interval_s": float(np.median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,
         "steps": int(np.unique(run["step"]).size) if "step" in run else None,
+        "left_out": rows_in_words(run.attrs),
         "metadata": {k: v for k, v in run.attrs.items() if k not in known_attrs},
     }
 
