@@ -130,6 +130,22 @@ def test_every_new_start_is_found_at_its_row(seed):
     assert np.abs(np.diff(joined) - 0.02).max() < 0.02
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_groups_of_stamps_astray_are_no_new_starts(seed):
+    rng = np.random.default_rng(seed + 200)
+    count = int(rng.integers(300, 3000))
+    clock = 0.2 * np.arange(count) + rng.normal(0, 0.02, count)
+    right = clock.copy()
+    many = int(rng.integers(1, 6))
+    for first in rng.choice(np.arange(20, count - 20, 12), 5, replace=False):
+        clock[first : first + many] = rng.choice([0.0, -1.0, 1e6, 4294967.295, clock[first] - 9])
+    faults = find_faults(clock)
+    assert faults.starts == ()
+    kept = ~rows_at_fault(clock, faults)
+    np.testing.assert_array_equal(clock[kept], right[kept])
+    assert count - kept.sum() <= 5 * many + 5
+
+
 def test_stamps_astray_are_told_from_new_starts():
     clock = 0.1 * np.arange(500)
     clock[100:103], clock[300], clock[400] = [0.0, 0.1, 0.2], 999.0, np.nan

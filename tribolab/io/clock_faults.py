@@ -147,7 +147,8 @@ class _Search:
                 done = stop
             elif (start := self._astray_above(row)) is not None:
                 self.astray[start:row] = True
-                self.top = float(self.time[self.first : start].max())
+                part = slice(self.first, start)
+                self.top = float(self.time[part][~self.astray[part]].max())
             elif self._is_start(row):
                 self._start(row)
         self._settle_wraps()
@@ -169,7 +170,8 @@ class _Search:
     def _astray_above(self, row: int) -> int | None:
         """First of the rows before a fall that had jumped ahead of the clock."""
         begin = max(self.first, row - self.reach - 1)
-        below = np.flatnonzero(self.time[begin:row] < self.time[row])
+        below = (self.time[begin:row] < self.time[row]) & ~self.astray[begin:row]
+        below = np.flatnonzero(below)
         if not below.size:
             return None
         last = begin + int(below[-1])
@@ -207,14 +209,22 @@ class _Search:
         return float(np.median(before)) if before.size else self.usual
 
     def _settle_wraps(self) -> None:
-        """Take a counter that wrapped once for one that always does: gaps at its wraps are gaps."""
+        """Let a clock either wrap or start anew.
+
+        A clock that starts anew falls to where it began, once in a while by what a counter holds; a
+        counter always falls by that much, or, where rows are missing at its wrap, lands ahead.
+        """
         periods = {start.period for start in self.starts} - {0.0}
-        if len(periods) != 1:
+        if not periods or self.wrap:
             return
-        [period] = periods
-        if np.ptp(self.time[~self.astray]) > period:
-            return
-        for k, start in enumerate(self.starts):
-            fall = start.ahead - self.usual
-            if not start.period and 0.5 * period < fall < period:
-                self.starts[k] = Start(start.row, period, period)
+        others = [start for start in self.starts if not start.period]
+        period = min(periods)
+        lands_ahead = all(
+            self.time[start.row] > 3 * self.usual and 0.5 * period < start.ahead < period
+            for start in others
+        )
+        one = len(periods) == 1 and lands_ahead and np.ptp(self.time[~self.astray]) <= period
+        if one or not others and len(periods) == 1:
+            self.starts = [Start(start.row, period, period) for start in self.starts]
+        else:
+            self.starts = [start._replace(period=0.0) for start in self.starts]
