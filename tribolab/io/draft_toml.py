@@ -119,6 +119,11 @@ def _speed_table(kind: str, columns: list[DraftColumn]) -> str:
     waiting = {column.quantity for column in columns if column.fill_in}
     if source == "none" and kind == "run" and waiting & {"position", "sliding_velocity"}:
         lines.append('# "position" or "column", once that column (below) has its unit')
+    elif source == "none" and kind == "run" and "rotation_speed" in names:
+        lines.append(
+            f"# {FILL_IN}: the radius of the track, if the disc's rotation tells the speed"
+        )
+        lines.append('# source = "rotation"\n# radius = "? mm"')
     return "\n".join(lines) + "\n"
 
 
