@@ -102,11 +102,15 @@ def _in_words(faults: Faults, time: np.ndarray) -> list[str]:
     anew = [start.row + 1 for start in faults.starts if not start.period]
     if anew:
         rows = ", ".join(str(row) for row in anew[:5]) + (" ..." if len(anew) > 5 else "")
-        said.append(f"the clock starts anew {len(anew)} times within the table, at row {rows}")
+        said.append(f"the clock starts anew within the table, {_times(len(anew))}, at row {rows}")
     periods = [start.period for start in faults.starts if start.period]
     if periods:
-        said.append(f"the clock wraps {len(periods)} times, every {periods[0]:.9g} s")
+        said.append(f"the clock wraps after {periods[0]:.9g} s, {_times(len(periods))}")
     return said
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
 
 
 def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
