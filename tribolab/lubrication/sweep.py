@@ -13,6 +13,7 @@ from tribolab.contact.hertz import hertz_half_width, hertz_pressure
 from tribolab.contact.line import line_kernel, rough_line_contact
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import SHORTEST, layout
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mesh import Mesh, graded_mesh
 from tribolab.lubrication.mixed import (
@@ -24,10 +25,10 @@ from tribolab.lubrication.mixed import (
     solve_speed,
 )
 
-_INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
 _SUBSTEPS = 100  # failures on the way that are forgiven
 _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # roughnesses
+_START_POINTS = 101  # of the line contact that the dry contact starts from
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
 
 
@@ -49,9 +50,10 @@ def lubrication_problem(
     separation: Separation | None,
     factors: FlowFactors,
     load: float,
-    films: tuple[float, float],
+    film: float,
     cells: int,
     domain: float,
+    inlet_length: float = np.inf,
 ) -> Problem:
     """Choose scales and mesh.
 
@@ -61,30 +63,36 @@ def lubrication_problem(
         Geometry, contact law (none if smooth) and flow.
     load
         F_N/L [N/m].
-    films
-        `film_estimate` [m] at the lowest and the highest speed.
+    film
+        `film_estimate` [m] at the speed; 0 at rest.
     cells
         Cells of the mesh.
     domain
-        Length of the domain over the default, which is 6 half-widths before the middle and 5
-        behind it; roughness and thick films count as half-width as far as they widen the contact.
+        Length of the domain over the default, see `layout`.
+    inlet_length
+        Where the liquid begins [m], before the contact's middle.
+
+    Raises
+    ------
+    AnalysisError
+        If the liquid begins too near the contact.
     """
     a, radius = float(hertz_half_width(load, contact)), contact.radius
     decay = separation.decay_length if separation else 0.0
+    # roughness counts as half-width as far as it widens the contact
     half_width = np.sqrt(a**2 + 4 * radius * decay)
     gap = half_width**2 / (2 * radius)
-    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
-    edge = (max(decay, films[0]) / gap / 1.9) ** (2 / 3)
-    reach = np.sqrt(1 + 2 * radius * films[1] / half_width**2) * domain
-    mesh = graded_mesh(
-        cells,
-        _rounded(np.clip(edge, 3e-4, 0.5)),
-        _rounded(_INLET * reach),
-        _rounded(_OUTLET * reach),
-    )
+    if not inlet_length > SHORTEST * half_width:
+        raise AnalysisError(
+            f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
+            f"contact's middle, {SHORTEST * half_width:.3g} m here; got {inlet_length:.3g} m"
+        )
+    found = layout(film / gap, decay / gap, domain, inlet_length / half_width)
+    mesh = graded_mesh(cells, *found)
     pressure = contact.effective_modulus * gap / half_width
+    scaled_load = load / (pressure * half_width)
     return Problem(
-        mesh, factors, separation, load / (pressure * half_width), half_width, gap, pressure
+        mesh, factors, separation, scaled_load, half_width, gap, pressure, inlet_length / half_width
     )
 
 
@@ -99,7 +107,7 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
         If Newton's method fails.
     """
     gamma = problem.separation.gamma if problem.separation else 0.45
-    dry = rough_line_contact(load, contact, psd, gamma)
+    dry = rough_line_contact(load, contact, psd, gamma, _START_POINTS)
     x = problem.mesh.x * problem.half_width
     pressure = np.interp(x, dry.x.values, dry.pressure.values, left=0.0, right=0.0)
     shape = _gap_under(problem, pressure / problem.pressure)
@@ -109,6 +117,17 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
     inside = np.abs(x) <= dry.x.values[-1]
     film = np.where(inside, known, np.maximum(shape + constant, known))
     return solve_speed(problem, 0.0, _bent(problem, film, constant)).state
+
+
+def carried_state(problem: Problem, before: Problem, state: State) -> State:
+    """Take a state over from another mesh of the same contact: its pressure, and the film to it."""
+    mesh, old = problem.mesh, before.mesh
+    pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
+    pressure *= problem.load / (mesh.width @ pressure)
+    shape = _gap_under(problem, pressure)
+    thinnest = int(np.argmin(state.film))
+    constant = float(state.film[thinnest] - np.interp(old.x[thinnest], mesh.x, shape))
+    return State(np.maximum(shape + constant, state.film[thinnest] / 2), constant, pressure)
 
 
 def lifted_state(
@@ -259,11 +278,6 @@ def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: 
 def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
     mesh = problem.mesh
     return mesh.x**2 + line_kernel(mesh.x, mesh.width, 1.0) @ pressure
-
-
-def _rounded(value: float) -> float:
-    """Two digits, so that neighbouring loads and speeds share a mesh."""
-    return float(f"{value:.2g}")
 
 
 def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) -> AnalysisError:
