@@ -24,18 +24,17 @@ def fluid_friction(
     u, fields, mesh = solution.state.film, solution.fields, problem.mesh
     if solution.couette == 0:
         return 0.0, 0.0
-    factors_at = problem.factors.at if friction_factors else _plain
-    factors = factors_at(u * problem.gap)
+    # the pressure's drag from the end of the domain, where it is 0, over the cells' faces
+    between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2])
+    both = np.stack([u, between])
+    factors = problem.factors.at(both * problem.gap) if friction_factors else _plain(both)
     covered = np.ones_like(u)
     # a cavity holds no more than what flows out of the full film, u* = 2 J/v
     covered[fields.front :] = np.minimum(
         1, fields.flux[fields.front] / solution.couette / u[fields.front :]
     )
-    shear = (factors.phi_f + factors.phi_fs) / u * covered
-    # from the end of the domain, where the pressure is 0, over the faces between the cells
-    between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2])
-    across = factors_at(between * problem.gap)
-    drag = across.phi_fp * between / 2 @ np.diff(fields.fluid, prepend=0.0)
+    shear = (factors.phi_f + factors.phi_fs)[0] / u * covered
+    drag = factors.phi_fp[1] * between / 2 @ np.diff(fields.fluid, prepend=0.0)
     # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
     unit = problem.gap / (problem.half_width * problem.load)
     beyond = outside_drag(problem, solution)

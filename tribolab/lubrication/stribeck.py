@@ -295,23 +295,29 @@ def _curve(
     system: System, force: float, speeds: np.ndarray, friction_factors: bool
 ) -> dict[str, np.ndarray]:
     magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
+    points = solve_speeds(system, force, magnitudes)
+    # all in one: the pressures of all meshes have one unit
+    solid = np.stack([one.solution.fields.contact * one.problem.pressure for one in points])
     rows = [
-        _row(system, force, point, friction_factors)
-        for point in solve_speeds(system, force, magnitudes)
+        _row(system, force, point, area, friction_factors)
+        for point, area in zip(points, _area(system, solid), strict=True)
     ]
     return {name: np.array([row[name] for row in rows])[back] for name in rows[0]}
 
 
-def _row(system: System, force: float, point: Point, friction_factors: bool) -> dict[str, float]:
-    """All that a curve has of one speed."""
+def _row(
+    system: System, force: float, point: Point, area: np.ndarray, friction_factors: bool
+) -> dict[str, float]:
+    """All that a curve has of one speed, the relative contact area in its cells being known."""
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
-    real_length = mesh.width @ _area(system, solid * problem.pressure) * problem.half_width
-    couette, pressure = fluid_friction(problem, solution, friction_factors)
+    real_length = mesh.width @ area * problem.half_width
+    plain = fluid_friction(problem, solution, False)
+    couette, pressure = fluid_friction(problem, solution, True) if friction_factors else plain
     return {
         "friction_coefficient_couette": couette,
         "friction_coefficient_pressure": pressure,
-        "friction_without_factors": sum(fluid_friction(problem, solution, False)),
+        "friction_without_factors": sum(plain),
         "friction_per_shear_stress": real_length / force,
         "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
         "minimum_separation": film.min() * problem.gap,

@@ -28,6 +28,7 @@ from tribolab.lubrication.mixed import (
 _SUBSTEPS = 100  # failures on the way that are forgiven
 _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # roughnesses
+_GROWTH = np.log(4.0)  # of the film, at most, in what is extrapolated to the next speed
 _START_POINTS = 101  # of the line contact that the dry contact starts from
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
 
@@ -214,8 +215,8 @@ def sweep(
 
     Notes
     -----
-    ln u goes on in ln v by the secant through the last two speeds. Where Newton's method fails,
-    the step in ln v is halved.
+    ln u goes on in ln v by the parabola through the last three speeds, or the secant through two.
+    Where Newton's method fails, the step in ln v is halved.
     """
     speeds = list(speeds)
     solved, lost = _march(problem, viscosity, speeds, start) if start else ([], None)
@@ -236,7 +237,7 @@ def _march(
 ) -> tuple[list[Solution], NotConvergedError | None]:
     """Go through the speeds in their order; what was solved, and why it ended early if it did."""
     solved: list[Solution] = []
-    known: list[tuple[float, State]] = []  # ln v and state of the last two, the newest last
+    known: list[tuple[float, State]] = []  # ln v and state of the last three, the newest last
     budget = _SUBSTEPS
     for speed in speeds:
         aims = [np.log(speed)]
@@ -253,7 +254,7 @@ def _march(
                     return solved, error
                 aims.append(closer)
                 continue
-            known = [*known[-1:], (aim, found.state)]
+            known = [*known[-2:], (aim, found.state)]
             aims.pop()
         solved.append(found)
     return solved, None
@@ -267,12 +268,38 @@ def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
 def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: float) -> State:
     if not known:
         return start
-    (at, last), (before, first) = known[-1], known[0]
-    if at == before:  # one is known, or two speeds that only rounding tells apart
-        return last
-    part = min((aim - at) / (at - before), 3.0)
-    growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
-    return last.moved(mesh, last.film * (growth - 1), part * (last.constant - first.constant))
+    last = known[-1][1]
+    weights = _extrapolation([at for at, _ in known], aim)
+    used = [state for _, state in known[len(known) - len(weights) :]]
+    log_growth = sum(
+        weight * np.log(state.film / last.film) for weight, state in zip(weights, used, strict=True)
+    )
+    constant = sum(
+        weight * (state.constant - last.constant)
+        for weight, state in zip(weights, used, strict=True)
+    )
+    growth = np.exp(np.clip(log_growth, -_GROWTH, _GROWTH))
+    return last.moved(mesh, last.film * (growth - 1), constant)
+
+
+def _extrapolation(at: list[float], aim: float) -> list[float]:
+    """Weights of the values at the last points that go on to the aim.
+
+    By the parabola where the steps are alike, by the secant where they are not, but by no more
+    than three of its steps; the last value alone where rounding tells two points apart.
+    """
+    if len(at) < 2 or at[-1] == at[-2]:
+        return [1.0]
+    step, ahead = at[-1] - at[-2], aim - at[-1]
+    if len(at) > 2 and ahead / step < 1.5 and 1 / 3 < (at[-2] - at[-3]) / step < 3:
+        a, b, c = at[-3:]
+        return [
+            (aim - b) * (aim - c) / ((a - b) * (a - c)),
+            (aim - a) * (aim - c) / ((b - a) * (b - c)),
+            (aim - a) * (aim - b) / ((c - a) * (c - b)),
+        ]
+    part = min(ahead / step, 3.0)
+    return [-part, 1 + part]
 
 
 def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
