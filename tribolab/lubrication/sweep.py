@@ -46,6 +46,12 @@ def film_estimate(contact: LineContact, viscosity: float, load: float, speed: fl
     return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
 
 
+def half_width(contact: LineContact, separation: Separation | None, load: float) -> float:
+    """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
+    decay = separation.decay_length if separation else 0.0
+    return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
+
+
 def lubrication_problem(
     contact: LineContact,
     separation: Separation | None,
@@ -78,23 +84,18 @@ def lubrication_problem(
     AnalysisError
         If the liquid begins too near the contact.
     """
-    a, radius = float(hertz_half_width(load, contact)), contact.radius
+    b = half_width(contact, separation, load)
     decay = separation.decay_length if separation else 0.0
-    # roughness counts as half-width as far as it widens the contact
-    half_width = np.sqrt(a**2 + 4 * radius * decay)
-    gap = half_width**2 / (2 * radius)
-    if not inlet_length > SHORTEST * half_width:
+    gap = b**2 / (2 * contact.radius)
+    if not inlet_length > SHORTEST * b:
         raise AnalysisError(
             f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
-            f"contact's middle, {SHORTEST * half_width:.3g} m here; got {inlet_length:.3g} m"
+            f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
         )
-    found = layout(film / gap, decay / gap, domain, inlet_length / half_width)
-    mesh = graded_mesh(cells, *found)
-    pressure = contact.effective_modulus * gap / half_width
-    scaled_load = load / (pressure * half_width)
-    return Problem(
-        mesh, factors, separation, scaled_load, half_width, gap, pressure, inlet_length / half_width
-    )
+    begins = inlet_length / b
+    mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
+    pressure = contact.effective_modulus * gap / b
+    return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
 
 
 def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: float) -> State:
