@@ -141,7 +141,13 @@ def test_the_settings_of_a_run_and_no_others_change_its_checksum(folder):
 
 
 WRONG = {
-    "unknown key": ("viscosity =", "viscosty =", 12, "medium.glycerol.viscosty", "mean 'viscosity' or"),
+    "unknown key": (
+        "viscosity =",
+        "viscosty =",
+        12,
+        "medium.glycerol.viscosty",
+        "mean 'viscosity' or",
+    ),
     "unknown table": ("[contact]", "[contakt]", 5, "contakt", "did you mean 'contact'?"),
     "unknown key of a run": ("cycles = true", "cycle = true", 34, "run 2, cycle", "'cycles'?"),
     "key in a run's own table": ("trim = 0.2", "trimm = 0.2", 36, "segments.trimm", "'trim'?"),

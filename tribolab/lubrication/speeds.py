@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from itertools import groupby
 from typing import NamedTuple
 
@@ -17,6 +18,7 @@ from tribolab.lubrication.sweep import (
     carried_state,
     dry_state,
     film_estimate,
+    is_thick,
     lifted_state,
     lubrication_problem,
     sweep,
@@ -96,30 +98,52 @@ def _carried_on(
 
 
 def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
-    """Solve from the dry contact on, or between smooth surfaces from the lowest speed."""
+    """Solve from the dry contact on, from thick films down, or between smooth surfaces.
+
+    The solution is the same whichever way it is reached. From the dry contact is the sure way, but
+    where that has closed its channels, or the first speed parts the surfaces, it is a long one.
+    """
     moving = speeds[speeds > 0]
     around = problem, system.contact, system.viscosity, force
+    at_rest = moving.size < speeds.size
+
+    def from_start(start: State | None) -> list[Solution]:
+        return sweep(
+            problem,
+            system.viscosity,
+            moving,
+            start,
+            lambda: lifted_state(*around, float(moving[-1])),
+        )
+
+    if not at_rest and system.psd is not None and is_thick(*around, float(moving[0])):
+        with contextlib.suppress(AnalysisError):
+            return from_start(None)
     rest, start, no_start = [], None, None
     try:
         if system.psd is None:
             start = wet_state(*around, float(moving[0]))
         else:
             start = dry_state(problem, system.contact, system.psd, force)
-        if moving.size < speeds.size:
+        if at_rest:
             rest = [solve_speed(problem, 0.0, start)]
     except (AnalysisError, NotConvergedError) as error:
         no_start = error
-    if no_start and (system.psd is None or moving.size < speeds.size):
+    if no_start and (system.psd is None or at_rest):
         raise AnalysisError(f"the contact at {speeds[0]:g} m/s: {no_start}") from no_start
     if not moving.size:
         return rest
-
-    def lifted() -> State:
-        return lifted_state(*around, float(moving[-1]))
-
+    if system.psd is not None and start is not None and _is_sealed(problem, start):
+        with contextlib.suppress(AnalysisError):
+            return rest + from_start(None)
     try:
-        return rest + sweep(problem, system.viscosity, moving, start, lifted)
+        return rest + from_start(start)
     except AnalysisError as error:
         if no_start:
             raise AnalysisError(f"{error}; at rest: {no_start}") from error
         raise
+
+
+def _is_sealed(problem: Problem, rest: State) -> bool:
+    """Whether the dry contact has closed its last channel somewhere."""
+    return bool(rest.film.min() * problem.gap < problem.factors.percolation_separation)

@@ -132,6 +132,14 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
     return State(np.maximum(shape + constant, state.film[thinnest] / 2), constant, pressure)
 
 
+def is_thick(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+) -> bool:
+    """Whether a speed parts the surfaces by much more than their roughness."""
+    film = film_estimate(contact, viscosity, load, speed)
+    return film >= _THICK * problem.factors.rms_roughness
+
+
 def lifted_state(
     problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
 ) -> State:
@@ -142,8 +150,8 @@ def lifted_state(
     NotConvergedError
         If there is none.
     """
-    above, roughness = speed, problem.factors.rms_roughness
-    while film_estimate(contact, viscosity, load, above) < _THICK * roughness:
+    above = speed
+    while not is_thick(problem, contact, viscosity, load, above):
         above *= 2
     start = wet_state(problem, contact, viscosity, load, above)
     down = np.geomspace(above, speed, 1 + int(np.ceil(4 * np.log10(above / speed))))
