@@ -184,7 +184,7 @@ def model_uncertainty(
         },
         {
             "sliding_speed": given["speed"],
-            "variation": [one.name for one in varied],
+            "variation": np.array([one.name for one in varied], dtype=str),
             "range_end": ["low", "high"],
         },
     )
@@ -270,10 +270,14 @@ def _table(
     varied: list[Variation], mu: np.ndarray, height: np.ndarray, speed: np.ndarray
 ) -> dict[str, tuple[str, Any]]:
     """Return ends, reasons and largest changes of each variation."""
+    words = {
+        "variation_low": [one.texts[0] for one in varied],
+        "variation_high": [one.texts[1] for one in varied],
+        "variation_reason": [one.reason for one in varied],
+    }
     table: dict[str, tuple[str, Any]] = {
-        "variation_low": ("variation", [one.texts[0] for one in varied]),
-        "variation_high": ("variation", [one.texts[1] for one in varied]),
-        "variation_reason": ("variation", [one.reason for one in varied]),
+        name: ("variation", np.array(texts, dtype=str))  # text also where nothing is varied
+        for name, texts in words.items()
     }
     for name, over in (("largest_change", height.max()), ("largest_relative_change", height)):
         change = np.nanmax(np.abs(mu - height) / over, axis=1)

@@ -25,6 +25,8 @@ from tribolab.lubrication.sweep import (
     wet_state,
 )
 
+_FAR = 10.0  # times the speed before: so far a state is not carried if there is a shorter way
+
 
 class System(NamedTuple):
     """Everything but load and speed, in SI."""
@@ -88,7 +90,9 @@ def _carried_on(
     system: System, force: float, problem: Problem, speeds: list[float], last: Point
 ) -> list[Solution] | None:
     """Go on from the last speed on another mesh; None if that leads nowhere."""
-    if not last.speed:
+    around = problem, system.contact, system.viscosity, force
+    soon = system.psd is None or is_thick(*around, speeds[0])  # is there by itself
+    if not last.speed or (soon and speeds[0] > _FAR * last.speed):
         return None
     start = carried_state(problem, last.problem, last.solution.state)
     try:
