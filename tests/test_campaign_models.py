@@ -185,12 +185,16 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     ):
         text = re.sub(rf"^({line}.*)$", rf"\1\n{more}", text, flags=re.M)
     file, folder = campaign.with_name("ranges.toml"), campaign.parent / "ranges"
-    file.write_text(text + "\n[model]\npoints = 9\n", "utf-8")
+    file.write_text(text + '\n[model]\npoints = 9\ninlet_length = "40 mm"\n', "utf-8")
     folder.mkdir()
     made = process(load_campaign(file), folder, previous=outcome.folder)
     rows = [model_rows(one, one.models[0]) for one in (outcome, made)]
     before, after = ({row["variation"]: row for row in one.sensitivity} for one in rows)
     assert set(after) - set(before) == {"viscosity", "Young's modulus"}
+    assert set(before) - set(after) == {"inlet length"}  # it is stated
+    model = folder / made.models[0].data_file
+    for part in ("curve", "profiles"):
+        assert read_netcdf(model, part).attrs["inlet_length_m"] == 0.04
     assert (after["viscosity"]["low"], after["viscosity"]["high"]) == ("1.2 Pa s", "1.6 Pa s")
     assert after["viscosity"]["largest_relative_change"] > 0.1
     assert "no viscosity_range was given" in rows[0].not_varied

@@ -14,10 +14,11 @@ from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.mixed import _film, _linearised, _rupture, couette_number
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
-from tribolab.lubrication.sweep import dry_state, lubrication_problem
+from tribolab.lubrication.sweep import dry_state
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)
 CASES = [("Smooth", 1e-6), ("Sb-S", 1e-4), ("Sb-R", 1e-3), ("Sb-R", 1e-1)]

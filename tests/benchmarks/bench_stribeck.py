@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from tribolab.contact.line import line_kernel
 from tribolab.contact.separation import separation_table
+from tribolab.lubrication.domain import film_estimate, lubrication_problem
 from tribolab.lubrication.factors import _tabulated, flow_factors
 from tribolab.lubrication.mixed import (
     LEAK,
@@ -27,7 +28,7 @@ from tribolab.lubrication.mixed import (
     solve_speed,
 )
 from tribolab.lubrication.stribeck import stribeck_curve
-from tribolab.lubrication.sweep import dry_state, film_estimate, lubrication_problem
+from tribolab.lubrication.sweep import dry_state
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)
 CASES = [("Smooth", 310.0)] + [

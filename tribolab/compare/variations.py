@@ -12,9 +12,8 @@ import xarray as xr
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.domain import SHORTEST
+from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
-from tribolab.lubrication.sweep import half_width
 from tribolab.surface.extrapolation import MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 

@@ -1,4 +1,4 @@
-"""How much of the gap is solved at a speed, and the drag of the liquid beyond its ends."""
+"""Scales and mesh of a speed, how much of the gap is solved, and the drag beyond its ends."""
 
 from __future__ import annotations
 
@@ -7,6 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import hyp2f1
 
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width
+from tribolab.contact.separation import Separation
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mesh import graded_mesh
 from tribolab.lubrication.mixed import Problem, Solution
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in reaches of the film
@@ -55,6 +61,71 @@ def layout(film: float, decay: float, domain: float, inlet_length: float) -> Lay
         _rounded(_OUTLET * reach),
         size,
     )
+
+
+def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
+    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
+
+    Notes
+    -----
+    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
+    """
+    radius, stiff = contact.radius, 2 * contact.effective_modulus
+    entrained = viscosity * speed / 2
+    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
+    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
+
+
+def half_width(contact: LineContact, separation: Separation | None, load: float) -> float:
+    """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
+    decay = separation.decay_length if separation else 0.0
+    return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
+
+
+def lubrication_problem(
+    contact: LineContact,
+    separation: Separation | None,
+    factors: FlowFactors,
+    load: float,
+    film: float,
+    cells: int,
+    domain: float,
+    inlet_length: float = np.inf,
+) -> Problem:
+    """Choose scales and mesh.
+
+    Parameters
+    ----------
+    contact, separation, factors
+        Geometry, contact law (none if smooth) and flow.
+    load
+        F_N/L [N/m].
+    film
+        `film_estimate` [m] at the speed; 0 at rest.
+    cells
+        Cells of the mesh.
+    domain
+        Length of the domain over the default, see `layout`.
+    inlet_length
+        Where the liquid begins [m], before the contact's middle.
+
+    Raises
+    ------
+    AnalysisError
+        If the liquid begins too near the contact.
+    """
+    b = half_width(contact, separation, load)
+    decay = separation.decay_length if separation else 0.0
+    gap = b**2 / (2 * contact.radius)
+    if not inlet_length > SHORTEST * b:
+        raise AnalysisError(
+            f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
+            f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
+        )
+    begins = inlet_length / b
+    mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
+    pressure = contact.effective_modulus * gap / b
+    return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
 
 
 def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:

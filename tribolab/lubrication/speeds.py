@@ -12,15 +12,14 @@ import xarray as xr
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import film_estimate, lubrication_problem
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mixed import NotConvergedError, Problem, Solution, State, solve_speed
 from tribolab.lubrication.sweep import (
     carried_state,
     dry_state,
-    film_estimate,
     is_thick,
     lifted_state,
-    lubrication_problem,
     sweep,
     wet_state,
 )

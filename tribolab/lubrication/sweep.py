@@ -1,4 +1,4 @@
-"""From the dry contact up in speed: scales, a state to start from, and a step that never jumps."""
+"""From the dry contact up in speed: a state to start from, and a step that never jumps."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import LineContact
-from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.hertz import hertz_pressure
 from tribolab.contact.line import line_kernel, rough_line_contact
-from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.domain import SHORTEST, layout
-from tribolab.lubrication.factors import FlowFactors
-from tribolab.lubrication.mesh import Mesh, graded_mesh
+from tribolab.lubrication.domain import film_estimate
+from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.mixed import (
     NotConvergedError,
     Problem,
@@ -31,71 +29,6 @@ _THICK = 5.0  # roughnesses
 _GROWTH = np.log(4.0)  # of the film, at most, in what is extrapolated to the next speed
 _START_POINTS = 101  # of the line contact that the dry contact starts from
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
-
-
-def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
-    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
-
-    Notes
-    -----
-    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
-    """
-    radius, stiff = contact.radius, 2 * contact.effective_modulus
-    entrained = viscosity * speed / 2
-    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
-    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
-
-
-def half_width(contact: LineContact, separation: Separation | None, load: float) -> float:
-    """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
-    decay = separation.decay_length if separation else 0.0
-    return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
-
-
-def lubrication_problem(
-    contact: LineContact,
-    separation: Separation | None,
-    factors: FlowFactors,
-    load: float,
-    film: float,
-    cells: int,
-    domain: float,
-    inlet_length: float = np.inf,
-) -> Problem:
-    """Choose scales and mesh.
-
-    Parameters
-    ----------
-    contact, separation, factors
-        Geometry, contact law (none if smooth) and flow.
-    load
-        F_N/L [N/m].
-    film
-        `film_estimate` [m] at the speed; 0 at rest.
-    cells
-        Cells of the mesh.
-    domain
-        Length of the domain over the default, see `layout`.
-    inlet_length
-        Where the liquid begins [m], before the contact's middle.
-
-    Raises
-    ------
-    AnalysisError
-        If the liquid begins too near the contact.
-    """
-    b = half_width(contact, separation, load)
-    decay = separation.decay_length if separation else 0.0
-    gap = b**2 / (2 * contact.radius)
-    if not inlet_length > SHORTEST * b:
-        raise AnalysisError(
-            f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
-            f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
-        )
-    begins = inlet_length / b
-    mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
-    pressure = contact.effective_modulus * gap / b
-    return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
 
 
 def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: float) -> State:
