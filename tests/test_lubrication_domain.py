@@ -16,6 +16,7 @@ def friction(name, speeds, load=310.0, **more):
     return stribeck_curve(CONTACT, psd, 1.4, load, 0.84e6, speeds, **more).friction_coefficient
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "load"), [("Smooth", 310.0), ("Smooth", 2110.0), ("Sb-S", 310.0), ("Sb-R", 2110.0)]
 )
@@ -51,6 +52,7 @@ def test_friction_and_film_are_converged_up_to_a_metre_a_second(name, load):
         np.testing.assert_allclose(ours[part], brute[part], rtol=within)
 
 
+@pytest.mark.slow
 def test_a_short_domain_and_a_long_one_are_the_same():
     """What is not solved is known: 12, 60 and 120 reaches of the film."""
     speeds = [1e-4, 1e-2, 1e-1, 1.0]
