@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.constancy import Record, held_part, is_constant
 from tribolab.friction.plateaus import (
     Noise,
     estimate_noise,
@@ -55,6 +56,30 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
     pieces = _locate(time, velocity, limits, None, None)
     pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
     return _proven(pieces, limits)
+
+
+def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
+
+    Parameters
+    ----------
+    data
+        The record that the pieces are of.
+    pieces
+        From `locate`, in samples of the record.
+    limits
+        What counts as constant.
+    """
+    result: list[Piece] = []
+    for piece in pieces:
+        if piece.kind != "constant":
+            result.append(piece)
+            continue
+        first, last = held_part(data, piece.first, piece.last, limits.drift)
+        kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
+        parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
+        result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
+    return _fused(result, limits)
 
 
 def block_size(samples: int, most: int = MOST_BLOCKS) -> int:

@@ -76,8 +76,9 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
     The spread of differences is taken per quarter decade of speed, because the lowest speed may
     drown in a floor that the highest does not show.
     """
-    middle = np.abs(velocity[1:] + velocity[:-1]) / 2
-    difference = np.abs(np.diff(velocity)) / np.sqrt(2)
+    # second differences: a ramp has none, so that what one part does is no noise of another
+    middle = np.abs(velocity[2:] + velocity[1:-1] + velocity[:-2]) / 3
+    difference = np.abs(np.diff(velocity, 2)) / np.sqrt(6)
     top = np.quantile(middle, 0.98) if middle.size else 0.0
     if top == 0:
         return Noise(0.0, 0.0)
@@ -96,6 +97,8 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
             levels.append((np.median(middle[inside]), spread, chosen.size))
     if not levels:
         return Noise(float(np.median(difference) / 0.6745), 0.0)
+    if max(speed for speed, _, _ in levels) <= 0.03 * top:
+        return Noise(float(min(spread for _, spread, _ in levels)), 0.0)
     speed, spread, count = np.array(levels).T
     floor = float(spread.min())
     high = speed > 0.03 * top
@@ -131,7 +134,7 @@ def find_breaks(
             # noise with memory spreads the window means more than white noise would; windows too
             # wide to be many cannot tell, and keep what the narrower ones told
             if 16 * width <= m:
-                usual = score[clear][:: 1 + m // 2048]
+                usual = _bends(total, noise, width, k[clear][:: 1 + m // 2048])
                 usual = usual[np.isfinite(usual)]
                 if usual.size > 16:
                     memory = max(memory, float(np.median(usual)) / 0.6745)
@@ -141,6 +144,19 @@ def find_breaks(
             found = np.concatenate([found, found_now])
         width *= 2
     return np.sort(found)
+
+
+def _bends(total: np.ndarray, noise: Noise, width: int, k: np.ndarray) -> np.ndarray:
+    """Second differences of neighbouring window means in standard errors: a ramp has none."""
+    k = k[(k >= width) & (k + 2 * width < total.size)]
+    first, second, third = (
+        (total[k + (i + 1) * width] - total[k + i * width]) / width for i in (-1, 0, 1)
+    )
+    bend = np.abs(first - 2 * second + third)
+    larger = np.maximum(np.abs(first), np.abs(third))
+    variance = noise.variance(first) + 4 * noise.variance(second) + noise.variance(third)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(bend > 1e-12 * larger, bend / np.sqrt(variance / width), 0.0)
 
 
 def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:

@@ -9,7 +9,8 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction import slopes
-from tribolab.friction.locate import Limits, Piece, locate
+from tribolab.friction.constancy import Record
+from tribolab.friction.locate import Limits, Piece, held, locate
 
 
 class Stretch(NamedTuple):
@@ -65,6 +66,7 @@ def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
     if time.size < 2:
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, limits), 0.05
+    pieces = held(Record(time, velocity=velocity), pieces, limits)
     return _in_time(run, time, pieces, limits, max_gap, share)
 
 
@@ -78,6 +80,7 @@ def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
     pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
     pieces[-1] = pieces[-1]._replace(last=time.size)
     pieces = _kinks(time, position, pieces, size)
+    pieces = held(Record(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
     return _in_time(run, time, pieces, limits, max_gap, share)
