@@ -47,6 +47,8 @@ class Record:
     ) -> None:
         self.time = time
         self._from_position = position is not None
+        # what white noise of a bin becomes in one of twice the width
+        self.averaging = 2**-1.5 if self._from_position else 2**-0.5
         values = running_median(position) if position is not None else velocity
         if values is None:
             raise ValueError("a velocity or a position is wanted")
@@ -77,7 +79,8 @@ class Record:
 
     def _slopes(self, edges: np.ndarray) -> np.ndarray:
         half = np.diff(edges).mean() / 2 if edges.size > 1 else 0.0
-        at = np.searchsorted(self.time, [edges - half, edges + half])
+        around = np.clip([edges - half, edges + half], edges[0], edges[-1])
+        at = np.searchsorted(self.time, around)
         count = at[1] - at[0]
         with np.errstate(divide="ignore", invalid="ignore"):
             where, when = (
@@ -111,23 +114,31 @@ def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, i
     drift
         Relative change that a constant speed may show.
     """
-    count = min(4 * INSIDE, (last - first) // 2)
-    if count < 2 * FEWEST:
-        return first, last
-    at = first + (last - first) * np.arange(count + 1) // count
-    edges = data.time[np.minimum(at, data.time.size - 1)]
-    values = data.means(edges)
-    middle = values[count // 4 : count - count // 4]
-    if not np.isfinite(middle).any():
-        return first, last
-    level = float(np.nanmedian(middle))
-    off = np.abs(values - level) > max(drift / 2 * abs(level), 4 * _scatter(middle))
-    off &= np.isfinite(values)
-    skipped = int(np.argmin(np.append(off, False)))
-    left = int(np.argmin(np.append(off[::-1], False)))
-    if skipped + left >= count // 2:  # not the ends: the piece has no level
-        return first, last
-    return int(at[skipped]), int(at[count - left])
+    noise = 0.0
+    for count in (4 * INSIDE, 2 * INSIDE, INSIDE):  # coarser where noise hides the ends
+        count = min(count, (last - first) // 2)
+        if count < 2 * FEWEST:
+            break
+        at = first + (last - first) * np.arange(count + 1) // count
+        values = data.means(data.time[np.minimum(at, data.time.size - 1)])
+        middle = values[count // 4 : count - count // 4]
+        if not np.isfinite(middle).any():
+            break
+        level = float(np.nanmedian(middle))
+        # few bins tell their scatter poorly: no less than the finer ones'
+        noise = max(_scatter(middle), noise)
+        limit = max(drift / 2 * abs(level), 4 * noise)
+        off = np.abs(values - level) > limit
+        off &= np.isfinite(values)
+        before = int(np.argmin(np.append(off, False)))
+        after = int(np.argmin(np.append(off[::-1], False)))
+        if before + after >= count // 2:  # not the ends: the piece has no level
+            break
+        first, last = int(at[before]), int(at[count - after])
+        if limit > 4 * noise:
+            break
+        noise *= data.averaging
+    return first, last
 
 
 def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
@@ -163,19 +174,24 @@ def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
     inside = inside[known]
     level = float(inside.mean())
     core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
-    change, sure = _change(place[core], inside[core])
-    if sure > SURE and change > drift * abs(level):
+    if _changes(place[core], inside[core], drift * abs(level)):
         return False
     return not _goes_on(data, inside, begin, end, level, drift)
 
 
-def _change(place: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Range of the cubic through bins, and the squares by which it is better than a constant."""
+def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
+    """Whether bins surely change by more than `most` along the piece."""
     cubic = _fit(place, values, 3)
     left = float(((values - cubic) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
     variance = max(left, 1e-12 * float((values**2).sum())) / max(values.size - 4, 1)
-    return float(np.ptp(cubic)), (about - left) / variance if variance > 0 else 0.0
+    if np.ptp(cubic) > most and about - left > SURE * variance:
+        return True
+    # a kink is no cubic: means of quarters, whose range is three quarters of a ramp's
+    parts = np.array_split(values, 4)
+    apart = float(np.ptp([part.mean() for part in parts])) * 4 / 3
+    scatter = float(np.sqrt(np.mean(np.diff(values, 2) ** 2) / 6))
+    return apart > most and apart > 8 * scatter / np.sqrt(values.size / 4)
 
 
 def _goes_on(
@@ -213,5 +229,5 @@ def _goes_on(
     own = slice(near[0].size, near[0].size + count)
     about = float(((inside - level) ** 2).sum()) / (count - 1)
     left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
-    # a plateau that is left over more than its own length has to prove that it is one
-    return left < (BETTER if longest < count else 1.1) * about
+    # the longer the way on which a plateau is left, the more it has to prove that it is one
+    return left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about

@@ -134,10 +134,13 @@ def find_breaks(
             # noise with memory spreads the window means more than white noise would; windows too
             # wide to be many cannot tell, and keep what the narrower ones told
             if 16 * width <= m:
-                usual = _bends(total, noise, width, k[clear][:: 1 + m // 2048])
-                usual = usual[np.isfinite(usual)]
-                if usual.size > 16:
-                    memory = max(memory, float(np.median(usual)) / 0.6745)
+                usual = score[clear][:: 1 + m // 2048]
+                bends = _bends(total, noise, width, k[clear][:: 1 + m // 2048])
+                usual, bends = usual[np.isfinite(usual)], bends[np.isfinite(bends)]
+                if min(usual.size, bends.size) > 16:
+                    # a ramp spreads the means as well, but it does not bend
+                    spread = min(float(np.median(usual)), float(np.median(bends)))
+                    memory = max(memory, spread / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
             free[found_now] = 1
