@@ -102,6 +102,14 @@ def _scatter(values: np.ndarray) -> float:
     return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
 
 
+def _smoothed(values: np.ndarray) -> np.ndarray:
+    """Running median of three bins."""
+    if values.size < 3:
+        return values
+    padded = np.concatenate([values[:1], values, values[-1:]])
+    return np.median(np.stack([padded[i : i + values.size] for i in range(3)]), axis=0)
+
+
 def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, int]:
     """Samples [first, last) of a piece without the ends that stand off its level.
 
@@ -176,6 +184,8 @@ def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
     core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
     if _changes(place[core], inside[core], drift * abs(level)):
         return False
+    if _fluctuates(data, begin, end, last - first, NEAR * drift * abs(level)):
+        return False
     return not _goes_on(data, inside, begin, end, level, drift)
 
 
@@ -191,7 +201,20 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
     parts = np.array_split(values, 4)
     apart = float(np.ptp([part.mean() for part in parts])) * 4 / 3
     scatter = float(np.sqrt(np.mean(np.diff(values, 2) ** 2) / 6))
-    return apart > most and apart > 8 * scatter / np.sqrt(values.size / 4)
+    sure = 8 * (1 + 8 / values.size)  # few bins tell their scatter poorly
+    return apart > most and apart > sure * scatter / np.sqrt(values.size / 4)
+
+
+def _fluctuates(data: Record, begin: float, end: float, samples: int, most: float) -> bool:
+    """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
+    values = data.means(np.linspace(begin, end, min(samples, 1024) + 1))
+    values = values[np.isfinite(values)]
+    if values.size < 4 * FEWEST:
+        return False
+    variance = float(values.var())
+    # von Neumann: white noise differs between neighbours as much as anywhere
+    alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    return alike > 0.4 and alike * variance > most**2
 
 
 def _goes_on(
@@ -214,13 +237,13 @@ def _goes_on(
     sides[0] = sides[0][::-1]  # from the piece outwards
     near = []
     for values in sides:
-        close = np.abs(values - level) <= NEAR * drift * abs(level)
+        close = np.abs(_smoothed(values) - level) <= NEAR * drift * abs(level)
         near.append(values[: int(np.argmin(np.append(close, False)))])
     longest = max(len(values) for values in near)
     if longest < GRADUAL * count:
         return False
     beside = np.concatenate([near[0][::-1], near[1]])
-    if np.abs(beside - level).max() <= drift * abs(level):
+    if np.abs(beside - level).max() <= drift / 4 * abs(level):
         return False
     values = np.concatenate([near[0][::-1], inside, near[1]])
     if values.size < count + 3:
