@@ -20,6 +20,9 @@ MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers ar
 FEW_BLOCKS = 512  # in a second look
 PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
 KEPT = ("constant", "at rest")
+STILL = 1e-7  # of the highest speed: nothing slower is told from rest
+SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
+SOMEWHERE = 0.01  # of the longest way of a piece
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
@@ -55,7 +58,26 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
     """
     pieces = _locate(time, velocity, limits, None, None)
     pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
-    return _proven(pieces, limits)
+    return _proven(_moving(time, pieces, limits), limits)
+
+
+def _moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere."""
+    kept = [p for p in pieces if p.kind == "constant"]
+    if limits.rest_speed is not None or not kept:
+        return pieces
+    top = max(abs(p.velocity) for p in kept)
+    way = [abs(p.velocity) * (time[p.last - 1] - time[p.first]) for p in pieces]
+    least = SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
+    return _fused(
+        [
+            p._replace(kind="at rest")
+            if p.kind == "constant" and abs(p.velocity) <= SLOW * top and d < least
+            else p
+            for d, p in zip(way, pieces, strict=True)
+        ],
+        limits,
+    )
 
 
 def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
@@ -130,7 +152,7 @@ def _locate(
         rest_speed = limits.rest_speed
     if rest_speed is None:
         top = float(np.quantile(np.abs(v), 0.98))
-        rest_speed = max(1e-5 * top, 0.05 * single.floor)
+        rest_speed = max(STILL * top, 0.05 * single.floor)
     if size == 1:
         v = _despiked(v, noise)
     breaks = find_breaks(v, noise, limits.resolution, rest_speed)

@@ -6,6 +6,9 @@ import numpy as np
 
 WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST = 8  # samples in a block
+JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
+ISOLATED = 20.0  # times the rate around it: no slider does that for a single sample
+AROUND = 8  # samples on each side that tell the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
@@ -19,6 +22,46 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
     return float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+
+
+def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join a position record where it jumps without a motion: set to zero in mid-run, wrapped.
+
+    Parameters
+    ----------
+    time, position
+        Finite samples [s], [m].
+
+    Returns
+    -------
+    tuple
+        The position without its jumps [m], and the samples before which they stood.
+
+    Notes
+    -----
+    A jump is a single difference of `JUMP` of the range or more at `ISOLATED` times the rate
+    of the moving ones around it; it is replaced by what the median rate around it would give.
+    """
+    steps, spacing = np.diff(position), np.diff(time)
+    span = float(np.ptp(position)) if position.size else 0.0
+    far = np.flatnonzero((np.abs(steps) > JUMP * span) & (spacing > 0))
+    if far.size == 0 or steps.size < 2 * AROUND:
+        return position, np.zeros(0, dtype=int)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.where(spacing > 0, steps / spacing, np.nan)
+    near = far[:, None] + np.concatenate([np.arange(-AROUND, 0), np.arange(1, AROUND + 1)])
+    beside = np.where((near >= 0) & (near < rate.size), near, far[:, None])
+    around = rate[beside]
+    around[beside == far[:, None]] = np.nan
+    usual = np.nanmedian(around, axis=1)
+    size = np.where(around == 0, np.nan, np.abs(around))
+    still = np.isnan(size).all(axis=1)
+    size[still] = 0.0
+    jump = np.abs(rate[far] - usual) > ISOLATED * np.nanmedian(size, axis=1)
+    at = far[jump]
+    moved = np.zeros(position.size)
+    moved[at + 1] = steps[at] - usual[jump] * spacing[at]
+    return position - np.cumsum(moved), at + 1
 
 
 def block_slopes(

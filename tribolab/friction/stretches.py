@@ -60,6 +60,12 @@ def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
     return time[good], values[good]
 
 
+def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Time and position where there is one, joined where its sensor was reset."""
+    time, position = finite(run, "position")
+    return time, slopes.without_resets(time, position)[0]
+
+
 def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")
@@ -72,7 +78,7 @@ def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
 
 def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the position, by slopes over blocks."""
-    time, position = finite(run, "position")
+    time, position = track(run)
     if time.size < 3 * slopes.FEWEST:
         return _nothing(run, time.size)
     t, v, size = slopes.velocity_blocks(time, position)
