@@ -58,11 +58,19 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
     """
     pieces = _locate(time, velocity, limits, None, None)
     pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
-    return _proven(_moving(time, pieces, limits), limits)
+    return _proven(pieces, limits)
 
 
-def _moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
-    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere."""
+def moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
+
+    Parameters
+    ----------
+    time, pieces
+        Samples [s], and pieces of the whole record.
+    limits
+        A `rest_speed` of these decides alone.
+    """
     kept = [p for p in pieces if p.kind == "constant"]
     if limits.rest_speed is not None or not kept:
         return pieces

@@ -86,36 +86,46 @@ def block_slopes(
     return middle[:, 0], np.where(good, better, slope)
 
 
-def velocity_blocks(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+def velocity_blocks(
+    time: np.ndarray, position: np.ndarray, least: int = FEWEST
+) -> tuple[np.ndarray, np.ndarray, int, float]:
     """Velocity on blocks just long enough for a slope good to a few percent.
+
+    Good at the speeds at which most of the way is covered: what is slower is looked at again.
 
     Parameters
     ----------
     time, position
         Finite samples [s], [m].
+    least
+        Fewest samples in a block.
 
     Returns
     -------
     tuple
-        Mean time of each block [s], velocity [m/s], and samples in a block.
+        Mean time of each block [s], velocity [m/s], samples in a block, and the usual error of
+        a block's velocity [m/s].
     """
     noise = position_noise(time, position)
-    size = FEWEST
-    while size * 32 <= time.size:
+    size, error = least, 0.0
+    while True:
         t, v = block_slopes(time, position, size)
-        moving = np.abs(v) > 0.2 * np.quantile(np.abs(v), 0.9)
-        if not moving.any():
-            break
-        spacing = (
-            np.median(np.diff(t)[moving[1:]]) / size
-            if moving[1:].any()
-            else np.diff(t).mean() / size
-        )
-        error = noise * np.sqrt(12 / size) / (size * spacing)
-        if error <= WANTED_ERROR * np.median(np.abs(v[moving])):
-            break
+        spacing = np.median(np.diff(t)) / size if t.size > 1 else np.inf
+        error = float(noise * np.sqrt(12 / size) / (size * spacing)) if spacing > 0 else 0.0
+        if size * 64 > time.size or _fine(np.abs(v), error):
+            return t, v, size, error
         size *= 2
-    return (*block_slopes(time, position, size), size)
+
+
+def _fine(speed: np.ndarray, error: float) -> bool:
+    """Whether the blocks' velocities are good where most of the way is covered."""
+    sure = np.maximum(speed - 3 * error, 0.0)  # what noise covers is no way
+    if not sure.any():
+        return False
+    order = np.argsort(speed)
+    share = np.cumsum(sure[order])
+    usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
+    return bool(error <= WANTED_ERROR * np.median(speed[speed > 0.2 * usual]))
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
