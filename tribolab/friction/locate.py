@@ -154,8 +154,8 @@ def _locate(
         step = quantum(velocity)
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
     else:  # the parent's noise per sample, averaged over a block
-        noise = Noise(noise.floor / np.sqrt(size), noise.relative / np.sqrt(size))
-    single = Noise(noise.floor * np.sqrt(size), noise.relative * np.sqrt(size))
+        noise = noise.scaled(size**-0.5)
+    single = noise.scaled(size**0.5)
     if rest_speed is None:
         rest_speed = limits.rest_speed
     if rest_speed is None:

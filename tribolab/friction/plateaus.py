@@ -24,18 +24,33 @@ from typing import NamedTuple
 import numpy as np
 
 SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
+TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
 WORSE = 16.0  # squares (in variances) by which one line may be worse than two
 
 
 class Noise(NamedTuple):
-    """Noise of one block: standard deviation sqrt(floor^2 + (relative * v)^2)."""
+    """Noise of one block: standard deviation sqrt(floor^2 + (r(v) * v)^2).
+
+    `speed` [m/s] ascends, and `relative` holds r there; between them it is interpolated over the
+    logarithm, so that what one speed shows is no noise of another.
+    """
 
     floor: float
-    relative: float
+    speed: np.ndarray
+    relative: np.ndarray
 
-    def variance(self, velocity: np.ndarray | float) -> np.ndarray | float:
+    def variance(self, velocity: np.ndarray | float) -> np.ndarray:
         """Variance of one block at a velocity."""
-        return self.floor**2 + (self.relative * velocity) ** 2
+        if not self.speed.size:
+            return np.full(np.shape(velocity), self.floor**2)
+        size = np.abs(velocity)
+        place = np.log(np.maximum(size, self.speed[0]))
+        share = np.interp(place, np.log(self.speed), self.relative)
+        return self.floor**2 + (share * size) ** 2
+
+    def scaled(self, factor: float) -> Noise:
+        """Noise of blocks that are larger or smaller."""
+        return Noise(self.floor * factor, self.speed, self.relative * factor)
 
 
 class Pieces(NamedTuple):
@@ -79,14 +94,15 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
     # second differences: a ramp has none, so that what one part does is no noise of another
     middle = np.abs(velocity[2:] + velocity[1:-1] + velocity[:-2]) / 3
     difference = np.abs(np.diff(velocity, 2)) / np.sqrt(6)
-    top = np.quantile(middle, 0.98) if middle.size else 0.0
+    nothing = np.zeros(0)
+    top = float(middle.max()) if middle.size else 0.0
     if top == 0:
-        return Noise(0.0, 0.0)
-    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-7))).astype(int)
+        return Noise(0.0, nothing, nothing)
+    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8))).astype(int)
     levels = []
     for one in np.unique(bins):
         inside = bins == one
-        if np.count_nonzero(inside) >= max(8, 0.002 * middle.size):
+        if np.count_nonzero(inside) >= 8:
             chosen = difference[inside]
             # quantised readings repeat, so that their median difference is zero: then the
             # mean below the largest tenth stands in
@@ -94,19 +110,19 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
                 np.median(chosen) / 0.6745,
                 np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)]),
             )
-            levels.append((np.median(middle[inside]), spread, chosen.size))
+            levels.append((np.median(middle[inside]), spread, chosen.size / middle.size))
     if not levels:
-        return Noise(float(np.median(difference) / 0.6745), 0.0)
-    if max(speed for speed, _, _ in levels) <= 0.03 * top:
-        return Noise(float(min(spread for _, spread, _ in levels)), 0.0)
-    speed, spread, count = np.array(levels).T
+        return Noise(float(np.median(difference) / 0.6745), nothing, nothing)
+    speed, spread, share = np.array(levels).T
     floor = float(spread.min())
-    high = speed > 0.03 * top
-    relative = np.sqrt(np.maximum(spread[high] ** 2 - floor**2, 0)) / speed[high]
-    # most blocks lie on plateaus; bins with few blocks are ramps and reversals
-    order = np.argsort(relative)
-    share = np.cumsum(count[high][order]) / count[high].sum()
-    return Noise(floor, float(relative[order][np.searchsorted(share, 0.5)]))
+    known = speed > 0
+    speed, spread, share = speed[known], spread[known], share[known]
+    relative = spread / speed
+    # bins with few blocks are ramps and reversals, or a short plateau: no worse than slower ones
+    slower = np.minimum.accumulate(relative)
+    relative = np.where(share < TRUSTED, slower, relative)
+    relative = np.sqrt(np.maximum(relative**2 - (floor / speed) ** 2, 0))
+    return Noise(floor, speed, relative)
 
 
 def find_breaks(
