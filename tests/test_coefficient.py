@@ -13,6 +13,7 @@ from tribolab.friction.coefficient import friction_coefficient
 from tribolab.friction.half_loops import half_loops
 from tribolab.friction.offsets import wander
 from tribolab.friction.segments import find_segments
+from tribolab.friction.steadiness import UNDECIDED
 
 MU = 0.3
 
@@ -242,7 +243,7 @@ def test_segment_without_contact_is_missing_and_says_why(normal, remark):
     assert np.isnan(mu[2])
     assert friction["remark"].values[2].startswith(remark)
     assert np.isfinite(np.delete(mu, 2)).all()
-    assert friction["steady"].values[2] == 0
+    assert friction["steady"].values[2] == UNDECIDED
 
 
 def test_normal_force_of_zero_everywhere_gives_no_number_anywhere():

@@ -96,14 +96,14 @@ def _fit(place: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
 
 
 def _scatter(values: np.ndarray) -> float:
-    """Standard deviation of bins from bin to bin, which no slow change adds to."""
+    """Return the standard deviation of bins from bin to bin, which no slow change adds to."""
     if values.size < 4:
         return 0.0
     return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
 
 
 def _smoothed(values: np.ndarray) -> np.ndarray:
-    """Running median of three bins."""
+    """Return the running median of three bins."""
     if values.size < 3:
         return values
     padded = np.concatenate([values[:1], values, values[-1:]])
@@ -111,7 +111,7 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 
 
 def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, int]:
-    """Samples [first, last) of a piece without the ends that stand off its level.
+    """Return the samples [first, last) of a piece without the ends that stand off its level.
 
     Parameters
     ----------

@@ -46,7 +46,9 @@ class Limits(NamedTuple):
     rest_speed: float | None
 
 
-def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece]:
+def locate(
+    time: np.ndarray, velocity: np.ndarray, limits: Limits, floor: float = 0.0
+) -> list[Piece]:
     """Return the pieces of a record without gaps in it, in order and touching.
 
     Parameters
@@ -55,8 +57,10 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
         Finite samples [s], [m/s]; the spacing may change.
     limits
         What counts as constant.
+    floor
+        Least noise of a sample [m/s], where it is known.
     """
-    pieces = _locate(time, velocity, limits, None, None)
+    pieces = _locate(time, velocity, limits, None, None, floor)
     pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
     return _proven(pieces, limits)
 
@@ -145,11 +149,12 @@ def _locate(
     limits: Limits,
     noise: Noise | None,
     rest_speed: float | None,
+    floor: float = 0.0,
 ) -> list[Piece]:
     size = block_size(time.size, MOST_BLOCKS if noise is None else FEW_BLOCKS)
     t, v = _blocks(time, velocity, size)
     if noise is None:
-        noise = estimate_noise(v)
+        noise = estimate_noise(v, floor / np.sqrt(size))
         # a steady reading may be half a step off, and says nothing of it
         step = quantum(velocity)
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))

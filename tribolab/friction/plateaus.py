@@ -85,11 +85,11 @@ def quantum(values: np.ndarray) -> float:
     return float(gaps.min()) if gaps.size else 0.0
 
 
-def estimate_noise(velocity: np.ndarray) -> Noise:
+def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     """Estimate the absolute floor and the relative part of the noise from neighbouring blocks.
 
     The spread of differences is taken per quarter decade of speed, because the lowest speed may
-    drown in a floor that the highest does not show.
+    drown in a floor that the highest does not show. The floor is no lower than `least` [m/s].
     """
     # second differences: a ramp has none, so that what one part does is no noise of another
     middle = np.abs(velocity[2:] + velocity[1:-1] + velocity[:-2]) / 3
@@ -97,7 +97,7 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
     nothing = np.zeros(0)
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
-        return Noise(0.0, nothing, nothing)
+        return Noise(least, nothing, nothing)
     bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8))).astype(int)
     levels = []
     for one in np.unique(bins):
@@ -112,16 +112,19 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
             )
             levels.append((np.median(middle[inside]), spread, chosen.size / middle.size))
     if not levels:
-        return Noise(float(np.median(difference) / 0.6745), nothing, nothing)
+        floor = max(float(np.median(difference) / 0.6745), least)
+        return Noise(floor, nothing, nothing)
     speed, spread, share = np.array(levels).T
-    floor = float(spread.min())
-    known = speed > 0
+    floor = max(float(spread.min()), least)
+    known = speed > 3 * least
+    if not known.any():
+        return Noise(floor, nothing, nothing)
     speed, spread, share = speed[known], spread[known], share[known]
-    relative = spread / speed
-    # bins with few blocks are ramps and reversals, or a short plateau: no worse than slower ones
-    slower = np.minimum.accumulate(relative)
-    relative = np.where(share < TRUSTED, slower, relative)
-    relative = np.sqrt(np.maximum(relative**2 - (floor / speed) ** 2, 0))
+    relative = np.sqrt(np.maximum(spread**2 - floor**2, 0)) / speed
+    # bins with few blocks are ramps and reversals, or a short plateau: no worse than the best
+    moves = speed > 3 * floor
+    best = relative[moves].min() if moves.any() else np.inf
+    relative = np.where(share < TRUSTED, np.minimum(relative, best), relative)
     return Noise(floor, speed, relative)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.locate import Limits
 from tribolab.friction.loaded import loaded
+from tribolab.friction.locate import Limits
 from tribolab.friction.slopes import line
 from tribolab.friction.stretches import (
     Stretch,
@@ -136,6 +136,37 @@ def find_segments(
     ]
     stretches = loaded(run, stretches, limits)
     return _dataset(run, stretches, source, trim, position_range)
+
+
+def why_no_segment(segments: xr.Dataset) -> str:
+    """Say in a sentence why a run has no segment; empty where it has one.
+
+    Parameters
+    ----------
+    segments
+        From `find_segments`.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> v = 1e-3 * np.arange(500.0)
+    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
+    >>> why_no_segment(find_segments(run))
+    'no segment: the run never slides at constant speed (ramp 100 % of the time)'
+    """
+    if segments.sizes["segment"]:
+        return ""
+    start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
+    reason = segments["omitted_reason"].values.astype(str)
+    whole = float((stop - start).sum())
+    lasted = {one: float((stop - start)[reason == one].sum()) for one in dict.fromkeys(reason)}
+    shares = [
+        f"{one} {lasted[one] / whole:.0%}".replace("%", " %")
+        for one in sorted(lasted, key=lambda one: -lasted[one])
+        if whole > 0 and lasted[one] >= 0.005 * whole
+    ]
+    detail = f" ({', '.join(shares)} of the time)" if shares else ""
+    return f"no segment: the run never slides at constant speed{detail}"
 
 
 def _dataset(

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.plateaus import quantum
+
 WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST = 8  # samples in a block
 JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
-ISOLATED = 20.0  # times the rate around it: no slider does that for a single sample
+FASTER = 3.0  # times the rate around it, for a single sample
+ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
 AROUND = 8  # samples on each side that tell the rate
 
 
@@ -21,7 +24,14 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
-    return float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    noise = float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    # readings that mostly repeat have no median distance
+    return noise if noise > 0 else quantum(position) / np.sqrt(12)
+
+
+def is_staircase(position: np.ndarray) -> bool:
+    """Whether most readings repeat the one before: the digits are coarser than the motion."""
+    return bool(position.size > 2 and np.mean(np.diff(position) == 0) > 0.5)
 
 
 def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -39,8 +49,8 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
 
     Notes
     -----
-    A jump is a single difference of `JUMP` of the range or more at `ISOLATED` times the rate
-    of the moving ones around it; it is replaced by what the median rate around it would give.
+    A jump is a single difference of `JUMP` of the range or more that stands off from the rates
+    around it; it is replaced by what their median would give.
     """
     steps, spacing = np.diff(position), np.diff(time)
     span = float(np.ptp(position)) if position.size else 0.0
@@ -57,7 +67,9 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     size = np.where(around == 0, np.nan, np.abs(around))
     still = np.isnan(size).all(axis=1)
     size[still] = 0.0
-    jump = np.abs(rate[far] - usual) > ISOLATED * np.nanmedian(size, axis=1)
+    scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
+    limit = np.maximum(FASTER * np.nanmedian(size, axis=1), ISOLATED * scatter)
+    jump = np.abs(rate[far] - usual) > limit
     at = far[jump]
     moved = np.zeros(position.size)
     moved[at + 1] = steps[at] - usual[jump] * spacing[at]

@@ -13,7 +13,6 @@ from tribolab.friction import slopes
 from tribolab.friction.constancy import Record
 from tribolab.friction.locate import Limits, Piece, held, locate, moving
 
-
 RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
@@ -94,12 +93,13 @@ def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> lis
     return _in_time(run, time, pieces, limits, max_gap, share)
 
 
-def _by_slopes(
-    time: np.ndarray, position: np.ndarray, limits: Limits, least: int
-) -> list[Piece]:
+def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: int) -> list[Piece]:
     """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
-    blocks = locate(t, v, limits._replace(min_samples=max(3, limits.min_samples // size)))
+    fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
+    # a staircase of its digits has blocks without noise beside such that hold a whole step
+    floor = error if slopes.is_staircase(position) else 0.0
+    blocks = locate(t, v, fewest, floor)
     pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
     pieces[-1] = pieces[-1]._replace(last=time.size)
     pieces = _kinks(time, position, pieces, size)
