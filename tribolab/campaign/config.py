@@ -136,7 +136,7 @@ class Segments(Table):
     max_gap: _positive_si("s", "2 s") | None = None
     """Longest pause between two samples within a segment; by default a twentieth of it."""
     rest_speed: _positive_si("m/s", "0.1 um/s") | None = None
-    """Speed below which the slider is at rest; by default 1e-5 of the highest, unless it gets somewhere."""
+    """Speed below which the slider is at rest; by default 1e-5 of the highest."""
 
 
 class Friction(Table):

@@ -23,6 +23,7 @@ KEPT = ("constant", "at rest")
 STILL = 1e-7  # of the highest speed: nothing slower is told from rest
 SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
 SOMEWHERE = 0.01  # of the longest way of a piece
+PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
@@ -113,6 +114,20 @@ def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
         kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
         parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
         result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
+    return _paused(_fused(result, limits), limits)
+
+
+def _paused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
+    result = list(pieces)
+    for i in range(1, len(pieces) - 1):
+        before, piece, after = pieces[i - 1 : i + 2]
+        if piece.kind != "constant" or before.kind != "ramp" or after.kind != "ramp":
+            continue
+        shortest = min(before.last - before.first, after.last - after.first)
+        one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
+        if one_way and shortest > PAUSE * (piece.last - piece.first):
+            result[i] = piece._replace(kind="ramp")
     return _fused(result, limits)
 
 

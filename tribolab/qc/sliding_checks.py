@@ -115,6 +115,7 @@ def _told(results: list[Result], change: np.ndarray) -> list[Result]:
 
 
 def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    _signal(subject)  # without friction there is nothing to slide for: `schema` objects
     why = subject.no_segment
     if why:
         return [Result("suspect", "", why)]

@@ -74,8 +74,9 @@ class RunSubject:
     @property
     def no_segment(self) -> str:
         """Why there is no segment, in a sentence; empty where there is one."""
-        found = self._found_segments
-        return str(found) if isinstance(found, Skip) else why_no_segment(found)
+        if isinstance(self._found_segments, Skip):
+            raise self._found_segments  # nothing tells the speed: the `schema` check objects
+        return why_no_segment(self._found_segments)
 
     @property
     def segments(self) -> xr.Dataset:
