@@ -42,6 +42,7 @@ class Verdict:
     beyond: bool
     words: str
     objections: str = ""
+    mu: tuple[float, ...] = ()
 
 
 def read_trial(trial: Trial, folder: Path) -> xr.Dataset:
@@ -50,14 +51,18 @@ def read_trial(trial: Trial, folder: Path) -> xr.Dataset:
         return trial.data
     for name, text in trial.data.items():
         (folder / name).write_text(text, "utf-8")
-    main = folder / next(iter(trial.data))
-    return tl.read(main, write_dialects(trial, folder))
+    return tl.read(folder / main_file(trial), write_dialects(trial, folder))
+
+
+def main_file(trial: Trial) -> str:
+    """Name of the run's own file."""
+    return next(iter(trial.data))
 
 
 def write_dialects(trial: Trial, folder: Path) -> Path:
     """Write the dialects; without one, it is drafted from the file, and taken as it comes."""
     if not trial.dialects:
-        draft = tl.draft_dialect(folder / next(iter(trial.data)))
+        draft = tl.draft_dialect(folder / main_file(trial))
         if draft.to_fill_in:
             raise TribolabError(f"the draft asks: {'; '.join(draft.to_fill_in.values())}")
         (folder / f"{draft.name}.toml").write_text(draft.toml, "utf-8")
@@ -145,11 +150,13 @@ def compare(trial: Trial, run: xr.Dataset, friction: xr.Dataset, status: str) ->
         outcome = "unsure"
     elif faults or trial.unsure_only or (trial.lost_is_wrong and missing > 0):
         outcome = "wrong"
-    elif missing > 0 or split or not reported.size:
+    elif not reported.size:
+        outcome, words = "wrong", "passed without any segment"
+    elif missing > 0 or split:
         outcome = "lost"
     else:
         outcome = "right"
-    return Verdict(outcome, status, bool(faults), beyond, words)
+    return Verdict(outcome, status, bool(faults), beyond, words, mu=tuple(mu.tolist()))
 
 
 def _clock(trial: Trial, run: xr.Dataset) -> list[str]:
