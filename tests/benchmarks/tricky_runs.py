@@ -1,6 +1,6 @@
 """Legal but tricky runs of other labs: is every number right, or does the run say it is not sure?
 
-    python tests/benchmarks/tricky_runs.py --seeds 1000:1006 --jobs 2 --verbose
+    python tests/benchmarks/tricky_runs.py --seeds 1000:1004 --jobs 2 --verbose
 
 Each kind of run (`tricky/kinds_*.py`) is drawn by its seed: loads of 0.05 N to 2 kN, coefficients
 of 0.003 to 2, speeds of 0.5 um/s to 1 m/s, white, red, quantised, humming and spiky sensors, with
@@ -144,7 +144,7 @@ def aims_are_met(judged: list[Judged]) -> bool:
 def main() -> int:
     """Print the table; the exit code says whether the aims are met."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", default="1000:1006", help="FIRST:LAST+1")
+    parser.add_argument("--seeds", default="1000:1004", help="FIRST:LAST+1")
     parser.add_argument("--kinds", default="", help="names or items, separated by commas")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--verbose", action="store_true", help="list the wrong and lost ones")

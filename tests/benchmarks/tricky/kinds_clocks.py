@@ -25,7 +25,9 @@ def _legs(rng, lab, pause=1.0, pairs=3, duration=None):
     return [rest(4.0), *strokes(lab.speed * rng.uniform(0.4, 3, pairs), duration, pause), rest(4.0)]
 
 
-def _logs(rng, made, *, shift=None, motion=None, dates=None, motion_rate=None, delay=0.0) -> Trial:
+def two_files(
+    rng, made, *, shift=None, motion=None, dates=None, motion_rate=None, delay=0.0
+) -> Trial:
     """Write a force log and a motion log of its own rate; motion's clock + shift = force's."""
     shift = rng.uniform(-8, 8) if shift is None else shift
     motion = made if motion is None else motion
@@ -78,7 +80,7 @@ def inertia(rng) -> Trial:
         mass=mass,
         offset=rng.uniform(-0.4, 0.4),
     )
-    return _logs(rng, made)
+    return two_files(rng, made)
 
 
 @tricky("3")
@@ -97,7 +99,7 @@ def slack(rng) -> Trial:
     taken_up = made.slid.slid_since_reversal >= play
     held = np.where(taken_up, made.slid.ratio * lab.load, 0.0)  # no force while the play is open
     noise = made.friction - made.slid.ratio * lab.load
-    return _logs(rng, replace(made, friction=held + noise))
+    return two_files(rng, replace(made, friction=held + noise))
 
 
 @tricky("3")
@@ -108,7 +110,7 @@ def soft_build_up(rng) -> Trial:
     law = draw_law(rng, lab, build_up=lab.speed * duration * rng.uniform(0.02, 0.08))
     legs = [rest(4.0), *strokes([lab.speed] * 4, duration, 1.0), rest(4.0)]
     made = record(rng, lab, legs, law, rate=100.0, offset=rng.uniform(-0.4, 0.4))
-    return _logs(rng, made)
+    return two_files(rng, made)
 
 
 @tricky("3")
@@ -118,7 +120,7 @@ def equal_strokes(rng) -> Trial:
     duration = rng.uniform(1.5, 4)
     legs = [*strokes([lab.speed] * 20, duration, 0.0)]
     made = record(rng, lab, legs, draw_law(rng, lab), rate=100.0, offset=rng.uniform(-0.4, 0.4))
-    return _logs(rng, made, shift=rng.uniform(-3, 3) * duration)
+    return two_files(rng, made, shift=rng.uniform(-3, 3) * duration)
 
 
 @tricky("3")
@@ -129,7 +131,7 @@ def one_long_slide(rng) -> Trial:
     law = replace(draw_law(rng, lab), slope=0.0, stribeck=0.0)
     made = record(rng, lab, [rest(6.0, 0.0), rest(2.0), *legs], law, rate=50.0)
     late = int(12.0 * made.motion.rate)
-    return _logs(rng, _cut(made, late))
+    return two_files(rng, _cut(made, late))
 
 
 def _cut(made, first):
@@ -150,7 +152,7 @@ def coarse_motion_log(rng) -> Trial:
     made = record(
         rng, lab, legs, draw_law(rng, lab), rate=100.0, ramp=0.2, offset=rng.uniform(-0.4, 0.4)
     )
-    return _logs(rng, made, motion_rate=rng.uniform(2, 10))
+    return two_files(rng, made, motion_rate=rng.uniform(2, 10))
 
 
 @tricky("3")
@@ -163,7 +165,7 @@ def companion_of_another_day(rng) -> Trial:
     legs = _legs(rng, other, duration=duration * rng.choice([1.0, rng.uniform(0.7, 1.4)]))
     motion = record(rng, other, legs, draw_law(rng, other), rate=100.0)
     dates = ("2026-03-02T10:00:00", f"2026-03-{rng.integers(3, 28):02d}T10:00:07")
-    made = _logs(rng, made, motion=motion, dates=dates)
+    made = two_files(rng, made, motion=motion, dates=dates)
     return replace(made, unsure_only=True, clock_shift=None)
 
 
@@ -174,7 +176,7 @@ def companion_of_another_run(rng) -> Trial:
     made = record(rng, lab, _legs(rng, lab), draw_law(rng, lab), rate=100.0)
     legs = _legs(rng, lab, pairs=int(rng.integers(2, 5)))
     motion = record(rng, lab, legs, draw_law(rng, lab), rate=100.0)
-    return replace(_logs(rng, made, motion=motion), unsure_only=True, clock_shift=None)
+    return replace(two_files(rng, made, motion=motion), unsure_only=True, clock_shift=None)
 
 
 @tricky("3")
@@ -185,7 +187,7 @@ def faint_friction(rng) -> Trial:
     made = record(
         rng, lab, _legs(rng, lab), draw_law(rng, lab), rate=50.0, drift=lambda u: total * u
     )
-    return _logs(rng, made)
+    return two_files(rng, made)
 
 
 @tricky("3")
@@ -201,4 +203,4 @@ def short_strokes(rng) -> Trial:
         rate=200.0,
         offset=rng.uniform(-0.4, 0.4),
     )
-    return _logs(rng, made)
+    return two_files(rng, made)

@@ -31,7 +31,7 @@ def _run(rng, lab, duration, speeds=(1.0,), samples=(800, 3000), both=None, **mo
         legs,
         draw_law(rng, lab),
         rate=rng.uniform(*samples) / duration,
-        offset=rng.uniform(-1, 1),
+        offset=rng.uniform(-0.4, 0.4),
         **more,
     )
 
@@ -149,15 +149,16 @@ def reversed_saw(rng) -> Trial:
 
 @tricky("15")
 def intermittent(rng) -> Trial:
-    """Stick-slip comes and goes within a stroke, and friction is lower while it lasts."""
+    """Stick-slip comes and goes within a stroke, in bursts of whole periods."""
     lab = draw_lab(rng)
     duration = rng.uniform(30, 120)
-    wave = _saw(rng, rng.uniform(0.1, 0.3), duration / rng.uniform(40, 80))
-    share, spell = rng.uniform(0.3, 0.7), duration / rng.uniform(2.5, 8)
-    phase = rng.uniform(0, 1)
+    size, period = rng.uniform(0.1, 0.3), duration / rng.uniform(40, 80)
+    spell = int(rng.integers(8, 25))  # periods from burst to burst, and in a burst
+    lasts = int(rng.uniform(0.3, 0.7) * spell)
 
     def burst(t):
-        return wave(t) * (((t / spell + phase) % 1) < share)
+        phase = t / period
+        return size * sawtooth(2 * np.pi * phase, 0.9) * ((phase % spell) < lasts)
 
     made = _run(rng, lab, duration, (1.0,), (2000, 5000), fluctuation=burst)
     return Trial(made.dataset(), made.truth)

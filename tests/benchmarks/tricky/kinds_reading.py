@@ -242,3 +242,90 @@ def rows_without_numbers(rng) -> Trial:
         cells = lines[i].split(",")
         lines[i] = ",".join([cells[0], word, *cells[2:]])
     return _one_file(columns, made.truth, text="\n".join(lines) + "\n", note=word)
+
+
+@tricky("2")
+def time_of_day(rng) -> Trial:
+    """The time is written as on a clock, and midnight passes; drafted."""
+    made = _sled(rng)
+    start = 86400 - rng.uniform(20, 60)
+    seconds = (start + made.motion.time) % 86400
+    columns = _columns(made)
+    lines = table(columns).splitlines()
+    for i, now in enumerate(seconds, 1):
+        stamp = f"{int(now // 3600):02d}:{int(now // 60 % 60):02d}:{now % 60:06.3f}"
+        lines[i] = ",".join([stamp, *lines[i].split(",")[1:]])
+    lines[0] = lines[0].replace("Time [s]", "Time")
+    return _one_file(columns, made.truth, text="\n".join(lines) + "\n", lost_is_wrong=True)
+
+
+@tricky("2")
+def epoch_milliseconds(rng) -> Trial:
+    """The time counts milliseconds since 1970; drafted."""
+    made = _sled(rng)
+    columns = _columns(made)
+    millis = np.round(1e3 * made.motion.time) + 1.78e12
+    columns[0] = Column("time", "Timestamp", "ms", millis, ".0f")
+    late = replace(
+        made.truth,
+        start=made.truth.start + 1.78e9,
+        stop=made.truth.stop + 1.78e9,
+        time=made.truth.time + 1.78e9,
+    )
+    return _one_file(columns, late, lost_is_wrong=True)
+
+
+@tricky("2")
+def negative_load(rng) -> Trial:
+    """The load cell counts pressing as negative; unloaded rests scatter around zero; drafted."""
+    made = _disc(rng)
+    columns = _columns(made)
+    columns[2] = replace(columns[2], values=-made.normal)
+    return _one_file(columns, made.truth)
+
+
+@tricky("2")
+def steps_with_stamps(rng) -> Trial:
+    """A block for each step with its own clock and the moment it started; the lab took pauses."""
+    made = _sled(rng)
+    time, step = _steps(made)
+    columns = _columns(made, time)
+    pauses = np.concatenate([[0], np.cumsum(rng.integers(5, 900, step[-1]))])[step - 1]
+    first = made.motion.time - time
+    text = ""
+    for number in range(1, step[-1] + 1):
+        part = [replace(c, values=c.values[step == number]) for c in columns]
+        begun = float((first + pauses)[step == number][0])
+        stamp = f"2026-03-02 {10 + int(begun // 3600):02d}:{int(begun // 60 % 60):02d}"
+        text += f"Step {number}\nStarted {stamp}:{begun % 60:09.6f}\n" + table(part)
+    toml = dialect(
+        "other_lab",
+        columns,
+        preamble=[""],
+        time="restart = \"continue\"\nstart_pattern = '^Started (.*)'\n"
+        'start_format = "%Y-%m-%d %H:%M:%S.%f"',
+    )
+    toml = toml.replace("line = 2", "pattern = '^Time'\nrepeats = true\nstep = '^Step (\\d+)'")
+    middle = (made.truth.start + made.truth.stop) / 2
+    late = np.interp(middle, made.motion.time, pauses)
+    truth = replace(
+        made.truth,
+        start=made.truth.start + late,
+        stop=made.truth.stop + late,
+        time=made.truth.time + pauses,
+    )
+    return _one_file(columns, truth, toml, text=text, lost_is_wrong=True)
+
+
+@tricky("1")
+def turning_both_ways(rng) -> Trial:
+    """A ring turns to and fro; the file gives signed 1/min and the torque as a force."""
+    made = _sled(rng)
+    unit = str(rng.choice(["1/min", "min-1", "U/min", "rpm", "Hz", "1/s"]))
+    radius = rng.uniform(0.01, 0.1)
+    turning = made.velocity / radius * PER_RADIAN[unit]
+    columns = [*_columns(made)[:3], Column("rotation_speed", "n", unit, turning)]
+    toml = dialect(
+        "other_lab", columns, speed=f'source = "rotation"\nradius = "{1e3 * radius:.9g} mm"'
+    )
+    return _one_file(columns, made.truth, toml, note=unit)

@@ -175,3 +175,131 @@ def slow_acceleration(rng) -> Trial:
     ]
     made = record(rng, lab, legs, draw_law(rng, lab), rate=rng.uniform(20, 200), ramp=duration)
     return Trial(made.dataset(), made.truth)
+
+
+@tricky("4")
+def bulging(rng) -> Trial:
+    """Speed sags (or swells) by 25 to 60 % in the middle of each stroke and comes back."""
+    lab = draw_lab(rng)
+    change = float(rng.choice([-1, 1]) * rng.uniform(0.25, 0.6))
+    duration = rng.uniform(10, 80)
+    legs = [rest(6.0, 0.0), rest(3.0)]
+    for way in (1, -1) * 3:
+        bulge = shaped(way * lab.speed, duration, lambda u: 1 - change * 4 * u * (1 - u))
+        legs += [bulge, rest(2.0)]
+    return _nothing(record(rng, lab, legs, draw_law(rng, lab), rate=rng.uniform(10, 100)))
+
+
+@tricky("4")
+def crank_by_position(rng) -> Trial:
+    """A crank again, but only the position is recorded."""
+    lab = draw_lab(rng, speed=(1e-3, 1.0))
+    cycles = int(rng.integers(3, 20))
+    period = rng.uniform(0.5, 10)
+    legs = [rest(5.0, 0.0), rest(3.0)]
+    legs += [shaped(lab.speed, period * cycles, lambda u: np.sin(2 * np.pi * cycles * u))]
+    made = record(
+        rng, lab, legs + [rest(3.0)], draw_law(rng, lab), rate=60 / period * rng.uniform(1, 5)
+    )
+    trial = _nothing(made)
+    return replace(trial, data=made.dataset("friction_force", "normal_force", "position"))
+
+
+@tricky("5")
+def paused_logger(rng) -> Trial:
+    """The logger pauses: a tenth to a third of some strokes is missing, time goes on."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(10, 80)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed, 2 * lab.speed], duration, 1.0)]
+    made = record(
+        rng,
+        lab,
+        legs + [rest(8.0, 0.0)],
+        draw_law(rng, lab),
+        rate=rng.uniform(800, 3000) / duration,
+        offset=rng.uniform(-0.4, 0.4),
+    )
+    keep = np.ones(made.motion.time.size, dtype=bool)
+    for i in rng.permutation(made.truth.start.size)[: rng.integers(1, 3)]:
+        first = made.truth.start[i] + rng.uniform(0.1, 0.5) * duration
+        gone = first + rng.uniform(0.1, 0.33) * duration
+        keep &= (made.motion.time < first) | (made.motion.time > gone)
+    return Trial(made.dataset().isel(time=keep), made.truth)
+
+
+@tricky("5")
+def jittery_clock(rng) -> Trial:
+    """Samples come when they come: the spacing scatters, and some rows are lost."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(10, 80)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed, 2 * lab.speed], duration, 1.0)]
+    made = record(
+        rng,
+        lab,
+        legs + [rest(8.0, 0.0)],
+        draw_law(rng, lab),
+        rate=rng.uniform(3000, 8000) / duration,
+        offset=rng.uniform(-0.4, 0.4),
+    )
+    keep = rng.random(made.motion.time.size) < rng.uniform(0.2, 0.6)
+    return Trial(made.dataset().isel(time=keep), made.truth)
+
+
+@tricky("4")
+def close_speeds(rng) -> Trial:
+    """Plateaus whose speeds differ by 6 to 15 % follow each other without a rest."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(10, 60)
+    factor = 1 + rng.uniform(0.06, 0.15)
+    legs = [rest(8.0, 0.0), rest(3.0)]
+    legs += [Leg(lab.speed * factor**k, duration) for k in (0, 1, 0, 2, 1)] + [rest(3.0)]
+    law = draw_law(rng, lab, stribeck=0.0, slope=rng.uniform(0.5, 1.5))
+    made = record(
+        rng,
+        lab,
+        legs + [rest(8.0, 0.0)],
+        law,
+        rate=rng.uniform(800, 3000) / duration,
+        offset=rng.uniform(-0.4, 0.4),
+    )
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("7")
+def spiky(rng) -> Trial:
+    """A switch nearby: single samples stand out by ten to thirty times the noise."""
+    lab = replace(draw_lab(rng), kind="spikes")
+    duration = rng.uniform(10, 60)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed, 2 * lab.speed], duration, 1.0)]
+    law = draw_law(rng, lab)
+    made = record(rng, lab, legs, law, rate=rng.uniform(800, 3000) / duration, offset=0.1)
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("7")
+def faint_friction_of_an_air_bearing(rng) -> Trial:
+    """The noise is one to five times the friction."""
+    lab = replace(draw_lab(rng, mu=(0.003, 0.05)), kind="white", noise=rng.uniform(1, 5))
+    duration = rng.uniform(10, 60)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed, 2 * lab.speed], duration, 1.0)]
+    law = draw_law(rng, lab)
+    made = record(rng, lab, legs, law, rate=rng.uniform(800, 3000) / duration, offset=0.4)
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("7")
+def track_gradient(rng) -> Trial:
+    """Friction rises along the track: up in one way, down in the other, the same mean."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(10, 60)
+    rise = rng.uniform(0.02, 0.3)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed] * 3, duration, 1.0)]
+    made = record(
+        rng, lab, legs, draw_law(rng, lab), rate=rng.uniform(800, 3000) / duration, offset=0.2
+    )
+    along = made.motion.position / np.ptp(made.motion.position)
+    factor = 1 + rise * (along - 0.5)
+    noise = made.friction - made.slid.ratio * lab.load
+    friction = made.slid.ratio * factor * lab.load + noise
+    truth = replace(made.truth, mu=made.truth.mu * factor)
+    return Trial(replace(made, friction=friction).dataset(), truth)

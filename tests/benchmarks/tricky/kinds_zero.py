@@ -105,7 +105,7 @@ def two_ways_with_zero(rng) -> Trial:
         legs,
         law,
         rate=rng.uniform(800, 3000) / duration,
-        offset=float(rng.choice([0.0, _size(rng, 0.1, 1.0)])),
+        offset=float(rng.choice([0.0, _size(rng, 0.1, 0.45)])),
     )
     return Trial(made.dataset(), made.truth)
 
@@ -161,7 +161,7 @@ def drift_between_pairs(rng) -> Trial:
     """The zero of the friction force drifts by one to five times the friction over six pairs."""
     lab = draw_lab(rng)
     duration = rng.uniform(5, 40)
-    total = _size(rng, 0.5, 4)
+    total = _size(rng, 0.1, 0.6) * float(rng.choice([1, 1, 8]))
     bend = float(rng.choice([0.0, 0.0, 3.0]))
     shape = (lambda u: total * u) if not bend else (lambda u: total * (1 - np.exp(-bend * u)))
     pause = float(rng.choice([0.0, 2.0]))
@@ -177,7 +177,7 @@ def drift_one_way(rng) -> Trial:
     """One way between two unloaded rests, and the zero of the friction force drifts."""
     lab = draw_lab(rng)
     duration = rng.uniform(10, 100)
-    total = _size(rng, 0.1, 2)
+    total = _size(rng, 0.03, 0.3) * float(rng.choice([1, 1, 6]))
     legs = [rest(15.0, 0.0), rest(3.0)]
     for factor in (1.0, 2.0, 0.7, 1.4):
         legs += [Leg(lab.speed * factor, duration), rest(3.0), rest(15.0, 0.0), rest(3.0)]
@@ -233,7 +233,7 @@ def unequal_strokes(rng) -> Trial:
         legs + [rest(3.0)],
         law,
         rate=rng.uniform(500, 2000) / duration,
-        offset=_size(rng, 0.3, 20),
+        offset=_size(rng, 0.1, 0.45) * float(rng.choice([1, 1, 20])),
     )
     names = [(*FORCES, "position"), ()][rng.integers(2)]
     return Trial(made.dataset(*names), made.truth)
@@ -244,7 +244,7 @@ def taken_out_by_hand(rng) -> Trial:
     """The user takes a stroke out; what is left of its pair has neighbours of its speed."""
     lab = draw_lab(rng)
     duration = rng.uniform(5, 40)
-    total = _size(rng, 0.2, 2)
+    total = _size(rng, 0.05, 0.4)
     legs = [rest(5.0), *strokes([lab.speed] * 3, duration, 1.0), rest(3.0)]
     made = record(
         rng,
@@ -277,3 +277,100 @@ def ring_way_up_and_down(rng) -> Trial:
         drift=lambda u: total * u,
     )
     return Trial(made.dataset(), made.truth)
+
+
+@tricky("11")
+def zero_jump(rng) -> Trial:
+    """The zero of the friction force jumps once in mid-run, between two strokes or within one."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(5, 40)
+    size, at = _size(rng, 0.05, 0.5), rng.uniform(0.2, 0.8)
+    legs = [rest(4.0), *strokes([lab.speed] * int(rng.integers(3, 8)), duration, 1.0), rest(4.0)]
+    made = record(
+        rng,
+        lab,
+        legs,
+        draw_law(rng, lab),
+        rate=rng.uniform(400, 2000) / duration,
+        drift=lambda u: size * (u > at),
+    )
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("11")
+def wandering_zero(rng) -> Trial:
+    """The zero wanders like the air of the room: a slow wave over the run, pairs in between."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(5, 40)
+    size, waves, phase = rng.uniform(0.05, 0.4), rng.uniform(0.5, 3), rng.uniform(0, 6.28)
+    legs = [rest(4.0), *strokes([lab.speed] * 8, duration, 1.0), rest(4.0)]
+    made = record(
+        rng,
+        lab,
+        legs,
+        draw_law(rng, lab),
+        rate=rng.uniform(400, 2000) / duration,
+        drift=lambda u: size * np.sin(6.28 * waves * u + phase),
+    )
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("9")
+def load_depends_on_way(rng) -> Trial:
+    """The slider dives: the normal force, recorded as it is, is 5 to 30 % larger forward."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(5, 60)
+    legs = [rest(8.0, 0.0), rest(3.0), *strokes([lab.speed, 3 * lab.speed], duration, 1.0)]
+    made = record(
+        rng,
+        lab,
+        legs + [rest(8.0, 0.0)],
+        draw_law(rng, lab),
+        rate=rng.uniform(800, 3000) / duration,
+        offset=_size(rng, 0.1, 0.4),
+        tilt=_size(rng, 0.05, 0.3),
+    )
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("11")
+def load_steps(rng) -> Trial:
+    """Other loads from pair to pair, an offset, and no unloaded rest."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(5, 40)
+    legs = [rest(4.0)]
+    for share in rng.permutation([1.0, 0.85, 0.7, 0.55]):
+        legs += [rest(4.0, share), Leg(lab.speed, duration, share), rest(1.0, share)]
+        legs += [Leg(-lab.speed, duration, share), rest(1.0, share)]
+    made = record(
+        rng,
+        lab,
+        legs,
+        draw_law(rng, lab),
+        rate=rng.uniform(500, 2000) / duration,
+        offset=_size(rng, 0.1, 0.4),
+    )
+    return Trial(made.dataset(), made.truth)
+
+
+@tricky("8")
+def ratio_without_sign(rng) -> Trial:
+    """The instrument gives the coefficient alone, without sign; a zero that is off is in it."""
+    lab = draw_lab(rng)
+    duration = rng.uniform(3, 60)
+    legs = [rest(2.0), *strokes([lab.speed, 2.5 * lab.speed], duration, 1.0) * 2, rest(2.0)]
+    made = record(
+        rng,
+        lab,
+        legs,
+        draw_law(rng, lab),
+        rate=rng.uniform(500, 3000) / duration,
+        offset=float(rng.choice([0.0, _size(rng, 0.03, 0.4)])),
+    )
+    run = made.dataset()
+    ratio = abs(run.friction_force / run.normal_force).assign_attrs(units="1")
+    run = run.drop_vars(["friction_force", "normal_force"]).assign(friction_coefficient=ratio)
+    if rng.integers(2):
+        run = run.assign(sliding_velocity=abs(run.sliding_velocity))
+        return Trial(run, replace(made.truth, speed=abs(made.truth.speed)))
+    return Trial(run, made.truth)

@@ -40,7 +40,7 @@ def draw_lab(
     load: tuple[float, float] = (0.05, 2000.0),
     speed: tuple[float, float] = (5e-7, 0.3),
     mu: tuple[float, float] = (0.003, 2.0),
-    noises: tuple[str, ...] = noise.KINDS,
+    noises: tuple[str, ...] = noise.USUAL,
 ) -> Lab:
     """Draw a rig; loads, speeds and coefficients evenly over their logarithms."""
 
@@ -111,19 +111,22 @@ def record(
     normal_offset: float = 0.0,
     normal_drift: Drift | None = None,
     mass: float = 0.0,
+    tilt: float = 0.0,
     fluctuation: Callable[[np.ndarray], np.ndarray] | None = None,
     load_wave: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Record:
     """Measure: `fluctuation` (time) is a part of mu, relative, whose long mean is zero.
 
     Offsets and drifts are in shares of the lab's friction force (of its load for the normal
-    force); `mass` [kg] hangs on the force sensor.
+    force); `mass` [kg] hangs on the force sensor; `tilt` is the share by which the load is larger
+    forward and smaller backward.
     """
     motion = run_programme(legs, rate, ramp)
     time, n = motion.time, motion.time.size
     passed = time / time[-1]
     slid = slide(motion, law)
     load = lab.load * motion.load
+    load = load * (1 + tilt * np.sign(motion.velocity))
     if load_wave is not None:
         load = load * (1 + load_wave(time))
     ratio = slid.ratio

@@ -31,9 +31,9 @@ def noise(
         hit = rng.random(n) < 2e-4
         return rms * (white + hit * rng.choice([-1, 1], n) * rng.uniform(10, 30, n))
     if kind == "quantised":
-        digit = 1.5 * rms
+        digit = rms
         return np.round(rms * white / digit) * digit
     raise ValueError(kind)
 
 
-KINDS = ("white", "red", "quantised", "hum", "spikes")
+USUAL = ("white", "white", "red", "quantised", "hum")  # spikes are a kind of run of their own
