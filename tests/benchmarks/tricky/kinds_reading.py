@@ -27,6 +27,9 @@ PER_RADIAN = {  # of a rotation speed in this unit
 }
 
 
+BLOCKS = "pattern = '^Time'\nrepeats = true\nstep = '^Step (\\d+)'"
+
+
 def _disc(rng):
     """Pin on disc: one way at some speeds, unloaded before and after; noise without surprises."""
     lab = replace(draw_lab(rng, load=(0.5, 100), speed=(0.01, 1.0), mu=(0.02, 1.2)), kind="white")
@@ -200,7 +203,7 @@ def header_repeats(rng) -> Trial:
         part = [replace(c, values=c.values[step == number]) for c in columns]
         text += f"Step {number}\n" + table(part)
     toml = dialect("other_lab", columns, preamble=[""], time='restart = "continue"')
-    toml = toml.replace("line = 2", "pattern = '^Time'\nrepeats = true\nstep = '^Step (\\d+)'")
+    toml = toml.replace("line = 2", BLOCKS).replace("[header]", "end = '^Step'\n[header]")
     return _one_file(columns, made.truth, toml, text=text, lost_is_wrong=True)
 
 
@@ -305,7 +308,7 @@ def steps_with_stamps(rng) -> Trial:
         time="restart = \"continue\"\nstart_pattern = '^Started (.*)'\n"
         'start_format = "%Y-%m-%d %H:%M:%S.%f"',
     )
-    toml = toml.replace("line = 2", "pattern = '^Time'\nrepeats = true\nstep = '^Step (\\d+)'")
+    toml = toml.replace("line = 2", BLOCKS).replace("[header]", "end = '^Step'\n[header]")
     middle = (made.truth.start + made.truth.stop) / 2
     late = np.interp(middle, made.motion.time, pauses)
     truth = replace(

@@ -104,7 +104,7 @@ def lifted_in_between(rng) -> Trial:
         back = Leg(-lab.speed * 5 * factor, duration / 5, 0.0)
         legs += [Leg(lab.speed * factor, duration), rest(5.0, 0.0), back, rest(5.0, 0.0), rest(5.0)]
     made = record(
-        rng, lab, legs, draw_law(rng, lab), rate=2000 / duration, offset=rng.uniform(-1, 1)
+        rng, lab, legs, draw_law(rng, lab), rate=2000 / duration, offset=rng.uniform(-0.4, 0.4)
     )
     names = [("friction_force", "normal_force", "position"), ()][rng.integers(2)]
     return Trial(made.dataset(*names), made.truth)
@@ -241,7 +241,7 @@ def jittery_clock(rng) -> Trial:
         rate=rng.uniform(3000, 8000) / duration,
         offset=rng.uniform(-0.4, 0.4),
     )
-    keep = rng.random(made.motion.time.size) < rng.uniform(0.2, 0.6)
+    keep = rng.random(made.motion.time.size) < rng.uniform(0.85, 0.98)
     return Trial(made.dataset().isel(time=keep), made.truth)
 
 
