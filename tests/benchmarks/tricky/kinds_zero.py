@@ -187,7 +187,7 @@ def drift_one_way(rng) -> Trial:
         legs,
         draw_law(rng, lab),
         rate=rng.uniform(500, 2000) / duration,
-        offset=_size(rng, 0, 1),
+        offset=_size(rng, 0, 0.4),
         drift=lambda u: total * u,
     )
     return Trial(made.dataset(), made.truth)
@@ -208,7 +208,7 @@ def normal_zero_drift(rng) -> Trial:
         legs,
         draw_law(rng, lab),
         rate=rng.uniform(500, 2000) / duration,
-        offset=_size(rng, 0, 1),
+        offset=_size(rng, 0, 0.4),
         normal_offset=_size(rng, 0, 0.1),
         normal_drift=lambda u: total * u,
     )
@@ -252,7 +252,7 @@ def taken_out_by_hand(rng) -> Trial:
         legs,
         draw_law(rng, lab),
         rate=rng.uniform(500, 2000) / duration,
-        offset=_size(rng, 0.1, 1),
+        offset=_size(rng, 0.1, 0.45),
         drift=lambda u: total * u,
     )
     return Trial(made.dataset(), made.truth, drop=(int(rng.integers(6)),))
@@ -273,7 +273,7 @@ def ring_way_up_and_down(rng) -> Trial:
         legs,
         draw_law(rng, lab),
         rate=rng.uniform(500, 2000) / duration,
-        offset=_size(rng, 0, 2),
+        offset=_size(rng, 0, 0.45),
         drift=lambda u: total * u,
     )
     return Trial(made.dataset(), made.truth)
