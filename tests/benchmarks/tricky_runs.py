@@ -147,6 +147,7 @@ def main() -> int:
     parser.add_argument("--seeds", default="1000:1004", help="FIRST:LAST+1")
     parser.add_argument("--kinds", default="", help="names or items, separated by commas")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--no-campaign", action="store_true", help="leave the campaigns out")
     parser.add_argument("--verbose", action="store_true", help="list the wrong and lost ones")
     parser.add_argument("--all", action="store_true", help="list the unsure ones, too")
     options = parser.parse_args()
@@ -158,7 +159,7 @@ def main() -> int:
     with ProcessPoolExecutor(options.jobs, mp_context=context) as pool:
         begun = [
             pool.submit(examine_campaign, (tuple(kinds[i : i + CAMPAIGN]), seeds.start))
-            for i in range(0, len(kinds), CAMPAIGN)
+            for i in range(0, 0 if options.no_campaign else len(kinds), CAMPAIGN)
         ]
         judged = list(pool.map(examine, wanted, chunksize=2))
         ran = {name: said for one in begun for name, said in one.result().items()}
