@@ -123,6 +123,8 @@ def print_details(judged: list[Judged], outcomes: tuple[str, ...]) -> None:
 
 def print_agreement(judged: list[Judged], ran: dict[str, Ran], seed: int) -> bool:
     """Print whether check and run said the same, and return it."""
+    if not ran:
+        return True
     verdicts = {row.kind: row.verdict for row in judged if row.seed == seed}
     told = {name: difference(verdicts[name], said) for name, said in ran.items()}
     differ = {name: words for name, words in told.items() if words}
