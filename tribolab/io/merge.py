@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -83,7 +84,7 @@ def _shift(
     force_clock: np.ndarray,
     motion_clock: np.ndarray,
     given: float | None,
-) -> tuple[float, str, dict[str, float]]:
+) -> tuple[float, str, dict[str, Any]]:
     if given is not None:
         return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
     apart = _recorded_apart(run, motion)
@@ -92,18 +93,26 @@ def _shift(
     signal = next((run[n] for n in ("friction_force", "friction_coefficient") if n in run), None)
     if velocity is not None and signal is not None:
         estimate = estimate_clock_shift(
-            force_clock, signal.to_numpy(), motion_clock, velocity, expected
+            force_clock, signal.to_numpy(), motion_clock, velocity, expected, apart is not None
         )
         if estimate is not None:
-            return (
-                estimate.shift,
-                "estimated",
-                {
-                    "clock_shift_uncertainty_s": estimate.uncertainty,
-                    "clock_rate": estimate.rate,
-                    "clock_shift_explained": estimate.explained,
-                },
-            )
+            ways = {
+                name: f"{told.shift:.6g} s +- {told.uncertainty:.2g} s"
+                for name, told in estimate.ways.items()
+            }
+            attrs = {
+                "clock_shift_uncertainty_s": estimate.uncertainty,
+                "clock_rate": estimate.rate,
+                "clock_shift_explained": estimate.explained,
+                "clock_shift_ways": ways,
+            }
+            if not estimate.refused:
+                return estimate.shift, "estimated", attrs
+            attrs |= {
+                "clock_shift_uncertainty_s": float("nan"),
+                "clock_shift_refused": estimate.refused,
+            }
+            return estimate.shift, "none", attrs
     return float(expected), "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
 
 
