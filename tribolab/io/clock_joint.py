@@ -34,7 +34,15 @@ _SPEEDS = 6  # hat functions of the speed, at most
 _TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
 _BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
 _STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
-_POWER = 2.0  # of what a model leaves unexplained: how much less it counts
+_POWERS = 2.0, 20.0  # of what a model leaves unexplained: how much less it counts
+_POWER_OF_NOISE = 0.01  # of the independent residuals
+_PRIORS = {
+    "slack 0": 0.4,
+    "slack 0.003": 0.15,
+    "slack 0.01": 0.1,
+    "slack 0.03": 0.05,
+    "before": 0.3,
+}
 _MOST_UNEXPLAINED = 0.5
 _MOST_EVENTS = 60
 _FAST = 0.1  # of the fastest speed: slower motion is not looked at
@@ -51,15 +59,25 @@ class Joint(NamedTuple):
     time: float
     answers: list[Answer]
 
+    @property
+    def unexplained(self) -> float:
+        """Part of the force that the best model leaves unexplained."""
+        return min(answer.unexplained for answer in self.answers)
+
 
 class Answer(NamedTuple):
-    """What one model says: shift [s], its error [s], the part that is not explained, inertia's."""
+    """What one model says: shift [s], its error [s], the parts that are not explained and inertia's.
+
+    `freedom` is the number of independent residuals, `prior` how likely the model is beforehand.
+    """
 
     model: str
     shift: float
     error: float
     unexplained: float
     inertia: float
+    freedom: float
+    prior: float
 
 
 class Basis:
@@ -240,17 +258,19 @@ def joint_fit(
     answers = []
     for (name, table), (at, error) in zip(basis.models, told, strict=True):
         fit = _Fit(force_time[used], force[used], basis.time, table)
-        _, left, inertia = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
-        answers.append(Answer(name, at, error, left, inertia))
+        found = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
+        answers.append(Answer(name, at, error, *found[1:], _PRIORS[name]))
     return answers
 
 
-def mixture(answers: list[Answer], power: float = _POWER) -> tuple[float, float]:
+def mixture(answers: list[Answer]) -> tuple[float, float]:
     """Mean and standard deviation of the answers of all models, by how well they fit."""
     unexplained = np.array([answer.unexplained for answer in answers])
-    weight = (unexplained / unexplained.min()) ** -power
-    slack = np.array([answer.model != "before" for answer in answers])
-    weight[slack] /= slack.sum()
+    best = int(np.argmin(unexplained))
+    # what is left is noise if it hangs together little; else no model is quite right
+    power = np.clip(_POWER_OF_NOISE * answers[best].freedom, *_POWERS)
+    weight = np.array([answer.prior for answer in answers])
+    weight *= (unexplained / unexplained[best]) ** -power
     weight /= weight.sum()
     shift = np.array([answer.shift for answer in answers])
     error = np.array([answer.error for answer in answers])
@@ -266,7 +286,7 @@ def _one(force_time, force, basis, table, shift, span, finest):
             return None
         fit = _Fit(force_time[used], force[used], basis.time, table)
         shifts = at + half * np.linspace(-1.0, 1.0, _SHIFTS)
-        likelihood, _, _ = fit.profile(shifts)
+        likelihood = fit.profile(shifts)[0]
         weight = np.exp(likelihood - likelihood.max())
         weight /= weight.sum()
         mean = float(weight @ shifts)
@@ -335,7 +355,7 @@ class _Fit:
         inertia = np.sqrt(normal[-1, -1]) * abs(amplitudes[-1])
         return self.force - columns @ amplitudes, float(inertia / np.linalg.norm(self.force))
 
-    def profile(self, shifts: Array) -> tuple[Array, float, float]:
+    def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
         squares = np.empty(len(shifts))
         best = None
         for k, s in enumerate(shifts):
@@ -349,4 +369,4 @@ class _Fit:
         freedom = max(len(residual) - self.table.shape[1] - _DRIFT, 1) / hanging
         whole = float(self.force @ self.force)
         squares = np.maximum(squares, 1e-12 * whole)
-        return -0.5 * freedom * np.log(squares), float(squares.min()) / whole, best[2]
+        return -0.5 * freedom * np.log(squares), float(squares.min()) / whole, best[2], freedom

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.io.clock_classes import Classes, coarse_shift, motion_classes
+from tribolab.io.clock_classes import Classes, Coarse, coarse_shift, motion_classes
 from tribolab.io.clock_joint import told_by_motion
 from tribolab.io.clock_motion import Motion, clean_motion
 from tribolab.io.clock_onset import refine_by_onsets
@@ -30,7 +30,9 @@ from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
 
 Array = NDArray[np.float64]
 
-_LEAST_SIGNIFICANCE = 10.0  # as an F ratio
+_LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
+_LEAST_AT_ALL = 1.5  # with the other ways' consent
+_CONSENT = 0.3  # most that a fit by the motion leaves unexplained for that
 _SHARP = 0.1  # most that the uncertainty may be, in mean durations of a class
 _WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
 _ALMOST_NOTHING = 1e-3  # and this,
@@ -115,13 +117,15 @@ def estimate_clock_shift(
         return None
     fit = Classes(force_time, force, motion_time, classes)
     shift = _refined(fit, coarse.shift, coarse.half)
-    if fit.significance(shift) < _LEAST_SIGNIFICANCE:
+    significance = fit.significance(shift)
+    if significance < _LEAST_AT_ALL:
         return None
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
     uncertainty = fit.uncertainty(shift)
     sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
     if uncertainty > sharp:
         return None
+    weak = significance < _LEAST_SIGNIFICANCE
     ways = {"classes": Told(shift, uncertainty)}
     # late by up to a rest, as the force stays on
     span = max(8.0 * coarse.half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
@@ -137,18 +141,26 @@ def estimate_clock_shift(
     ways["starts"] = Told(found.shift, found.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     paced = motion_time + found.rate * (motion_time - middle)
-    joint = told_by_motion(force_time, force, paced, motion, found.shift, span)
+    durations = np.diff(motion_time[changes(way)])
+    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))
+    ends = durations[[0, -1]]
+    near = max(5.0 * found.uncertainty, min(0.4 * stroke, 0.8 * float(ends.min())))
+    joint = told_by_motion(force_time, force, paced, motion, found.shift, min(span, near))
+    if weak and (joint is None or joint.unexplained > _CONSENT):
+        return None
     if joint is None:
         found = found._replace(ways=ways)
         return found._replace(refused="only one way tells it")
     apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
     error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
     ways["motion"] = Told(joint.shift, error)
+    if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
+        return None
     combined = _combined(ways["starts"], ways["motion"])
     found = found._replace(shift=combined.shift, uncertainty=combined.uncertainty, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
     return found._replace(
-        refused=_doubt(found, fit, coarse.rivals, coarse.half, sharp, expected, dated)
+        refused=_doubt(found, fit, coarse, stroke, sharp, expected if dated else None)
     )
 
 
@@ -174,11 +186,10 @@ def _combined(first: Told, second: Told) -> Told:
 def _doubt(
     found: Estimate,
     fit: Classes,
-    rivals: Array,
-    half: float,
+    coarse: Coarse,
+    stroke: float,
     sharp: float,
-    expected: float,
-    dated: bool,
+    expected: float | None,
 ) -> str:
     """Why a shift cannot be relied on; empty if it can."""
     first, second = found.ways["starts"], found.ways["motion"]
@@ -191,10 +202,10 @@ def _doubt(
     if found.uncertainty > sharp:
         return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
-    for rival in rivals:
-        at = _refined(fit, float(rival), half)
-        known = dated and abs(found.shift - expected) < _DATED < abs(at - expected)
-        if abs(at - found.shift) > 4.0 * half and 1.0 - fit.ratio(at) < left and not known:
+    for rival in coarse.rivals:
+        at = _refined(fit, float(rival), coarse.half)
+        known = expected is not None and abs(found.shift - expected) < _DATED < abs(at - expected)
+        if abs(at - found.shift) > 0.5 * stroke and 1.0 - fit.ratio(at) < left and not known:
             return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
     return ""
 
