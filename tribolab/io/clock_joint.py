@@ -36,27 +36,26 @@ _BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
 _STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
 _POWERS = 2.0, 20.0  # of what a model leaves unexplained: how much less it counts
 _POWER_OF_NOISE = 0.01  # of the independent residuals
-_PRIORS = {
-    "slack 0": 0.4,
-    "slack 0.003": 0.15,
-    "slack 0.01": 0.1,
-    "slack 0.03": 0.05,
-    "before": 0.3,
-}
+_BEFORE = 0.5  # how likely it is beforehand that force leads; else any slack is as likely
+_LARGEST_SLACK = 3e-4  # m
 _MOST_UNEXPLAINED = 0.5
 _MOST_EVENTS = 60
-_FAST = 0.1  # of the fastest speed: slower motion is not looked at
+_FAST = 0.03  # of the fastest speed: slower motion is not looked at
 _RIDGE = 1e-7
 _SHIFTS = 17  # on a grid
 _SLACKS = (0.003, 0.01, 0.03)  # of the longest stroke
 
 
 class Joint(NamedTuple):
-    """Shift [s], its standard deviation [s], the mean moment that it refers to, each model's."""
+    """Shift [s], its standard deviation [s], the mean moment it refers to [s], each model's answer.
+
+    `stroke` is the usual duration of the fast strokes [s].
+    """
 
     shift: float
     uncertainty: float
     time: float
+    stroke: float
     answers: list[Answer]
 
     @property
@@ -95,13 +94,15 @@ class Basis:
         speed = np.abs(motion.velocity)
         fastest = np.maximum.reduceat(speed, change[:-1])
         fast = fastest > _FAST * np.percentile(speed, 99.5)
+        moving = fast & (way[change[:-1]] != 0)
+        self.stroke = float(np.median(np.diff(time[change])[moving]))
         seen = fast[1:] | fast[:-1]
         self.events = change[1:-1][seen]
         halfway = 0.5 * (time[change[1:]] + time[change[:-1]])
         self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
         self.models: list[tuple[str, Array]] = []
         for slack in (0.0, *_SLACKS):
-            driven = play(path, 0.5 * slack * self.longest)
+            driven = play(path, 0.5 * min(slack * self.longest, _LARGEST_SLACK))
             velocity = np.gradient(driven, time) if slack else motion.velocity
             self.models.append((f"slack {slack:g}", self._after(velocity, driven)))
         self.models.append(("before", self._before(motion.velocity, way, path)))
@@ -112,7 +113,7 @@ class Basis:
         stops = [(path - play(path, r)) / r for r in lengths]
         way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
-        return np.stack([*stops, *self._more(velocity, way, last)], axis=1)
+        return np.stack([last, *stops, *self._more(velocity, way, last)], axis=1)
 
     def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
         """What happens to the force before the sample moves."""
@@ -232,9 +233,9 @@ def told_by_motion(
     if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
         return None
     mean, error = mixture(answers)
-    least = 0.5 * float(np.hypot(period, motion.averaged))
+    least = float(np.hypot(0.5 * period, 0.2 * motion.averaged))
     when = float(motion_time[basis.events].mean())
-    return Joint(mean, float(np.hypot(error, least)), when, answers)
+    return Joint(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
 
 
 def _interval(time: Array, basis: Basis, shift: float) -> float:
@@ -248,18 +249,23 @@ def joint_fit(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
     """What each model tells; `finest` is the sampling interval [s] that limits it."""
-    told = [_one(force_time, force, basis, table, shift, span, finest) for _, table in basis.models]
-    if None in told:
+    models = [
+        (name, table, told)
+        for name, table in basis.models
+        if (told := _one(force_time, force, basis, table, shift, span, finest)) is not None
+    ]
+    if not models:
         return []
-    shifts = np.array([answer[0] for answer in told])
+    shifts = np.array([told[0] for _, _, told in models])
     # the same samples for all, so that their residuals can be compared
     half = 0.5 * float(np.ptp(shifts)) + finest
     used = _chosen(force_time, basis, 0.5 * float(shifts.min() + shifts.max()), half)
     answers = []
-    for (name, table), (at, error) in zip(basis.models, told, strict=True):
+    for name, table, (at, error) in models:
+        prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(_SLACKS))
         fit = _Fit(force_time[used], force[used], basis.time, table)
         found = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
-        answers.append(Answer(name, at, error, *found[1:], _PRIORS[name]))
+        answers.append(Answer(name, at, error, *found[1:], prior))
     return answers
 
 
@@ -278,7 +284,16 @@ def mixture(answers: list[Answer]) -> tuple[float, float]:
     return mean, float(np.sqrt(weight @ (error**2 + (shift - mean) ** 2)))
 
 
-def _one(force_time, force, basis, table, shift, span, finest):
+def _one(
+    force_time: Array,
+    force: Array,
+    basis: Basis,
+    table: Array,
+    shift: float,
+    span: float,
+    finest: float,
+) -> tuple[float, float] | None:
+    """Shift and its error by one model; the range narrows as they become known."""
     at, half = shift, span
     for _ in range(12):
         used = _chosen(force_time, basis, at, half)
@@ -297,7 +312,8 @@ def _one(force_time, force, basis, table, shift, span, finest):
         if half <= max(6.0 * error, finest):
             break
         half = max(6.0 * error, 0.15 * half, 0.5 * finest)
-    return mean, error
+    # it has wandered off: this model tells nothing
+    return None if abs(mean - shift) > 1.2 * span else (mean, error)
 
 
 def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArray[np.int64]:

@@ -1,7 +1,7 @@
 """When a table moves and which way, from a velocity with noise, steps or jitter in it.
 
 A velocity reads a little more than zero at rest: noise of a tachometer, steps of an encoder. It is
-averaged over as few samples as bring that noise below a hundredth of the fastest speed; what still
+averaged over as few samples as bring that noise below a fiftieth of the fastest speed; what still
 lies within the noise, or leads nowhere, is rest.
 """
 
@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _DECADES = 5  # slower than this many decades below the fastest is rest
-_QUIET = 0.01  # of the fastest speed: most noise that is left after averaging
+_QUIET = 0.02  # of the fastest speed: most noise that is left after averaging
 _WIDEST = 64  # samples on either side, at most, in an average
 _ABOVE_NOISE = 4.0  # standard deviations of the noise, below which the table is taken to rest
 _BLOCK = 16  # samples, in which noise is looked at
 _NOWHERE = 3e-4  # of the longest way in one go: what is shorter is noise at rest
+_QUIETEST = 3.0  # percentile of the noise in blocks that is taken for that at rest
 _TOP = 99.0  # percentile of the speed that is called the fastest
 
 
@@ -80,7 +81,7 @@ def _noise(velocity: Array, apart: int) -> float:
     if blocks < 4:
         return 0.0
     rms = np.sqrt((second[: blocks * _BLOCK].reshape(blocks, _BLOCK) ** 2).mean(axis=1) / 6.0)
-    return float(np.percentile(rms, 10))
+    return float(np.percentile(rms, _QUIETEST))
 
 
 def _way(velocity: Array, noise: float) -> NDArray[np.int64]:

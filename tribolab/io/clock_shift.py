@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from tribolab.io.clock_classes import Classes, Coarse, coarse_shift, motion_classes
 from tribolab.io.clock_joint import told_by_motion
-from tribolab.io.clock_motion import Motion, clean_motion
+from tribolab.io.clock_motion import clean_motion
 from tribolab.io.clock_onset import refine_by_onsets
 from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
 
@@ -38,6 +38,7 @@ _WORSE = 3.0  # the starts may tell a shift that leaves this many times more une
 _ALMOST_NOTHING = 1e-3  # and this,
 _STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
 _POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
+_PART = 0.005  # of a stroke's duration: what one way may be off by, if no fit tells more
 _AGREE = 3.0  # standard deviations that two ways may lie apart
 _RIVAL = 1.2  # times more unexplained: a shift that leaves less than this is as good
 _DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
@@ -148,20 +149,31 @@ def estimate_clock_shift(
     joint = told_by_motion(force_time, force, paced, motion, found.shift, min(span, near))
     if weak and (joint is None or joint.unexplained > _CONSENT):
         return None
-    if joint is None:
-        found = found._replace(ways=ways)
-        return found._replace(refused="only one way tells it")
-    apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
-    error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
-    ways["motion"] = Told(joint.shift, error)
-    if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
-        return None
-    combined = _combined(ways["starts"], ways["motion"])
+    if joint is not None:
+        apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
+        error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
+        ways["motion"] = Told(joint.shift, error)
+        if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
+            return None
+        stroke = joint.stroke
+    if joint is not None and joint.uncertainty < _SHARP * stroke:
+        combined = _combined(ways["starts"], ways["motion"])
+    elif _agree(ways["starts"], ways["classes"]):
+        error = float(np.hypot(found.uncertainty, _PART * stroke))
+        combined = Told(found.shift, error)
+        ways.pop("motion", None)
+    else:
+        return found._replace(ways=ways, refused="no two ways tell it")
     found = found._replace(shift=combined.shift, uncertainty=combined.uncertainty, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
-    return found._replace(
-        refused=_doubt(found, fit, coarse, stroke, sharp, expected if dated else None)
-    )
+    doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
+    return found._replace(refused=doubt)
+
+
+def _agree(first: Told, second: Told) -> bool:
+    """Whether two ways lie no further apart than their errors allow."""
+    error = np.hypot(first.uncertainty, second.uncertainty)
+    return bool(abs(first.shift - second.shift) <= _AGREE * error)
 
 
 def _refined(fit: Classes, shift: float, around: float) -> float:
@@ -184,22 +196,17 @@ def _combined(first: Told, second: Told) -> Told:
 
 
 def _doubt(
-    found: Estimate,
-    fit: Classes,
-    coarse: Coarse,
-    stroke: float,
-    sharp: float,
-    expected: float | None,
+    found: Estimate, fit: Classes, coarse: Coarse, stroke: float, expected: float | None
 ) -> str:
-    """Why a shift cannot be relied on; empty if it can."""
-    first, second = found.ways["starts"], found.ways["motion"]
-    apart = abs(first.shift - second.shift)
-    if apart > _AGREE * np.hypot(first.uncertainty, second.uncertainty) and apart > sharp:
+    """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
+    first = found.ways["starts"]
+    second = found.ways.get("motion", first)
+    if not _agree(first, second) and abs(first.shift - second.shift) > _SHARP * stroke:
         return (
             f"the starts of motion tell {first.shift:.4g} s, a fit by the whole motion "
             f"{second.shift:.4g} s"
         )
-    if found.uncertainty > sharp:
+    if found.uncertainty > _SHARP * stroke:
         return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
     for rival in coarse.rivals:
