@@ -9,6 +9,7 @@ motor, or the sample's own sliding.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -209,7 +210,9 @@ def _velocity(rng: np.random.Generator, protocol: str) -> tuple[np.ndarray, floa
         speeds = np.geomspace(fastest * 10 ** -rng.uniform(1, 3), fastest, int(rng.integers(3, 9)))
         strokes = [
             (way * v, duration)
-            for v, duration in zip(speeds, np.geomspace(rng.uniform(3, 8), 1.0, len(speeds)))
+            for v, duration in zip(
+                speeds, np.geomspace(rng.uniform(3, 8), 1.0, len(speeds)), strict=True
+            )
             for way in (1, -1)
         ]
     elif protocol == "strokes":
@@ -218,14 +221,14 @@ def _velocity(rng: np.random.Generator, protocol: str) -> tuple[np.ndarray, floa
     else:
         number = int(rng.integers(3, 8))
         speeds = fastest * 10 ** -rng.uniform(0, 1.5, number)
-        strokes = [(v, t) for v, t in zip(speeds, rng.uniform(2, 6, number))]
+        strokes = [(v, t) for v, t in zip(speeds, rng.uniform(2, 6, number), strict=True)]
     wanted = [np.zeros(int(ends[0] / STEP))]
     for v, duration in strokes:
         wanted += [np.full(int(duration / STEP), v), np.zeros(int(rest / STEP))]
     velocity = np.concatenate([*wanted, np.zeros(int(ends[1] / STEP))])
     # every change of velocity is a ramp
     changes = np.flatnonzero(np.diff(velocity)) + 1
-    for at, after in zip(changes, [*changes[1:], len(velocity)]):
+    for at, after in zip(changes, [*changes[1:], len(velocity)], strict=True):
         jump = velocity[at] - velocity[at - 1]
         long = min(int(abs(jump) / acceleration / STEP) + 1, after - at)
         velocity[at : at + long] = velocity[at - 1] + jump * np.arange(long) / long
@@ -244,3 +247,39 @@ def _log(values: dict, clock: np.ndarray, name: str, date: str | None) -> xr.Dat
     } | ({"recorded_at": date} if date else {})
     data = {key: ("time", value) for key, value in values.items()}
     return stamp(xr.Dataset(data, {"time": clock - clock[0]}, attrs))
+
+
+def write_pair(pair: Pair, folder: Path) -> Path:
+    """Write both logs as the linear slider does; the path of the force log."""
+    motion = pair.motion
+    time = motion["time"].values
+    if "position" in motion:
+        position = motion["position"].values
+        velocity = np.gradient(position, time)
+    else:
+        velocity = motion["sliding_velocity"].values
+        steps = 0.5 * np.diff(time) * (velocity[1:] + velocity[:-1])
+        position = np.concatenate([[0.0], np.cumsum(steps)])
+    force = pair.force["friction_force"].values
+    tables = {
+        "force": (pair.force, ",", "Fx [N],Fz [N]", [force, np.full(len(force), 31.0)]),
+        "motion": (
+            motion,
+            ";",
+            "Position [mm];Velocity [mm/s]",
+            [1e3 * position, 1e3 * velocity],
+        ),
+    }
+    for log, (data, mark, labels, columns) in tables.items():
+        clock = data["time"].values + data.attrs["time_origin_s"]
+        date = data.attrs.get("recorded_at")
+        head = f"# Linear slider, {log} log\n" + (f"# date: {date}\n" if date else "")
+        np.savetxt(
+            folder / f"a_31N_01_{log}.csv",
+            np.column_stack([clock, *columns]),
+            "%.9g",
+            mark,
+            header=f"{head}Time [s]{mark}{labels}",
+            comments="",
+        )
+    return folder / "a_31N_01_force.csv"

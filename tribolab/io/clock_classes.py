@@ -32,7 +32,7 @@ _RIVALS = 8  # other peaks, at most
 
 
 class Coarse(NamedTuple):
-    """Shift [s], half the width in which the true one lies [s], and other shifts that may do [s]."""
+    """Shift [s], half the width in which the true one lies [s], and others that may do [s]."""
 
     shift: float
     half: float

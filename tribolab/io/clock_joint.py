@@ -1,4 +1,4 @@
-"""How far apart two clocks are, from one fit of the friction force by all that the motion does to it.
+"""How far apart two clocks are, from one fit of the friction force by all that the motion does.
 
 At a trial shift the force is a sum, linear in its amplitudes, of
 
@@ -33,6 +33,7 @@ _DRIFT = 8  # hat functions of time, at most
 _SPEEDS = 6  # hat functions of the speed, at most
 _TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
 _BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
+_SHORT = 0.1  # of the longest fast stroke's duration: what is shorter is noise
 _STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
 _POWERS = 2.0, 20.0  # of what a model leaves unexplained: how much less it counts
 _POWER_OF_NOISE = 0.01  # of the independent residuals
@@ -49,7 +50,7 @@ _SLACKS = (0.003, 0.01, 0.03)  # of the longest stroke
 class Joint(NamedTuple):
     """Shift [s], its standard deviation [s], the mean moment it refers to [s], each model's answer.
 
-    `stroke` is the usual duration of the fast strokes [s].
+    `stroke` is the duration of the shortest of the fast strokes [s].
     """
 
     shift: float
@@ -65,7 +66,7 @@ class Joint(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What one model says: shift [s], its error [s], the parts that are not explained and inertia's.
+    """What one model says: shift [s], its error [s], the parts left unexplained and of inertia.
 
     `freedom` is the number of independent residuals, `prior` how likely the model is beforehand.
     """
@@ -95,9 +96,11 @@ class Basis:
         fastest = np.maximum.reduceat(speed, change[:-1])
         fast = fastest > _FAST * np.percentile(speed, 99.5)
         moving = fast & (way[change[:-1]] != 0)
-        self.stroke = float(np.median(np.diff(time[change])[moving]))
+        lasted = np.diff(time[change])[moving]
+        self.stroke = float(lasted[lasted > _SHORT * lasted.max()].min())
         seen = fast[1:] | fast[:-1]
         self.events = change[1:-1][seen]
+        self.begins = self.events[way[self.events] != 0]
         halfway = 0.5 * (time[change[1:]] + time[change[:-1]])
         self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
         self.models: list[tuple[str, Array]] = []
@@ -108,7 +111,7 @@ class Basis:
         self.models.append(("before", self._before(motion.velocity, way, path)))
 
     def _after(self, velocity: Array, path: Array) -> Array:
-        """What happens to the force once the table has moved."""
+        """List what happens to the force once the table has moved."""
         lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
         stops = [(path - play(path, r)) / r for r in lengths]
         way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
@@ -116,7 +119,7 @@ class Basis:
         return np.stack([last, *stops, *self._more(velocity, way, last)], axis=1)
 
     def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
-        """What happens to the force before the sample moves."""
+        """List what happens to the force before the sample moves."""
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
         lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
         ramps = [self._ramps(velocity, way, last, r) for r in lengths]
@@ -124,12 +127,12 @@ class Basis:
         return np.stack([*ramps, stop, *self._more(velocity, way, last)], axis=1)
 
     def _more(self, velocity: Array, way: Array, last: Array) -> list[Array]:
-        """What goes with the speed, what relaxes at rest, and the inertia."""
+        """List what goes with the speed, what relaxes at rest, and the inertia."""
         acceleration = np.gradient(velocity, self.time)
         return [*_speeds(velocity, last), *self._relaxed(velocity, way, last), acceleration]
 
     def _relaxed(self, velocity: Array, way: Array, last: Array) -> list[Array]:
-        """What the force loses at rest, and gets back within a distance."""
+        """List what the force loses at rest, and gets back within a distance."""
         stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
         stops = stops[stops > 0]
         if not len(stops):
@@ -207,7 +210,13 @@ def play(position: Array, half: float) -> Array:
 
 
 def told_by_motion(
-    force_time: Array, force: Array, motion_time: Array, motion: Motion, shift: float, span: float
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    motion: Motion,
+    shift: float,
+    span: float,
+    least: float = 0.0,
 ) -> Joint | None:
     """Tell the shift by fitting the force by the motion, around a first estimate.
 
@@ -218,7 +227,8 @@ def told_by_motion(
     motion_time, motion
         Motion log: its clock [s] and what it shows.
     shift, span
-        Where to begin, and how far on either side of it to look [s].
+        Where to begin, and how far on either side of it to look [s]: no further than half of a
+        fast stroke, but for at least `least` [s].
 
     Returns
     -------
@@ -229,6 +239,7 @@ def told_by_motion(
     period = np.hypot(
         *(_interval(t, basis, s) for t, s in ((force_time, shift), (motion_time, 0.0)))
     )
+    span = min(span, max(least, 0.5 * basis.stroke))
     answers = joint_fit(force_time, force, basis, shift, span, float(period))
     if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
         return None
@@ -239,8 +250,8 @@ def told_by_motion(
 
 
 def _interval(time: Array, basis: Basis, shift: float) -> float:
-    """Sampling interval [s] after the changes of the motion."""
-    at = np.searchsorted(time, basis.time[basis.events] + shift)
+    """Tell the sampling interval [s] after the starts of the motion."""
+    at = np.searchsorted(time, basis.time[basis.begins] + shift)
     at = np.clip(at[:, None] + np.arange(1, 12), 0, len(time) - 1)
     return float(np.median(np.diff(time[at], axis=1)))
 
@@ -248,7 +259,7 @@ def _interval(time: Array, basis: Basis, shift: float) -> float:
 def joint_fit(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
-    """What each model tells; `finest` is the sampling interval [s] that limits it."""
+    """Ask each model; `finest` is the sampling interval [s] that limits it."""
     models = [
         (name, table, told)
         for name, table in basis.models
@@ -317,7 +328,7 @@ def _one(
 
 
 def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArray[np.int64]:
-    """Samples of the force around the changes of the motion, closer the nearer to one."""
+    """Choose samples of the force around the changes of the motion, closer the nearer to one."""
     events = basis.time[basis.events] + shift
     inside = (events > force_time[0] + half) & (events < force_time[-1] - half)
     inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MOST_EVENTS) == 0

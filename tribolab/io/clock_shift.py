@@ -143,10 +143,11 @@ def estimate_clock_shift(
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     paced = motion_time + found.rate * (motion_time - middle)
     durations = np.diff(motion_time[changes(way)])
-    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))
+    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
     ends = durations[[0, -1]]
-    near = max(5.0 * found.uncertainty, min(0.4 * stroke, 0.8 * float(ends.min())))
-    joint = told_by_motion(force_time, force, paced, motion, found.shift, min(span, near))
+    least = 5.0 * found.uncertainty
+    near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
+    joint = told_by_motion(force_time, force, paced, motion, found.shift, near, least)
     if weak and (joint is None or joint.unexplained > _CONSENT):
         return None
     if joint is not None:
@@ -157,7 +158,8 @@ def estimate_clock_shift(
             return None
         stroke = joint.stroke
     if joint is not None and joint.uncertainty < _SHARP * stroke:
-        combined = _combined(ways["starts"], ways["motion"])
+        first = "starts" if found.uncertainty < _SHARP * stroke else "classes"
+        combined = _combined(ways[first], ways["motion"])
     elif _agree(ways["starts"], ways["classes"]):
         error = float(np.hypot(found.uncertainty, _PART * stroke))
         combined = Told(found.shift, error)
@@ -199,13 +201,9 @@ def _doubt(
     found: Estimate, fit: Classes, coarse: Coarse, stroke: float, expected: float | None
 ) -> str:
     """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
-    first = found.ways["starts"]
-    second = found.ways.get("motion", first)
-    if not _agree(first, second) and abs(first.shift - second.shift) > _SHARP * stroke:
-        return (
-            f"the starts of motion tell {first.shift:.4g} s, a fit by the whole motion "
-            f"{second.shift:.4g} s"
-        )
+    if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
+        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in found.ways.items())
+        return f"the ways to tell it disagree: {told}"
     if found.uncertainty > _SHARP * stroke:
         return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
