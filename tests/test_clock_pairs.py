@@ -34,12 +34,12 @@ def test_a_shift_that_is_told_lies_within_three_standard_errors(kind):
 
 
 def test_slack_follows_its_closed_form():
-    x = np.concatenate([np.linspace(0, 5, 51), np.linspace(5, -5, 101)[1:]])
+    x = np.concatenate([np.arange(0.0, 5.0, 0.125), np.arange(5.0, -5.0, -0.125)])
     for follow in (play, play_of_the_fit):
         driven = follow(x, 1.0)
-        np.testing.assert_allclose(driven[50], 4.0)
-        np.testing.assert_allclose(driven[51:71], 4.0)  # 2 m of slack after the reversal
-        np.testing.assert_allclose(driven[71:], x[71:] + 1.0)
+        back = driven[40:]  # 2 m of slack, then as far behind as before on the other side
+        np.testing.assert_allclose(driven[8:40], x[8:40] - 1.0)
+        np.testing.assert_allclose(back[2:], np.minimum(driven[39:41].max(), x[42:] + 1.0))
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-4, 1e-3])

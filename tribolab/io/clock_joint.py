@@ -35,8 +35,9 @@ _TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
 _BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
 _SHORT = 0.1  # of the longest fast stroke's duration: what is shorter is noise
 _STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
-_POWERS = 2.0, 20.0  # of what a model leaves unexplained: how much less it counts
+_POWERS = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
 _POWER_OF_NOISE = 0.01  # of the independent residuals
+_NO_MODEL = 1.5  # times the error by the models, as the truth is none of them
 _BEFORE = 0.5  # how likely it is beforehand that force leads; else any slack is as likely
 _LARGEST_SLACK = 3e-4  # m
 _MOST_UNEXPLAINED = 0.5
@@ -292,7 +293,7 @@ def mixture(answers: list[Answer]) -> tuple[float, float]:
     shift = np.array([answer.shift for answer in answers])
     error = np.array([answer.error for answer in answers])
     mean = float(weight @ shift)
-    return mean, float(np.sqrt(weight @ (error**2 + (shift - mean) ** 2)))
+    return mean, _NO_MODEL * float(np.sqrt(weight @ (error**2 + (shift - mean) ** 2)))
 
 
 def _one(

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from tribolab.io.clock_classes import Classes, Coarse, coarse_shift, motion_classes
 from tribolab.io.clock_joint import told_by_motion
-from tribolab.io.clock_motion import clean_motion
+from tribolab.io.clock_motion import Motion, clean_motion
 from tribolab.io.clock_onset import refine_by_onsets
 from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
 
@@ -38,9 +38,14 @@ _WORSE = 3.0  # the starts may tell a shift that leaves this many times more une
 _ALMOST_NOTHING = 1e-3  # and this,
 _STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
 _POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
-_PART = 0.005  # of a stroke's duration: what one way may be off by, if no fit tells more
+_PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit tells more
+_UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
+_WIDE = 300.0  # times the slowest speed
+_LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
+_HELD = 0.15  # least part of the square of the ways' difference that is in the error's
 _AGREE = 3.0  # standard deviations that two ways may lie apart
-_RIVAL = 1.2  # times more unexplained: a shift that leaves less than this is as good
+_RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
+_AS_GOOD = 0.8  # nor explains less than this part of what the best does
 _DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
 
 
@@ -157,19 +162,29 @@ def estimate_clock_shift(
         if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
             return None
         stroke = joint.stroke
-    if joint is not None and joint.uncertainty < _SHARP * stroke:
+    sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
+    wide = _wide(motion, way)
+    if wide and "motion" in ways and _agree(ways["starts"], ways["motion"]):
+        combined, part = ways["starts"], _LEAST_PART
+    elif sharp_fit:
         first = "starts" if found.uncertainty < _SHARP * stroke else "classes"
-        combined = _combined(ways[first], ways["motion"])
+        combined, part = _combined(ways[first], ways["motion"]), _PART
     elif _agree(ways["starts"], ways["classes"]):
-        error = float(np.hypot(found.uncertainty, _PART * stroke))
-        combined = Told(found.shift, error)
-        ways.pop("motion", None)
+        combined, part = ways["starts"], _PART
     else:
         return found._replace(ways=ways, refused="no two ways tell it")
-    found = found._replace(shift=combined.shift, uncertainty=combined.uncertainty, ways=ways)
+    error = float(np.hypot(combined.uncertainty, part * stroke))
+    found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
     doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
     return found._replace(refused=doubt)
+
+
+def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
+    """Whether strokes differ so much in speed that what delays a slow start shows in the starts."""
+    change = changes(way)[:-1]
+    fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
+    return bool(fastest.max() > _WIDE * fastest.min())
 
 
 def _agree(first: Told, second: Told) -> bool:
@@ -192,9 +207,9 @@ def _combined(first: Told, second: Told) -> Told:
     apart = second.shift - first.shift
     weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
     share = float(weights[1] / weights.sum())
-    inner = (1.0 - share) * first.uncertainty**2 + share * second.uncertainty**2
-    error = np.sqrt(inner + share * (1.0 - share) * apart**2)
-    return Told(first.shift + share * apart, float(error))
+    inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
+    error = np.sqrt(inner**2 + max(share * (1.0 - share), _HELD) * apart**2)
+    return Told(first.shift + share * apart, _UNSEEN * float(error))
 
 
 def _doubt(
@@ -210,7 +225,9 @@ def _doubt(
     for rival in coarse.rivals:
         at = _refined(fit, float(rival), coarse.half)
         known = expected is not None and abs(found.shift - expected) < _DATED < abs(at - expected)
-        if abs(at - found.shift) > 0.5 * stroke and 1.0 - fit.ratio(at) < left and not known:
+        ratio = fit.ratio(at)
+        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
+        if abs(at - found.shift) > 0.5 * stroke and as_good and not known:
             return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
     return ""
 
