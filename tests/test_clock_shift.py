@@ -95,9 +95,10 @@ def test_a_single_start_is_enough_and_its_uncertainty_says_how_far():
     noisy = estimate_clock_shift(
         *logs(strokes=((1e-3, 20.0),), lead=10.0, build_up=1e-5, noise=0.3)
     )
-    assert abs(clear.shift - 1.234) < 3 * clear.uncertainty < 0.1
+    # slack of the drive cannot be told from one start: 2 % of the stroke's 20 s
+    assert abs(clear.shift - 1.234) < 3 * clear.uncertainty < 0.4
     assert abs(noisy.shift - 1.234) < 3 * noisy.uncertainty
-    assert noisy.uncertainty > 2 * clear.uncertainty
+    assert noisy.ways["starts"].uncertainty > 2 * clear.ways["starts"].uncertainty
 
 
 def test_speed_changes_after_one_start_do_not_mislead():

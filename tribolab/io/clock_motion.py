@@ -21,6 +21,7 @@ _ABOVE_NOISE = 4.0  # standard deviations of the noise, below which the table is
 _BLOCK = 16  # samples, in which noise is looked at
 _NOWHERE = 3e-4  # of the longest way in one go: what is shorter is noise at rest
 _QUIETEST = 3.0  # percentile of the noise in blocks that is taken for that at rest
+_FEW = 1.5  # times the changes of the motion: more are those of noise
 _TOP = 99.0  # percentile of the speed that is called the fastest
 
 
@@ -59,6 +60,9 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
         half, smooth, noise = wider, tried, left
     way = _way(smooth, noise)
     way = _without_short(path, way)
+    plain = _way(velocity, 0.0)
+    if _turns(plain) <= _FEW * _turns(way):  # it is quiet at rest: nothing has to be done
+        return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))
     return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
 
@@ -94,6 +98,10 @@ def _way(velocity: Array, noise: float) -> NDArray[np.int64]:
     number = np.repeat(np.arange(len(edges) - 1), np.diff(edges))
     highest = np.maximum.reduceat(speed, edges[:-1])
     return np.where((highest > max(_ABOVE_NOISE * noise, least))[number], way, 0)
+
+
+def _turns(way: NDArray[np.int64]) -> int:
+    return int(np.count_nonzero(np.diff(way)))
 
 
 def _without_short(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
