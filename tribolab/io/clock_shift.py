@@ -39,6 +39,7 @@ _ALMOST_NOTHING = 1e-3  # and this,
 _STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
 _POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
 _PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit tells more
+_LOST = 10.0  # times the error by classes: starts that know less contradict one another
 _UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
 _WIDE = 300.0  # times the slowest speed
 _LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
@@ -144,6 +145,10 @@ def estimate_clock_shift(
         found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
     if found.rate == 0.0:
         found = _sharpened(found, force_time, force, motion_time, motion.velocity, fit)
+    if found.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
+        anew = Estimate(shift, uncertainty, ratio)
+        anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
+        found = anew if anew.uncertainty < found.uncertainty else found
     ways["starts"] = Told(found.shift, found.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     paced = motion_time + found.rate * (motion_time - middle)
