@@ -83,6 +83,7 @@ def test_logs_of_different_rates_are_matched():
     assert abs(estimate.shift - 1.234) < 0.02
 
 
+@pytest.mark.slow
 def test_a_long_run_tells_which_clock_is_faster():
     strokes = tuple((way * 1e-2, 10.0) for way in (1, -1) * 60)
     quiet = estimate_clock_shift(*logs(strokes=strokes, rate=200.0, clock_rate=20e-6))
