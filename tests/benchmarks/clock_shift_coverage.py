@@ -70,6 +70,8 @@ def examine(task: tuple[str, int, bool]) -> Row:
 def line(name: str, rows: list[Row]) -> str:
     """One line of the table."""
     told = [row for row in rows if row.answered]
+    if not told:
+        return f"{name:20} {len(rows):5} {0:9.0%}"
     pull = np.array([abs(row.error) / row.uncertainty for row in told])
     error = np.array([row.uncertainty for row in told])
     share = error / np.array([row.stroke for row in told])

@@ -181,6 +181,10 @@ def estimate_clock_shift(
     error = float(np.hypot(combined.uncertainty, part * stroke))
     found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
+    if (
+        wide
+    ):  # strokes of so different speeds do not repeat; a rest only looks like the stroke before
+        coarse = coarse._replace(rivals=np.zeros(0))
     doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
     return found._replace(refused=doubt)
 
