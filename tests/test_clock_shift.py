@@ -83,6 +83,7 @@ def test_logs_of_different_rates_are_matched():
     assert abs(estimate.shift - 1.234) < 0.02
 
 
+@pytest.mark.slow
 def test_a_long_run_tells_which_clock_is_faster():
     strokes = tuple((way * 1e-2, 10.0) for way in (1, -1) * 60)
     quiet = estimate_clock_shift(*logs(strokes=strokes, rate=200.0, clock_rate=20e-6))
@@ -95,9 +96,10 @@ def test_a_single_start_is_enough_and_its_uncertainty_says_how_far():
     noisy = estimate_clock_shift(
         *logs(strokes=((1e-3, 20.0),), lead=10.0, build_up=1e-5, noise=0.3)
     )
-    assert abs(clear.shift - 1.234) < 3 * clear.uncertainty < 0.1
+    # slack of the drive cannot be told from one start: 2 % of the stroke's 20 s
+    assert abs(clear.shift - 1.234) < 3 * clear.uncertainty < 0.4
     assert abs(noisy.shift - 1.234) < 3 * noisy.uncertainty
-    assert noisy.uncertainty > 2 * clear.uncertainty
+    assert noisy.ways["starts"].uncertainty > 2 * clear.ways["starts"].uncertainty
 
 
 def test_speed_changes_after_one_start_do_not_mislead():

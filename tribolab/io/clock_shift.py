@@ -1,15 +1,18 @@
 """How far apart two clocks are, told from the signals: friction answers to motion, never before.
 
-Coarse: shift the motion log by s, sort the samples of the friction force into classes of velocity
-(sign and third of a decade), and ask how much of the force's variance the classes explain:
+Several ways tell it, each with its own error:
 
-    R^2(s) = [sum_k S_k^2 / N_k - S^2 / N] / [Q - S^2 / N],
+classes
+    how well classes of velocity explain the force (`tribolab.io.clock_classes`): robust, late;
+starts
+    when the force begins to change at each start of motion (`tribolab.io.clock_starts`), sharpened
+    by the fast strokes' beginnings (`tribolab.io.clock_onset`);
+motion
+    one fit of the force by distance, speed and acceleration, with slack or a stick before the
+    motion (`tribolab.io.clock_joint`).
 
-with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
-squares of all; every s of a grid at once by FFT, as each term is a cross-correlation. It is late,
-for friction builds up over a distance after each start and stays on at rest.
-
-Where starts of motion are seen, they tell it finely: `tribolab.io.clock_starts`.
+What the ways cannot tell apart (a stick, slack) is in the uncertainty. Where they contradict one
+another, none is sharp, or the motion repeats so that another shift fits as well, no shift is told.
 """
 
 from __future__ import annotations
@@ -18,33 +21,48 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len, rfft
 
+from tribolab.io.clock_classes import Classes, Coarse, coarse_shift, motion_classes
+from tribolab.io.clock_joint import told_by_motion
+from tribolab.io.clock_motion import Motion, clean_motion
 from tribolab.io.clock_onset import refine_by_onsets
 from tribolab.io.clock_starts import QUARTZ, Logs, changes, shift_from_starts
 
 Array = NDArray[np.float64]
 
-_GRID = 1 << 14  # cells of the coarse grid over the longer log
-_OVERLAP = 0.6  # least part of the largest possible overlap
-_DECADES = 5  # slower than this many decades below the fastest is rest
-_BINS = 3  # classes per decade
-_LEAST_EXPLAINED = 0.2
-_LEAST_CONTRAST = 0.1
-_LEAST_SIGNIFICANCE = 10.0  # as an F ratio
+_LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
+_LEAST_AT_ALL = 1.5  # with the other ways' consent
+_CONSENT = 0.3  # most that a fit by the motion leaves unexplained for that
 _SHARP = 0.1  # most that the uncertainty may be, in mean durations of a class
 _WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
 _ALMOST_NOTHING = 1e-3  # and this,
 _STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
-_TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 _POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
+_PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit tells more
+_LOST = 10.0  # times the error by classes: starts that know less contradict one another
+_UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
+_WIDE = 300.0  # times the slowest speed
+_LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
+_HELD = 0.15  # least part of the square of the ways' difference that is in the error's
+_AGREE = 3.0  # standard deviations that two ways may lie apart
+_RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
+_AS_GOOD = 0.8  # nor explains less than this part of what the best does
+_DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
+
+
+class Told(NamedTuple):
+    """What one way tells: shift in the middle of the motion log [s], standard deviation [s]."""
+
+    shift: float
+    uncertainty: float
 
 
 class Estimate(NamedTuple):
     """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
 
     Away from the middle, `rate` times the time since then on the motion clock is added.
-    `explained` is the part of the force's variance that the classes of velocity explain.
+    `explained` is the part of the force's variance that the classes of velocity explain, `ways`
+    what each way tells, and `refused` why the shift cannot be relied on ("" if it can).
     """
 
     shift: float
@@ -52,10 +70,17 @@ class Estimate(NamedTuple):
     explained: float
     rate: float = 0.0
     rate_uncertainty: float = QUARTZ
+    ways: dict[str, Told] = {}  # noqa: RUF012 - never changed
+    refused: str = ""
 
 
 def estimate_clock_shift(
-    force_time: Array, force: Array, motion_time: Array, velocity: Array, expected: float = 0.0
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    expected: float = 0.0,
+    dated: bool = False,
 ) -> Estimate | None:
     """Estimate the shift between the clocks of a force log and a motion log.
 
@@ -67,59 +92,153 @@ def estimate_clock_shift(
         Motion log: its own clock [s] and the signed velocity [m/s].
     expected
         Shift [s] that is preferred where several explain the force equally well.
+    dated
+        Whether `expected` is known, from the dates in both logs.
 
     Returns
     -------
     Estimate or None
-        None if the force does not vary with the motion.
+        None if the force does not vary with the motion. An estimate with `refused` is a guess.
 
     Notes
     -----
-    The uncertainty is a standard deviation: that of each start (from its residual, and half a
-    sampling interval of both logs), enlarged where the starts differ by more, and that of the
-    clocks' rates as far as the starts leave it open (10 ppm if they tell nothing about it). Where
-    no start is seen, the shift is the coarse one, and its uncertainty the shift at which the
-    explained sum of squares falls by more than chance allows.
+    The uncertainty is a standard deviation and holds the sampling of both logs, the noise, the
+    clocks' rates as far as the starts leave them open (10 ppm if they tell nothing), and by how
+    much the ways differ: friction that rises before the sample slides, or only after slack is
+    taken up, moves the shift by what that lasts.
     """
     good = np.abs(force) < _POSSIBLE
     force_time, force = force_time[good], force[good]
     velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
     if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
         return None
-    classes = velocity_classes(velocity)
+    motion = clean_motion(motion_time, velocity)
+    if not motion.velocity.any():
+        return None
+    classes, way = motion_classes(motion.velocity)
     if classes.min() == classes.max():
         return None
-    way = np.sign(classes - _BINS * _DECADES)
-    classes = np.where(way == 0, _BINS * _DECADES * 2 + 2 + _last(way), classes)
     force = (force - force.mean()) / force.std()
-    coarse = _coarse(force_time, force, motion_time, classes, expected)
+    coarse = coarse_shift(force_time, force, motion_time, classes, expected)
     if coarse is None:
         return None
-    shift, half = coarse
-    fit = _Classes(force_time, force, motion_time, classes)
-    around = half
-    while around > 0.2 * fit.period:
-        shifts = shift + around * np.linspace(-1.0, 1.0, 33)
-        shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
-        around /= 8.0
-    if fit.significance(shift) < _LEAST_SIGNIFICANCE:
+    fit = Classes(force_time, force, motion_time, classes)
+    shift = _refined(fit, coarse.shift, coarse.half)
+    significance = fit.significance(shift)
+    if significance < _LEAST_AT_ALL:
         return None
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
     uncertainty = fit.uncertainty(shift)
-    if uncertainty > _SHARP * np.ptp(motion_time) / len(np.unique(classes)):
+    sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
+    if uncertainty > sharp:
         return None
+    weak = significance < _LEAST_SIGNIFICANCE
+    ways = {"classes": Told(shift, uncertainty)}
     # late by up to a rest, as the force stays on
-    span = max(8.0 * half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
-    logs = Logs(force_time, force, motion_time, velocity, way)
+    span = max(8.0 * coarse.half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
+    logs = Logs(force_time, force, motion_time, motion.velocity, way)
     ratio = fit.ratio(shift)
     unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
     told = shift_from_starts(logs, shift, span, lambda s: 1.0 - fit.ratio(s) < unexplained)
     found = Estimate(shift, uncertainty, ratio)
     if told is not None:
         found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
-    if found.rate != 0.0:
-        return found
-    return _sharpened(found, force_time, force, motion_time, velocity, fit)
+    if found.rate == 0.0:
+        found = _sharpened(found, force_time, force, motion_time, motion.velocity, fit)
+    if found.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
+        anew = Estimate(shift, uncertainty, ratio)
+        anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
+        found = anew if anew.uncertainty < found.uncertainty else found
+    ways["starts"] = Told(found.shift, found.uncertainty)
+    middle = 0.5 * (motion_time[0] + motion_time[-1])
+    paced = motion_time + found.rate * (motion_time - middle)
+    durations = np.diff(motion_time[changes(way)])
+    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
+    ends = durations[[0, -1]]
+    least = 5.0 * found.uncertainty
+    near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
+    joint = told_by_motion(force_time, force, paced, motion, found.shift, near, least)
+    if weak and (joint is None or joint.unexplained > _CONSENT):
+        return None
+    if joint is not None:
+        apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
+        error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
+        ways["motion"] = Told(joint.shift, error)
+        if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
+            return None
+        stroke = joint.stroke
+    sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
+    wide = _wide(motion, way)
+    if wide and "motion" in ways and _agree(ways["starts"], ways["motion"]):
+        combined, part = ways["starts"], _LEAST_PART
+    elif sharp_fit:
+        first = "starts" if found.uncertainty < _SHARP * stroke else "classes"
+        combined, part = _combined(ways[first], ways["motion"]), _PART
+    elif _agree(ways["starts"], ways["classes"]):
+        combined, part = ways["starts"], _PART
+    else:
+        return found._replace(ways=ways, refused="no two ways tell it")
+    error = float(np.hypot(combined.uncertainty, part * stroke))
+    found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
+    found = found._replace(explained=fit.ratio(combined.shift))
+    if (
+        wide
+    ):  # strokes of so different speeds do not repeat; a rest only looks like the stroke before
+        coarse = coarse._replace(rivals=np.zeros(0))
+    doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
+    return found._replace(refused=doubt)
+
+
+def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
+    """Whether strokes differ so much in speed that what delays a slow start shows in the starts."""
+    change = changes(way)[:-1]
+    fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
+    return bool(fastest.max() > _WIDE * fastest.min())
+
+
+def _agree(first: Told, second: Told) -> bool:
+    """Whether two ways lie no further apart than their errors allow."""
+    error = np.hypot(first.uncertainty, second.uncertainty)
+    return bool(abs(first.shift - second.shift) <= _AGREE * error)
+
+
+def _refined(fit: Classes, shift: float, around: float) -> float:
+    """Shift near a coarse one at which the classes explain most."""
+    while around > 0.2 * fit.period:
+        shifts = shift + around * np.linspace(-1.0, 1.0, 33)
+        shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
+        around /= 8.0
+    return shift
+
+
+def _combined(first: Told, second: Told) -> Told:
+    """Mean of two ways and its standard deviation, which holds how far they lie apart."""
+    apart = second.shift - first.shift
+    weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
+    share = float(weights[1] / weights.sum())
+    inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
+    error = np.sqrt(inner**2 + max(share * (1.0 - share), _HELD) * apart**2)
+    return Told(first.shift + share * apart, _UNSEEN * float(error))
+
+
+def _doubt(
+    found: Estimate, fit: Classes, coarse: Coarse, stroke: float, expected: float | None
+) -> str:
+    """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
+    if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
+        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in found.ways.items())
+        return f"the ways to tell it disagree: {told}"
+    if found.uncertainty > _SHARP * stroke:
+        return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
+    left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
+    for rival in coarse.rivals:
+        at = _refined(fit, float(rival), coarse.half)
+        known = expected is not None and abs(found.shift - expected) < _DATED < abs(at - expected)
+        ratio = fit.ratio(at)
+        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
+        if abs(at - found.shift) > 0.5 * stroke and as_good and not known:
+            return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
+    return ""
 
 
 def _sharpened(
@@ -128,7 +247,7 @@ def _sharpened(
     force: Array,
     motion_time: Array,
     velocity: Array,
-    fit: _Classes,
+    fit: Classes,
 ) -> Estimate:
     """Sharpen an estimate by the fast strokes' beginnings taken together."""
     onsets = refine_by_onsets(force_time, force, motion_time, velocity, found.shift, fit.period)
@@ -141,150 +260,3 @@ def _sharpened(
     if apart > 3.0 * found.uncertainty:  # the two ways disagree, and neither can be trusted more
         error = max(error, apart)
     return Estimate(onsets.shift, error, fit.ratio(onsets.shift))
-
-
-def velocity_classes(velocity: Array) -> NDArray[np.int64]:
-    """Sort velocities into numbered classes: fast backward is 0, then rest, then forward.
-
-    >>> velocity_classes(np.array([-1.0, 0.0, 1.0, 0.9, 0.1])).tolist()
-    [0, 15, 30, 30, 27]
-    """
-    speed = np.abs(np.nan_to_num(velocity))
-    fastest = speed.max()
-    rank = np.zeros(len(speed), dtype=np.int64)
-    moving = speed > fastest * 10.0**-_DECADES
-    # the middle of a class is at the fastest speed, so that its noise stays in one class
-    level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
-    rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
-    return rank * np.sign(np.nan_to_num(velocity)).astype(np.int64) + _BINS * _DECADES
-
-
-def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Direction of the last motion; each has its own class of rest, as friction stays on."""
-    moved = np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))
-    return way[moved]
-
-
-def _coarse(
-    force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64], expected: float
-) -> tuple[float, float] | None:
-    """Best shift on a grid, and the half width in which the true one lies."""
-    spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
-    cell = max(spans) / _GRID
-    cells = [int(span / cell) + 1 for span in spans]
-    where = ((force_time - force_time[0]) / cell).astype(np.int64)
-    sums = [np.bincount(where, weights=w, minlength=cells[0]) for w in (None, force, force**2)]
-    grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
-    on_grid = classes[np.clip(np.searchsorted(motion_time, grid) - 1, 0, None)]
-
-    length = next_fast_len(cells[0] + cells[1], real=True)
-    count, total, square = (rfft(s.astype(float), length) for s in sums)
-    everywhere = np.conj(rfft(np.ones(cells[1]), length))
-    number = irfft(count * everywhere, length)
-    whole = irfft(total * everywhere, length)
-    squares = irfft(square * everywhere, length)
-    between = np.zeros(length)
-    for k in np.unique(on_grid):
-        here = np.conj(rfft((on_grid == k).astype(float), length))
-        n_k, s_k = irfft(count * here, length), irfft(total * here, length)
-        between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
-    enough = number >= _OVERLAP * number.max()
-    mean_part = whole**2 / np.maximum(number, 0.5)
-    spread = np.maximum(squares - mean_part, 1e-9)
-    explained = np.where(enough, (between - mean_part) / spread, -np.inf)
-
-    lags = np.arange(length)
-    lags = np.where(lags < cells[0], lags, lags - length)
-    shifts = lags * cell + force_time[0] - motion_time[0]
-    best = explained.max()
-    usual = np.median(explained[enough])
-    if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
-        return None
-    peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
-    tie = max(usual + _TIE * (best - usual), best - 0.5 * (1.0 - best) - _ALMOST_NOTHING)
-    good = shifts[peak & (explained >= tie)]
-    return float(good[np.argmin(np.abs(good - expected))]), 2.0 * cell
-
-
-class _Classes:
-    """Explained sum of squares at any shift, from cumulative sums of the force."""
-
-    def __init__(
-        self, force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64]
-    ):
-        self._time, self._force = force_time, force
-        self._edges = np.arange(len(force) + 1.0)
-        self._sum = np.concatenate([[0.0], np.cumsum(force)])
-        self._square = np.concatenate([[0.0], np.cumsum(force**2)])
-        change = np.flatnonzero(np.diff(classes)) + 1
-        middles = 0.5 * (motion_time[change] + motion_time[change - 1])
-        self._moments = np.concatenate([motion_time[:1], middles, motion_time[-1:]])
-        self._classes = classes[np.concatenate([[0], change])]
-        self.period = max(
-            float(np.percentile(np.diff(time), 5)) for time in (force_time, motion_time)
-        )
-
-    def _parts(self, shift: float) -> tuple[Array, Array, Array]:
-        """Places of the changes among the samples; number and sum of the samples by class."""
-        at = np.interp(self._moments + shift, self._time, self._edges[:-1] + 0.5)
-        number = np.bincount(self._classes, weights=np.diff(at))
-        total = np.bincount(self._classes, np.diff(np.interp(at, self._edges, self._sum)))
-        return at, number, total
-
-    def explained(self, shift: float) -> float:
-        """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""
-        _, number, total = self._parts(shift)
-        full = number > 0
-        return float((total[full] ** 2 / number[full]).sum() - total.sum() ** 2 / number.sum())
-
-    def _residual(self, shift: float) -> Array:
-        at, number, total = self._parts(shift)
-        means = total / np.maximum(number, 1e-9)
-        places = np.clip(np.round(at).astype(np.int64), 0, len(self._force))
-        inside = self._force[places[0] : places[-1]]
-        return inside - np.repeat(means[self._classes], np.diff(places))
-
-    def ratio(self, shift: float) -> float:
-        """Part of the variance that is explained."""
-        at, _, total = self._parts(shift)
-        squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
-        whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
-        return float(self.explained(shift) / max(whole, 1e-12))
-
-    def significance(self, shift: float) -> float:
-        """F ratio: variance explained per class against the residual's, correlation allowed for."""
-        ratio = self.ratio(shift)
-        independent = len(self._force) / _correlated(self._residual(shift))
-        classes = len(np.unique(self._classes)) - 1
-        return ratio / classes * independent / max(1.0 - ratio, 1e-12)
-
-    def uncertainty(self, shift: float) -> float:
-        """Shift at which the explained sum of squares falls by more than chance allows."""
-        residual = self._residual(shift)
-        variance = float(residual.var())
-        if variance == 0.0:
-            return 0.5 * self.period
-        allowed = 4.0 * variance * _correlated(residual)
-        top = self.explained(shift)
-        step = 0.5 * self.period
-        while step < 1e6 * self.period:
-            fall = top - max(self.explained(shift - step), self.explained(shift + step))
-            if fall > allowed:
-                return step
-            step *= 1.25
-        return step
-
-
-def _correlated(residual: Array) -> float:
-    """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
-    block = -(-len(residual) // _GRID)
-    rows = len(residual) // block
-    means = residual[: rows * block].reshape(rows, block).mean(axis=1)
-    if rows < 2 or not means.any():
-        return float(block)
-    spectrum = np.abs(rfft(means, next_fast_len(2 * rows, real=True))) ** 2
-    correlation = irfft(spectrum)[:rows]
-    correlation /= correlation[0]
-    negative = np.flatnonzero(correlation <= 0)
-    until = int(negative[0]) if negative.size else rows
-    return float(block * (2.0 * correlation[:until].sum() - 1.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +18,8 @@ _STEPWISE = {
     "step",
     "cycle",
 }  # between two samples the first holds
+_OTHER_DAY = 3600.0  # s between two logs, more than two computers' clocks differ by: refused
+_OTHER_RUN = 60.0  # s between two logs: the signals are not believed
 
 
 def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None) -> xr.Dataset:
@@ -41,10 +44,13 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
         signals tell that one clock is faster, ``clock_rate`` is not zero, and force clock =
         motion clock + ``clock_shift_s`` + ``clock_rate`` (motion clock - its middle).
 
+        Where the signals leave it open, the source is "none", ``clock_shift_refused`` says why,
+        and ``clock_shift_s`` is a guess. ``clock_shift_ways`` holds what each way tells.
+
     Raises
     ------
     ReadError
-        If the logs do not overlap.
+        If the logs do not overlap, or were recorded at quite different times.
     """
     force_clock = run["time"].to_numpy() + run.attrs["time_origin_s"]
     motion_clock = motion["time"].to_numpy() + motion.attrs["time_origin_s"]
@@ -83,28 +89,51 @@ def _shift(
     force_clock: np.ndarray,
     motion_clock: np.ndarray,
     given: float | None,
-) -> tuple[float, str, dict[str, float]]:
+) -> tuple[float, str, dict[str, Any]]:
     if given is not None:
         return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
     apart = _recorded_apart(run, motion)
+    gap = 0.0 if apart is None else _gap(apart, force_clock, motion_clock)
+    if gap > _OTHER_DAY:
+        raise ReadError(
+            f"{run.attrs['source']} was recorded at {run.attrs['recorded_at']}, its companion "
+            f"{motion.attrs['source']} at {motion.attrs['recorded_at']}: another run's log; put "
+            "the right one beside it, or if the dates are wrong, give clock_shift="
+        )
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]
     velocity = _velocity(motion, motion_clock)
     signal = next((run[n] for n in ("friction_force", "friction_coefficient") if n in run), None)
     if velocity is not None and signal is not None:
         estimate = estimate_clock_shift(
-            force_clock, signal.to_numpy(), motion_clock, velocity, expected
+            force_clock, signal.to_numpy(), motion_clock, velocity, expected, apart is not None
         )
         if estimate is not None:
-            return (
-                estimate.shift,
-                "estimated",
-                {
-                    "clock_shift_uncertainty_s": estimate.uncertainty,
-                    "clock_rate": estimate.rate,
-                    "clock_shift_explained": estimate.explained,
-                },
-            )
+            ways = {
+                name: f"{told.shift:.6g} s +- {told.uncertainty:.2g} s"
+                for name, told in estimate.ways.items()
+            }
+            attrs = {
+                "clock_shift_uncertainty_s": estimate.uncertainty,
+                "clock_rate": estimate.rate,
+                "clock_shift_explained": estimate.explained,
+                "clock_shift_ways": ways,
+            }
+            refused = estimate.refused
+            if gap > _OTHER_RUN:
+                refused = f"by their dates one log ended {gap:.0f} s before the other began"
+            if not refused:
+                return estimate.shift, "estimated", attrs
+            attrs |= {
+                "clock_shift_uncertainty_s": float("nan"),
+                "clock_shift_refused": refused,
+            }
+            return estimate.shift, "none", attrs
     return float(expected), "none", {"clock_shift_uncertainty_s": float("nan"), "clock_rate": 0.0}
+
+
+def _gap(apart: float, force_clock: np.ndarray, motion_clock: np.ndarray) -> float:
+    """Seconds between the end of one log and the begin of the other, by their dates."""
+    return max(apart - float(np.ptp(force_clock)), -apart - float(np.ptp(motion_clock)), 0.0)
 
 
 def _velocity(motion: xr.Dataset, clock: np.ndarray) -> np.ndarray | None:

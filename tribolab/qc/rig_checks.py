@@ -104,10 +104,11 @@ def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
         return [Result("pass", "time", "the shift between the clocks was given", unit="s")]
     error = float(attrs.get("clock_shift_uncertainty_s", np.nan))
     if source == "none" or not np.isfinite(error):
-        text = "the shift between the clocks could not be told from the signals"
+        why = attrs.get("clock_shift_refused", "the force does not follow the motion")
+        text = f"the signals do not tell the shift between the clocks ({why}): state clock_shift"
         return [Result("fail", "time", text, unit="s")]
-    share = error / float(np.min(subject.durations))
-    text = f"the clocks are matched to {error:.3g} s, {share:.1%} of the shortest segment"
+    share = 2.0 * error / float(np.min(subject.durations))
+    text = f"the clocks are matched to {2.0 * error:.3g} s, {share:.1%} of the shortest segment"
     return [Result(status_of(share, limits), "time", text, error, "s")]
 
 
@@ -191,7 +192,9 @@ RIG_CHECKS = (
         "Are the clocks of the two logs matched?",
         "Give the shift (clock_shift in its [[run]]), or record a common mark, e.g. a start.",
         {
-            "suspect": Limit(0.10, "1", "the usual trim, 10 % of the duration, takes up as much"),
+            "suspect": Limit(
+                0.10, "1", "the usual trim, 10 % of the duration, takes up two standard errors"
+            ),
             "fail": Limit(0.50, "1", "segments and forces no longer belong together"),
         },
         _clock_shift,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tribolab.errors import ReadError
+from tribolab.io.companion import describe_companion
 from tribolab.io.dialects import known_dialects, load_dialect
 from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
@@ -32,7 +33,8 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     """
     kind = kind_of(path, instrument)
     if kind == "run":
-        return run_lines(describe(path, instrument))
+        described = describe(path, instrument)
+        return run_lines(described) + companion_lines(describe_companion(path, instrument))
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
 
 
@@ -131,3 +133,38 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
         lines.append(f"  not used: {', '.join(d['not_used'])}")
     lines += [f"  {key}: {value}" for key, value in d["metadata"].items()]
     return lines
+
+
+def companion_lines(told: Mapping[str, Any]) -> list[str]:
+    """Say whether a run's second log was found, and how its clock was matched.
+
+    Parameters
+    ----------
+    told
+        From `tribolab.io.companion.describe_companion`.
+    """
+    if "missing" in told:
+        return [f"  companion log: {told['missing']} is not there"]
+    if "ways" not in told:
+        return [f"  companion log: refused: {told['refused']}"] if told else []
+    lines = [f"  companion log: found ({told['instrument']})"]
+    if "refused" in told:
+        lines.append(
+            f"  clock shift: not told by the signals: {told['refused']}; "
+            "state clock_shift in the [[run]] of a campaign file"
+        )
+    else:
+        lines.append(
+            f"  clock shift: {told['shift_s']:.6g} s, standard uncertainty "
+            f"{told['uncertainty_s']:.2g} s, {told['source']}"
+        )
+    return lines + [
+        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in told["ways"].items()
+    ]
+
+
+_WAYS = {
+    "classes": "classes of velocity",
+    "starts": "the starts of motion",
+    "motion": "a fit by distance, speed and acceleration",
+}

@@ -1,0 +1,115 @@
+"""How often the stated shift between two clocks holds the true one, over pairs of logs.
+
+    python tests/benchmarks/clock_shift_coverage.py --seeds 1000:1020 --jobs 2
+
+Each seed makes one pair of every kind (see `tests/clock_pairs.py`): a force log and a motion log
+with clocks of their own, written to files and read back with `tl.read` (or only merged, with
+``--merge``). A pair is answered if the run states a shift, else the run is `fail` until
+`clock_shift` is stated. Printed by kind: how many are answered, how often the 95 % interval holds
+the truth, the usual uncertainty in milliseconds and in parts of the shortest stroke's duration,
+and the greatest error in standard deviations. The exit code says whether the interval of all that
+are answered covers 93 % or more, and three quarters are answered.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.io.merge import merge
+from tribolab.io.runs import read
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from clock_pairs import KINDS, make_pair, write_pair  # noqa: E402  the path has to be set first
+
+
+class Row(NamedTuple):
+    """What came of one pair."""
+
+    kind: str
+    seed: int
+    answered: bool
+    error: float
+    uncertainty: float
+    stroke: float
+    why: str
+
+
+def examine(task: tuple[str, int, bool]) -> Row:
+    """Make, read and judge one pair."""
+    kind, seed, only_merge = task
+    pair = make_pair(seed, kind)
+    try:
+        if only_merge:
+            attrs = merge(pair.force, pair.motion).attrs
+        else:
+            with tempfile.TemporaryDirectory() as folder:
+                attrs = read(write_pair(pair, Path(folder))).attrs
+    except ReadError as error:
+        return Row(kind, seed, False, np.nan, np.nan, pair.shortest, str(error))
+    return Row(
+        kind,
+        seed,
+        attrs["clock_shift_source"] == "estimated",
+        attrs["clock_shift_s"] - pair.shift,
+        attrs["clock_shift_uncertainty_s"],
+        pair.shortest,
+        str(attrs.get("clock_shift_refused", "the force does not follow the motion")),
+    )
+
+
+def line(name: str, rows: list[Row]) -> str:
+    """One line of the table."""
+    told = [row for row in rows if row.answered]
+    if not told:
+        return f"{name:20} {len(rows):5} {0:9.0%}"
+    pull = np.array([abs(row.error) / row.uncertainty for row in told])
+    error = np.array([row.uncertainty for row in told])
+    share = error / np.array([row.stroke for row in told])
+    return (
+        f"{name:20} {len(rows):5} {len(told) / len(rows):9.0%} {np.mean(pull < 1.96):8.1%} "
+        f"{1e3 * np.median(error):8.1f} {np.median(share):8.2%} {pull.max():8.1f}"
+    )
+
+
+def main() -> int:
+    """Print the table; the exit code says whether the aims are met."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", default="1000:1020", help="FIRST:LAST+1")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--merge", action="store_true", help="no files")
+    parser.add_argument("--verbose", action="store_true", help="list what was missed or refused")
+    options = parser.parse_args()
+    seeds = range(*map(int, options.seeds.split(":")))
+    tasks = [(kind, seed, options.merge) for kind in KINDS for seed in seeds]
+    with ProcessPoolExecutor(options.jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+        rows = list(pool.map(examine, tasks, chunksize=4))
+    print(f"{'kind':20} pairs  answered  covered   u [ms]  of stroke  worst")
+    for kind in KINDS:
+        print(line(kind, [row for row in rows if row.kind == kind]))
+    print(line("all", rows))
+    if options.verbose:
+        for row in rows:
+            if not row.answered:
+                print(f"refused {row.kind}, seed {row.seed}: {row.why}")
+            elif abs(row.error) > 1.96 * row.uncertainty:
+                print(
+                    f"missed {row.kind}, seed {row.seed}: {row.error:.4f} s "
+                    f"for {row.uncertainty:.4f} s"
+                )
+    told = [row for row in rows if row.answered]
+    held = np.mean([abs(row.error) < 1.96 * row.uncertainty for row in told])
+    return 0 if held >= 0.93 and len(told) >= 0.75 * len(rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,198 @@
+"""How far apart two clocks are, roughly: how well classes of velocity explain the friction force.
+
+Shift the motion log by s, sort the samples of the friction force into classes of velocity
+(sign and third of a decade), and ask how much of the force's variance the classes explain:
+
+    R^2(s) = [sum_k S_k^2 / N_k - S^2 / N] / [Q - S^2 / N],
+
+with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
+squares of all; every s of a grid at once by FFT, as each term is a cross-correlation. It is late,
+for friction builds up over a distance after each start and stays on at rest.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft
+
+Array = NDArray[np.float64]
+
+_GRID = 1 << 14  # cells of the coarse grid over the longer log
+_OVERLAP = 0.6  # least part of the largest possible overlap
+_DECADES = 5  # slower than this many decades below the fastest is rest
+_BINS = 3  # classes per decade
+_LEAST_EXPLAINED = 0.2
+_LEAST_CONTRAST = 0.1
+_ALMOST_NOTHING = 1e-3
+_TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
+_RIVALS = 8  # other peaks, at most
+
+
+class Coarse(NamedTuple):
+    """Shift [s], half the width in which the true one lies [s], and others that may do [s]."""
+
+    shift: float
+    half: float
+    rivals: Array
+
+
+def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Classes of velocity, a rest by what was before it, and the way (-1, 0, 1)."""
+    classes = velocity_classes(velocity)
+    way = np.sign(classes - _BINS * _DECADES)
+    return np.where(way == 0, _BINS * _DECADES * 2 + 2 + _last(way), classes), way
+
+
+def velocity_classes(velocity: Array) -> NDArray[np.int64]:
+    """Sort velocities into numbered classes: fast backward is 0, then rest, then forward.
+
+    >>> velocity_classes(np.array([-1.0, 0.0, 1.0, 0.9, 0.1])).tolist()
+    [0, 15, 30, 30, 27]
+    """
+    speed = np.abs(np.nan_to_num(velocity))
+    fastest = speed.max()
+    rank = np.zeros(len(speed), dtype=np.int64)
+    moving = speed > fastest * 10.0**-_DECADES
+    # the middle of a class is at the fastest speed, so that its noise stays in one class
+    level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
+    rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
+    return rank * np.sign(np.nan_to_num(velocity)).astype(np.int64) + _BINS * _DECADES
+
+
+def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Direction of the last motion; each has its own class of rest, as friction stays on."""
+    moved = np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))
+    return way[moved]
+
+
+def coarse_shift(
+    force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64], expected: float
+) -> Coarse | None:
+    """Best shift on a grid, and the half width in which the true one lies."""
+    spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
+    cell = max(spans) / _GRID
+    cells = [int(span / cell) + 1 for span in spans]
+    where = ((force_time - force_time[0]) / cell).astype(np.int64)
+    sums = [np.bincount(where, weights=w, minlength=cells[0]) for w in (None, force, force**2)]
+    grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
+    on_grid = classes[np.clip(np.searchsorted(motion_time, grid) - 1, 0, None)]
+
+    length = next_fast_len(cells[0] + cells[1], real=True)
+    count, total, square = (rfft(s.astype(float), length) for s in sums)
+    everywhere = np.conj(rfft(np.ones(cells[1]), length))
+    number = irfft(count * everywhere, length)
+    whole = irfft(total * everywhere, length)
+    squares = irfft(square * everywhere, length)
+    between = np.zeros(length)
+    for k in np.unique(on_grid):
+        here = np.conj(rfft((on_grid == k).astype(float), length))
+        n_k, s_k = irfft(count * here, length), irfft(total * here, length)
+        between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
+    enough = number >= _OVERLAP * number.max()
+    mean_part = whole**2 / np.maximum(number, 0.5)
+    spread = np.maximum(squares - mean_part, 1e-9)
+    explained = np.where(enough, (between - mean_part) / spread, -np.inf)
+
+    lags = np.arange(length)
+    lags = np.where(lags < cells[0], lags, lags - length)
+    shifts = lags * cell + force_time[0] - motion_time[0]
+    best = explained.max()
+    usual = np.median(explained[enough])
+    if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
+        return None
+    peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
+    tie = max(usual + _TIE * (best - usual), best - 0.5 * (1.0 - best) - _ALMOST_NOTHING)
+    good = shifts[peak & (explained >= tie)]
+    chosen = float(good[np.argmin(np.abs(good - expected))])
+    # the same motion again and again fits at other shifts too, though fewer samples overlap
+    may = np.flatnonzero(peak & (explained > usual + 0.5 * (best - usual)))
+    may = may[np.argsort(-explained[may])]
+    may = may[np.abs(shifts[may] - chosen) > 8.0 * cell][:_RIVALS]
+    return Coarse(chosen, 2.0 * cell, shifts[may])
+
+
+class Classes:
+    """Explained sum of squares at any shift, from cumulative sums of the force."""
+
+    def __init__(
+        self, force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64]
+    ):
+        self._time, self._force = force_time, force
+        self._edges = np.arange(len(force) + 1.0)
+        self._sum = np.concatenate([[0.0], np.cumsum(force)])
+        self._square = np.concatenate([[0.0], np.cumsum(force**2)])
+        change = np.flatnonzero(np.diff(classes)) + 1
+        middles = 0.5 * (motion_time[change] + motion_time[change - 1])
+        self._moments = np.concatenate([motion_time[:1], middles, motion_time[-1:]])
+        self._classes = classes[np.concatenate([[0], change])]
+        self.period = max(
+            float(np.percentile(np.diff(time), 5)) for time in (force_time, motion_time)
+        )
+
+    def _parts(self, shift: float) -> tuple[Array, Array, Array]:
+        """Places of the changes among the samples; number and sum of the samples by class."""
+        at = np.interp(self._moments + shift, self._time, self._edges[:-1] + 0.5)
+        number = np.bincount(self._classes, weights=np.diff(at))
+        total = np.bincount(self._classes, np.diff(np.interp(at, self._edges, self._sum)))
+        return at, number, total
+
+    def explained(self, shift: float) -> float:
+        """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""
+        _, number, total = self._parts(shift)
+        full = number > 0
+        return float((total[full] ** 2 / number[full]).sum() - total.sum() ** 2 / number.sum())
+
+    def _residual(self, shift: float) -> Array:
+        at, number, total = self._parts(shift)
+        means = total / np.maximum(number, 1e-9)
+        places = np.clip(np.round(at).astype(np.int64), 0, len(self._force))
+        inside = self._force[places[0] : places[-1]]
+        return inside - np.repeat(means[self._classes], np.diff(places))
+
+    def ratio(self, shift: float) -> float:
+        """Part of the variance that is explained."""
+        at, _, total = self._parts(shift)
+        squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
+        whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
+        return float(self.explained(shift) / max(whole, 1e-12))
+
+    def significance(self, shift: float) -> float:
+        """F ratio: variance explained per class against the residual's, correlation allowed for."""
+        ratio = self.ratio(shift)
+        independent = len(self._force) / _correlated(self._residual(shift))
+        classes = len(np.unique(self._classes)) - 1
+        return ratio / classes * independent / max(1.0 - ratio, 1e-12)
+
+    def uncertainty(self, shift: float) -> float:
+        """Shift at which the explained sum of squares falls by more than chance allows."""
+        residual = self._residual(shift)
+        variance = float(residual.var())
+        if variance == 0.0:
+            return 0.5 * self.period
+        allowed = 4.0 * variance * _correlated(residual)
+        top = self.explained(shift)
+        step = 0.5 * self.period
+        while step < 1e6 * self.period:
+            fall = top - max(self.explained(shift - step), self.explained(shift + step))
+            if fall > allowed:
+                return step
+            step *= 1.25
+        return step
+
+
+def _correlated(residual: Array) -> float:
+    """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
+    block = -(-len(residual) // _GRID)
+    rows = len(residual) // block
+    means = residual[: rows * block].reshape(rows, block).mean(axis=1)
+    if rows < 2 or not means.any():
+        return float(block)
+    spectrum = np.abs(rfft(means, next_fast_len(2 * rows, real=True))) ** 2
+    correlation = irfft(spectrum)[:rows]
+    correlation /= correlation[0]
+    negative = np.flatnonzero(correlation <= 0)
+    until = int(negative[0]) if negative.size else rows
+    return float(block * (2.0 * correlation[:until].sum() - 1.0))

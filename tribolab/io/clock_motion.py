@@ -1,0 +1,113 @@
+"""When a table moves and which way, from a velocity with noise, steps or jitter in it.
+
+A velocity reads a little more than zero at rest: noise of a tachometer, steps of an encoder. It is
+averaged over as few samples as bring that noise below a fiftieth of the fastest speed; what still
+lies within the noise, or leads nowhere, is rest.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_DECADES = 5  # slower than this many decades below the fastest is rest
+_QUIET = 0.02  # of the fastest speed: most noise that is left after averaging
+_WIDEST = 64  # samples on either side, at most, in an average
+_ABOVE_NOISE = 4.0  # standard deviations of the noise, below which the table is taken to rest
+_BLOCK = 16  # samples, in which noise is looked at
+_NOWHERE = 3e-4  # of the longest way in one go: what is shorter is noise at rest
+_QUIETEST = 3.0  # percentile of the noise in blocks that is taken for that at rest
+_FEW = 1.5  # times the changes of the motion: more are those of noise
+_TOP = 99.0  # percentile of the speed that is called the fastest
+
+
+class Motion(NamedTuple):
+    """Velocity [m/s] that is 0 at rest, the way (-1, 0, 1), and the time averaged over [s]."""
+
+    velocity: Array
+    way: NDArray[np.int64]
+    averaged: float
+
+
+def clean_motion(time: Array, velocity: Array) -> Motion:
+    """Tell motion from rest.
+
+    Parameters
+    ----------
+    time, velocity
+        Motion log: its clock [s] and the signed velocity [m/s], finite.
+
+    Examples
+    --------
+    >>> t = np.arange(100.0)
+    >>> noisy = np.where(t < 50, 0.0, 1.0) + 0.01 * np.cos(7.0 * t)
+    >>> np.unique(clean_motion(t, noisy).way[:50]).tolist()
+    [0]
+    """
+    path = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (velocity[1:] + velocity[:-1]))])
+    half, smooth = 0, velocity
+    noise = _noise(velocity, 1)
+    while noise > _QUIET * _fastest(smooth) and half < min(_WIDEST, len(time) // 64):
+        wider = max(1, 2 * half)
+        tried = _averaged(time, path, wider)
+        left = _noise(tried, 2 * wider)
+        if left > 0.8 * noise:
+            break
+        half, smooth, noise = wider, tried, left
+    way = _way(smooth, noise)
+    way = _without_short(path, way)
+    plain = _way(velocity, 0.0)
+    if _turns(plain) <= _FEW * _turns(way):  # it is quiet at rest: nothing has to be done
+        return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
+    interval = float(np.percentile(np.diff(time), 5))
+    return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
+
+
+def _fastest(velocity: Array) -> float:
+    return float(np.percentile(np.abs(velocity), _TOP))
+
+
+def _averaged(time: Array, path: Array, half: int) -> Array:
+    """Mean velocity between `half` samples before and after."""
+    at = np.arange(len(time))
+    first, last = np.maximum(at - half, 0), np.minimum(at + half, len(time) - 1)
+    return (path[last] - path[first]) / (time[last] - time[first])
+
+
+def _noise(velocity: Array, apart: int) -> float:
+    """Noise where it is least, from second differences of values that share no samples."""
+    second = np.diff(velocity[:: max(apart, 1)], 2)
+    blocks = len(second) // _BLOCK
+    if blocks < 4:
+        return 0.0
+    rms = np.sqrt((second[: blocks * _BLOCK].reshape(blocks, _BLOCK) ** 2).mean(axis=1) / 6.0)
+    return float(np.percentile(rms, _QUIETEST))
+
+
+def _way(velocity: Array, noise: float) -> NDArray[np.int64]:
+    """Sign of what rises well above the noise, from where it leaves it to where it enters it."""
+    speed = np.abs(velocity)
+    least = 10.0**-_DECADES * float(speed.max())
+    above = speed > max(noise, least)
+    way = np.where(above, np.sign(velocity), 0.0).astype(np.int64)
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
+    number = np.repeat(np.arange(len(edges) - 1), np.diff(edges))
+    highest = np.maximum.reduceat(speed, edges[:-1])
+    return np.where((highest > max(_ABOVE_NOISE * noise, least))[number], way, 0)
+
+
+def _turns(way: NDArray[np.int64]) -> int:
+    return int(np.count_nonzero(np.diff(way)))
+
+
+def _without_short(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Take what leads nowhere for rest."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
+    moved = np.abs(path[np.minimum(edges[1:], len(path) - 1)] - path[edges[:-1]])
+    short = moved < _NOWHERE * moved.max(initial=0.0)
+    number = np.repeat(np.arange(len(short)), np.diff(edges))
+    return np.where(short[number], 0, way)
