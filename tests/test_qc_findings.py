@@ -44,6 +44,8 @@ BITS = {
     "distance": 22,
     "sampling": 23,
     "segment_speed": 24,
+    "zero_reference": 29,
+    "rectified": 30,
 }
 
 

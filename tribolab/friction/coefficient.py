@@ -177,8 +177,8 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
     n0, n0_error = np.zeros(means.size), np.zeros(means.size)
+    middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     if normal_rests is not None and settings.offset != "none":
-        middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
         n0, n0_error = normal_rests.at(middle)
     pressed = _column(loads, "mean") - n0 if loads else np.ones(means.size)
     held = np.where(pressed > 0, pressed, 1.0)
@@ -198,12 +198,14 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     if not loads:
         empty = [one.samples == 0 for one in forces]
         remarks = np.where(empty, "no samples that are numbers", "").astype(object)
-        data |= _memory(forces) | {"force_trend": turn * _column(forces, "trend")}
+        trend = turn * _column(forces, "trend") - signs.sign * zero.slope
+        data |= _memory(forces) | {"force_trend": trend}
         return _table(data, remarks, zero)
 
     ratios, remarks = [], []
     for i, s in enumerate(parts):
-        own = turn[i] * force[s] - signs.sign[i] * zero.value[i]
+        drift = zero.slope[i] * (time[s] - middle[i])
+        own = turn[i] * force[s] - signs.sign[i] * (zero.value[i] + drift)
         ratio, remark = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
         ratios.append(ratio)
         remarks.append(remark)

@@ -103,21 +103,24 @@ class Rows(NamedTuple):
     weight: np.ndarray
 
 
-def interpolated(found: Middles, pair: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, Rows]:
-    """Zero at each segment from the middles of the loops, and the rows of its error.
+def interpolated(
+    found: Middles, pair: np.ndarray, time: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, Rows]:
+    """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
 
     Returns
     -------
     tuple
-        Zero of each segment (segment), in the unit of the middles, and of which strokes each
-        force without its zero consists. A stroke of a pair takes its own loop's middle and slope,
-        as does one before the first or after the last loop; one between two loops the straight
-        line between them.
+        Zero of each segment (segment) in the unit u of the middles, its drift [u/s] (segment), and
+        of which strokes each force without its zero consists. A stroke of a pair takes its own
+        loop's middle and slope, as does one before the first or after the last loop; one between
+        two loops the straight line between them.
     """
     count = time.size
     known = np.flatnonzero(np.isfinite(found.value))
     order = known[np.argsort(found.time[known])]
     loop, weight = np.zeros((count, 3), dtype=int), np.zeros((count, 3))
+    slope = np.zeros(count)
     for i in range(count):
         p = pair[i]
         if p < 0 and order.size:
@@ -126,17 +129,19 @@ def interpolated(found: Middles, pair: np.ndarray, time: np.ndarray) -> tuple[np
                 a, b = order[after - 1], order[after]
                 u = (time[i] - found.time[a]) / (found.time[b] - found.time[a])
                 loop[i], weight[i] = (a, b, b), (1 - u, u, 0.0)
+                slope[i] = (found.value[b] - found.value[a]) / (found.time[b] - found.time[a])
                 continue
             p = order[min(after, order.size - 1)]
         a, b = found.ends[p]
         apart = found.time[b] - found.time[a]
         ahead = found.part[p] * (time[i] - found.time[p]) / apart if apart > 0 else 0.0
         loop[i], weight[i] = (p, a, b), (1.0, -ahead, ahead)
+        slope[i] = found.slope[p]
     value = (weight * np.where(weight != 0, found.value[loop], 0.0)).sum(axis=1)
     own = np.arange(count)[:, None]
     stroke = np.concatenate([own, found.member[loop].reshape(count, 6)], axis=1)
     of_loops = -(weight[:, :, None] * found.share[loop]).reshape(count, 6)
-    return value, Rows(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
+    return value, slope, Rows(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
 
 
 def error_of_rows(rows: Rows, found: Middles, own: np.ndarray, time: np.ndarray) -> np.ndarray:

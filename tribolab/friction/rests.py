@@ -9,7 +9,8 @@ import xarray as xr
 
 from tribolab.friction.statistics import describe
 
-UNLOADED = 0.1  # share of the load below which a rest can be one without contact
+UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
+LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
 FEWEST = 10  # samples that an unloaded rest needs
 
 
@@ -54,6 +55,19 @@ class Zeros(NamedTuple):
         moved = np.maximum(moved - self.error[first] ** 2 - self.error[last] ** 2, 0.0)
         return value, np.sqrt(noise + moved * u * (1 - u) / 3)
 
+    def slope(self, time: np.ndarray) -> np.ndarray:
+        """Return the drift between the rests around other times [u/s]; 0 beyond them."""
+        after = np.searchsorted(self.time, time)
+        inside = (after > 0) & (after < self.time.size)
+        last = after.clip(1, max(self.time.size - 1, 1)) * inside
+        first = np.maximum(last - 1, 0)
+        apart = np.where(inside, self.time[last] - self.time[first], 1.0)
+        return np.where(inside, (self.value[last] - self.value[first]) / apart, 0.0)
+
+    def around(self, time: np.ndarray) -> np.ndarray:
+        """Return which times lie between two rests."""
+        return (time > self.time[0]) & (time < self.time[-1])
+
 
 def unloaded_rests(
     run: xr.Dataset, segments: xr.Dataset, load: float
@@ -71,7 +85,8 @@ def unloaded_rests(
     -------
     tuple
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them.
+        rest tells them. The first reads less than a tenth of the load; a later one differs from
+        the one before by no more than that, so that a zero may drift further.
     """
     if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
         return None, None
@@ -85,16 +100,13 @@ def unloaded_rests(
         segments["omitted_stop"].values[resting],
         strict=True,
     )
+    before = 0.0
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
-        light = first + np.flatnonzero(np.abs(normal[first:last]) < UNLOADED * load)
-        if light.size < FEWEST:
+        level = _level(normal, first, last, load)
+        if level.size < FEWEST or abs(np.mean(normal[level]) - before) > UNLOADED * load:
             continue
-        # the load's ramp begins in the same rest: readings far from the usual one are left out
-        rest = np.abs(normal[light] - np.median(normal[light]))
-        level = light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
-        if level.size < FEWEST:
-            continue
+        before = float(np.mean(normal[level]))
         when = float(time[level].mean())
         found = describe(time[level], normal[level])
         zeros["normal"].append((when, found.mean, found.sem))
@@ -103,6 +115,16 @@ def unloaded_rests(
             if found.samples >= FEWEST:
                 zeros["friction"].append((when, found.mean, found.sem))
     return _zeros(zeros["friction"]), _zeros(zeros["normal"])
+
+
+def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
+    """Return the samples of a rest that lie at one level far below the load, if there is one."""
+    light = first + np.flatnonzero(np.abs(normal[first:last]) < LIGHT * load)
+    if light.size < FEWEST:
+        return light
+    # the load's ramp begins in the same rest: readings far from the usual one are left out
+    rest = np.abs(normal[light] - np.median(normal[light]))
+    return light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
 
 
 def _zeros(found: list[tuple[float, float, float]]) -> Zeros | None:

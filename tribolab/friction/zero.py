@@ -63,7 +63,7 @@ class Known:
     Parameters
     ----------
     rests
-        Zeros from rests without load.
+        Zeros from rests without load, of a signal that has its sign.
     stated
         Standard uncertainty of a zero that was set to zero, as somebody stated [u], or NaN.
     others
@@ -85,7 +85,9 @@ class Reference:
     Parameters
     ----------
     value
-        Zero of each segment [u] (segment).
+        Zero of each segment at its middle [u] (segment).
+    slope
+        Its drift [u/s] (segment).
     error
         Function: own errors of the strokes -> errors of their forces without the zero (segment).
     zero_from
@@ -99,6 +101,7 @@ class Reference:
     """
 
     value: np.ndarray
+    slope: np.ndarray
     error: Callable[[np.ndarray], np.ndarray]
     zero_from: np.ndarray
     half_loop: np.ndarray
@@ -150,16 +153,16 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     if not strokes.size:
         return _constant(strokes, 0.0, 0.0, "", "none: no segment")
     if found:
-        loop = _from_loops(strokes, known, loops, fold)
+        loop = _from_loops(strokes, known, loops)
         nothing = loop.half_loop
     if wanted == "none":
         result = _constant(strokes, 0.0, 0.0, "not wanted", "none: not wanted")
     elif wanted == "zero load":
-        result = _from_rests(strokes, known.rests)
+        result = _from_rests(strokes, known, known.rests)
     elif found:
         result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop)
-    elif known.rests is not None and fold.kind == "signed":
-        result = _from_rests(strokes, known.rests)
+    elif known.rests is not None:
+        result = _from_rests(strokes, known, known.rests)
     else:
         result = _from_outside(strokes, known, fold)
     return replace(result, half_loop=nothing)
@@ -169,6 +172,7 @@ def _constant(strokes: Strokes, value: float, error: float, words: str, method: 
     size = strokes.size
     return Reference(
         np.full(size, value),
+        np.zeros(size),
         lambda own: np.hypot(own, error),
         np.full(size, words, dtype=object),
         np.full(size, np.nan),
@@ -176,27 +180,42 @@ def _constant(strokes: Strokes, value: float, error: float, words: str, method: 
     )
 
 
-def _from_rests(strokes: Strokes, rests: Zeros) -> Reference:
+def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
     value, error = rests.at(strokes.time)
     words = "a rest without load"
     if rests.time.size > 1:
         words = f"{rests.time.size} rests without load, interpolated in time"
-    size = strokes.size
+    lonely = ~rests.around(strokes.time)
+    doubts = ()
+    if np.isfinite(known.stated):
+        error = np.where(lonely, np.hypot(error, known.stated), error)
+    elif lonely.any():
+        text = (
+            "the zero was measured on one side of the strokes only: what it drifted from there is "
+            "in the friction and not in its error"
+        )
+        cure = (
+            "Measure a rest without load before and after the strokes; or state `zero_uncertainty` "
+            '(e.g. "0.2 N"), by how much the zero drifts, in the [[run]].'
+        )
+        doubts = (_doubt(text, cure, np.flatnonzero(lonely)),)
     return Reference(
         value,
+        rests.slope(strokes.time),
         lambda own: np.hypot(own, error),
-        np.full(size, words, dtype=object),
-        np.full(size, np.nan),
+        np.full(strokes.size, words, dtype=object),
+        np.full(strokes.size, np.nan),
         "zero load",
+        doubts,
     )
 
 
-def _from_loops(strokes: Strokes, known: Known, loops: Middles, fold: Fold) -> Reference:
+def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
     """Zeros from the middles of the loops; strokes without a partner from rests, if there are."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
     paired = pair >= 0
-    value, rows = interpolated(loops, pair, strokes.time)
+    value, slope, rows = interpolated(loops, pair, strokes.time)
     forward, backward = loops.member.T
     half = (strokes.mean[forward] - strokes.mean[backward]) / 2
     half -= loops.slope * (strokes.time[forward] - strokes.time[backward]) / 2
@@ -205,21 +224,22 @@ def _from_loops(strokes: Strokes, known: Known, loops: Middles, fold: Fold) -> R
     allowance, measured = across_speeds(half, speeds)
     extra = np.where(paired, allowance[pair.clip(0)], np.nanmax(allowance, initial=0.0))
     extra = np.nan_to_num(extra)
-    at_rest, rest_error = np.zeros(strokes.size), np.full(strokes.size, np.nan)
-    if known.rests is not None and fold.kind == "signed":
+    at_rest, rest_error = np.zeros(strokes.size), np.zeros(strokes.size)
+    by_rest = np.zeros(strokes.size, dtype=bool)
+    if known.rests is not None:
         at_rest, rest_error = known.rests.at(strokes.time)
-    by_rest = ~paired & np.isfinite(rest_error)
+        by_rest = ~paired & known.rests.around(strokes.time)
+        slope = np.where(by_rest, known.rests.slope(strokes.time), slope)
 
     def error(own: np.ndarray) -> np.ndarray:
         of_loops = np.hypot(error_of_rows(rows, loops, own, strokes.time), extra)
-        return np.where(by_rest, np.hypot(own, np.nan_to_num(rest_error)), of_loops)
+        return np.where(by_rest, np.hypot(own, rest_error), of_loops)
 
     words = [_words(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
     words = np.where(by_rest, "rests without load, interpolated in time", words).astype(object)
     doubts = _of_speeds(strokes, loops, known, allowance, measured)
-    return Reference(
-        np.where(by_rest, at_rest, value), error, words, half_loop, "half loop", tuple(doubts)
-    )
+    value = np.where(by_rest, at_rest, value)
+    return Reference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
 
 
 def _words(
@@ -290,7 +310,7 @@ def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) ->
     a doubt. Where they differ by less, the difference is carried in the error.
     """
     if known.rests is not None:
-        other = _from_rests(strokes, known.rests)
+        other = _from_rests(strokes, known, known.rests)
         value, error = known.rests.at(loops.time)
         by = "the rests without load"
     elif np.isfinite(known.stated):

@@ -98,7 +98,9 @@ def zero_of_run(
     fold = _fold(run, segments, name, parts, mean, error, direction, rests, settings)
     if (direction > 0).any() and (direction < 0).any() and _lost(fold):
         unfold = sign * (1.0 if np.nanmedian(mean) >= 0 else -1.0)
-    pair = _pairs(segments, settings, rests if fold.kind == "signed" else None, stated)
+    if fold.kind != "signed" and settings.offset != "zero load":
+        rests = None  # they read the size of the zero
+    pair = _pairs(segments, settings, rests, stated)
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     unit = quantity(name).unit
     strokes = Strokes(

@@ -380,6 +380,9 @@ def _attributes(
         attrs["recorded_at"] = moment.isoformat()
     if left_out:
         attrs["rows_left_out"] = left_out
+    for column in dialect.column:
+        if column.quantity in labels:
+            attrs.update(column.attributes)
     for content in contents:
         attrs.update(content.notes)
     return attrs

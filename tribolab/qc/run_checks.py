@@ -16,9 +16,12 @@ from tribolab.qc.register import Check, examine, resolve_limits
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
+from tribolab.qc.zero_checks import ZERO_CHECKS
 from tribolab.units import to_si
 
-RUN_CHECKS: dict[str, Check] = {c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS)}
+RUN_CHECKS: dict[str, Check] = {
+    c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *ZERO_CHECKS)
+}
 
 
 def check_run(
