@@ -160,6 +160,15 @@ def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
     return [slice(a, max(a, b)) for a, b in zip(first, last, strict=True)]
 
 
+def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.ndarray:
+    """Mean moment of the samples of each segment: that is when a drifting signal has its mean."""
+    ends = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+    means = [
+        time[s].mean() if s.stop > s.start else end for s, end in zip(parts, ends, strict=True)
+    ]
+    return np.array(means, dtype=float)
+
+
 def _column(found: list[Estimate], name: str) -> np.ndarray:
     return np.array([getattr(one, name) for one in found], dtype=float)
 
@@ -177,14 +186,14 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
     n0, n0_error = np.zeros(means.size), np.zeros(means.size)
-    middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+    middle = _middles(time, parts, segments)
     if normal_rests is not None and settings.offset != "none":
         n0, n0_error = normal_rests.at(middle)
     pressed = _column(loads, "mean") - n0 if loads else np.ones(means.size)
     held = np.where(pressed > 0, pressed, 1.0)
     own_errors = _column(forces, "sem")
     zero, signs, pair = zero_of_run(
-        run, segments, "friction_force", parts, means, own_errors, held, rests, settings
+        run, segments, "friction_force", parts, means, own_errors, held, middle, rests, settings
     )
     turn = signs.sign * signs.unfold
     data = {
@@ -263,9 +272,9 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     parts = trimmed_slices(run, segments)
     found = [describe(time[s], ratio[s]) for s in parts]
     means, own = _column(found, "mean"), _column(found, "sem")
-    alike = np.ones(means.size)
+    alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(
-        run, segments, "friction_coefficient", parts, means, own, alike, None, settings
+        run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
     )
     turn = signs.sign * signs.unfold
     data = {

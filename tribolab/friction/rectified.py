@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
-TOUCH = 0.25  # the same where nothing else speaks for a reversal
+TOUCH = 5.0  # standard deviations from zero within which a force touches it
 MOST = 0.5  # share of the reversals that have to show it
 LIKE = 0.25  # of their mean: strokes that differ by less are of one level
 CLEAR = 5.0  # standard errors beyond which levels differ
@@ -114,7 +114,7 @@ def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
             return SIGNED
         if beside < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
-    dips, straight, seen = _reversals(trace, DIP)
+    dips, straight, seen = _reversals(trace)
     if dips >= MOST:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
@@ -128,7 +128,7 @@ def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
     return Fold("undecided: alike" if like else "undecided", why)
 
 
-def _reversals(trace: Trace, depth: float) -> tuple[float, float, int]:
+def _reversals(trace: Trace) -> tuple[float, float, int]:
     """Share of the turns that dip towards zero, share that goes straight across, number of turns.
 
     "Straight" is a turn with readings between the two levels and none below them, where these are
@@ -152,7 +152,7 @@ def _reversals(trace: Trace, depth: float) -> tuple[float, float, int]:
             (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
         )
         (low, top), (bottom, _) = ends
-        if turn.min() < depth * low:
+        if turn.min() < DIP * low:
             dips += 1
         elif top < bottom:
             straight += bool(((turn > top) & (turn < bottom)).any())
@@ -175,11 +175,30 @@ def _one_way(trace: Trace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    dips, _, seen = _reversals(trace, TOUCH)
-    if seen and dips >= MOST:
+    touched = [_touches(trace, i) for i in range(len(trace.parts) - 1)]
+    touched = [one for one in touched if one is not None]
+    dips = sum(touched) / len(touched) if touched else 0.0
+    if dips >= MOST:
         why = (
             f"neither speed nor force has a sign, and the force goes to zero at {dips:.0%} of the "
             "stops and never below it"
         )
         return Fold("rectified", why)
     return SIGNED
+
+
+def _touches(trace: Trace, number: int) -> bool | None:
+    """Whether the force comes to zero between two strokes, as near as its noise and steps allow."""
+    here, there = trace.parts[number], trace.parts[number + 1]
+    between = slice(here.stop, there.start)
+    turn = trace.force[between][trace.loaded[between]]
+    turn = turn[np.isfinite(turn)]
+    stroke = trace.force[here][np.isfinite(trace.force[here])]
+    if turn.size < 3 or stroke.size < 3:
+        return None
+    lowest = int(np.argmin(turn))
+    # of four steps around it a V has three that are large, and a flat stop two at most
+    steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
+    # differences between neighbours: a wave in the stroke is no noise
+    noise = np.median(np.abs(np.diff(stroke))) / 0.954
+    return bool(turn[lowest] < max(TOUCH * noise, steps[1]))

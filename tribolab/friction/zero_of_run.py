@@ -64,6 +64,7 @@ def zero_of_run(
     mean: np.ndarray,
     error: np.ndarray,
     load: np.ndarray,
+    middle: np.ndarray,
     rests: Zeros | None,
     settings: Settings,
 ) -> tuple[Reference, Signs, np.ndarray]:
@@ -81,6 +82,8 @@ def zero_of_run(
         Of the signal over each segment (segment).
     load
         Mean normal force of each segment [N], or one for all where it is not known (segment).
+    middle
+        Mean moment of the samples of each segment [s] (segment).
     rests
         Zeros from rests without load.
     settings
@@ -101,7 +104,6 @@ def zero_of_run(
     if fold.kind != "signed" and settings.offset != "zero load":
         rests = None  # they read the size of the zero
     pair = _pairs(segments, settings, rests, stated)
-    middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     unit = quantity(name).unit
     strokes = Strokes(
         mean=unfold * mean,
