@@ -367,10 +367,14 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     text = (
         "no rest without load: friction that depends on direction and an offset cannot be told "
         f"apart. The offset that was removed, {np.nanmedian(loops.value):+.3g}{strokes.unit}, "
-        f"would be {share:.1%} more friction one way and less the other; their mean does not change"
     )
+    if share < 1:
+        text += f"would be {share:.1%} more friction one way and less the other; "
+    else:
+        text += "is larger than friction; what part of it is an asymmetry is not known; "
+    text += "their mean does not change"
     doubt = _doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
-    return replace(loop, doubts=(*loop.doubts, doubt | {"noted": share > ASYMMETRY}))
+    return replace(loop, doubts=(*loop.doubts, doubt | {"noted": ASYMMETRY < share < 1}))
 
 
 def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
@@ -393,7 +397,7 @@ def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
         strokes, 0.0, 0.0, "nothing", "none: no pair of strokes, no rest without load"
     )
     text = (
-        "the zero of the friction force is not known: no strokes both ways at one speed, no rest "
+        "the zero of the friction signal is not known: no strokes both ways at one speed, no rest "
         "without load; its offset is in the friction and not in its error"
     )
     cure = (
