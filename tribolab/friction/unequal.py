@@ -52,7 +52,7 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
         return np.nan_to_num(steep * ratio / 2), False
     # strokes of one speed measure; others only where there are none
     source = known & (ratio <= ALIKE)
-    measured = bool(source.any()) and np.ptp(place[source]) > ALIKE
+    measured = bool(source.any() and np.ptp(place[source]) > ALIKE)
     if not measured:
         source = known
     order = np.flatnonzero(source)[np.argsort(place[source], kind="stable")]

@@ -400,8 +400,9 @@ def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
         "the zero of the friction signal is not known: no strokes both ways at one speed, no rest "
         "without load; its offset is in the friction and not in its error"
     )
+    example = "0.2 N" if strokes.unit else "1 %"
     cure = (
-        'State `zero_uncertainty` (e.g. "0.2 N") in the [[run]], or of the column in the '
+        f'State `zero_uncertainty` (e.g. "{example}") in the [[run]], or of the column in the '
         "dialect; or measure strokes both ways, or a rest without load."
     )
     return replace(result, doubts=(_doubt(text, cure, np.arange(strokes.size)),))

@@ -132,7 +132,8 @@ def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -
     >>> time = np.arange(400) / 100
     >>> noise = 0.01 * np.random.default_rng(0).standard_normal(400)
     >>> run = xr.Dataset({"friction_force": ("time", 1 + noise)}, {"time": time})
-    >>> check(run.assign(sliding_velocity=("time", np.full(400, 1e-3)))).status
-    'pass'
+    >>> run = run.assign(sliding_velocity=("time", np.full(400, 1e-3)))
+    >>> check(run).status, check(run.assign_attrs(friction_force_zero_uncertainty_N=0.01)).status
+    ('suspect', 'pass')
     """
     return check_run(run, segments, **options)

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.subject import RunSubject
 
@@ -16,17 +13,8 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     friction = subject.friction
     signal = _signal(subject)
     told = _doubts(subject, "zero_reference", signal)
-    if any(result.status == "suspect" for result in told):
-        return told
     method = str(friction.attrs.get("offset", ""))
-    flags = np.full(subject.time.size, NOT_EVALUATED, np.int8)
-    flags[subject.in_segments] = GOOD
-    text = f"the zero rests on: {method}"
-    if "zero_from" in friction:
-        words = dict.fromkeys(str(text) for text in friction["zero_from"].values)
-        named = [word for word in words if "half loop" not in word]
-        text += f" ({'; '.join(named[:3])})" if named and method == "half loop" else ""
-    return [*told, Result("pass", signal, text, flags=flags)] if not told else told
+    return told or [Result("pass", signal, f"the zero rests on: {method}")]
 
 
 def _rectified(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -42,18 +30,13 @@ def _signal(subject: RunSubject) -> str:
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
-    """Turn what the analysis was not sure of into results with flags on the segments' samples."""
+    """Turn what the analysis was not sure of into results; no single sample is to blame."""
     found: list[dict[str, Any]] = list(subject.friction.attrs.get("zero_doubts", []))
     results = []
     for doubt in found:
         if doubt["check"] != check:
             continue
-        flags = np.full(subject.time.size, NOT_EVALUATED, np.int8)
-        flags[subject.in_segments] = GOOD
         which = [int(i) for i in doubt["segments"]]
-        if doubt["status"] == "suspect":
-            for i in which:
-                flags[subject.slices[i]] = SUSPECT
         where = subject.segment_label(which[0]) if 0 < len(which) < len(subject.slices) else ""
         results.append(
             Result(
@@ -62,7 +45,6 @@ def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
                 doubt["message"],
                 where=where,
                 count=len(which) if doubt["status"] == "suspect" else 0,
-                flags=flags,
                 noted=bool(doubt.get("noted")),
                 cure=doubt["cure"],
             )
