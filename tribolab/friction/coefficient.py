@@ -10,8 +10,8 @@ import xarray as xr
 from tribolab.errors import AnalysisError, nearest
 from tribolab.friction.rests import unloaded_rests
 from tribolab.friction.statistics import NOTHING, Estimate, describe
-from tribolab.friction.zero import Reference
 from tribolab.friction.zero_of_run import Settings, zero_of_run
+from tribolab.friction.zero_parts import Reference
 from tribolab.quantities import stamp
 
 OFFSETS = ("auto", "half loop", "zero load", "none")

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,100 +11,11 @@ from tribolab.friction.middles import Middles, error_of_rows, interpolated, midd
 from tribolab.friction.rectified import Fold
 from tribolab.friction.rests import Zeros
 from tribolab.friction.unequal import across_speeds
+from tribolab.friction.zero_parts import Known, Reference, Strokes, doubt
+from tribolab.friction.zero_words import of_speeds, words_of
 
 ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
 MISSED = 3.0  # standard errors of the same
-
-
-@dataclass(frozen=True)
-class Strokes:
-    """What a zero is sought from: one entry for each segment.
-
-    Parameters
-    ----------
-    mean, error
-        Mean force and its standard error, in the unit u of the signal.
-    load
-        Mean normal force [N], or one for all where it is not known.
-    sign
-        Direction.
-    speed, time
-        Sliding speed [m/s] and middle [s].
-    pair
-        Number of the pair, -1 for none.
-    number
-        What each segment is called.
-    unit
-        The unit u, as text that follows a number.
-    """
-
-    mean: np.ndarray
-    error: np.ndarray
-    load: np.ndarray
-    sign: np.ndarray
-    speed: np.ndarray
-    time: np.ndarray
-    pair: np.ndarray
-    number: np.ndarray
-    unit: str = " N"
-
-    @property
-    def size(self) -> int:
-        """Number of segments."""
-        return self.mean.size
-
-
-@dataclass(frozen=True)
-class Known:
-    """What is known of the zero besides the strokes.
-
-    Parameters
-    ----------
-    rests
-        Zeros from rests without load, of a signal that has its sign.
-    stated
-        Standard uncertainty of a zero that was set to zero, as somebody stated [u], or NaN.
-    others
-        Zeros of other runs on the same instrument [u].
-    tolerance
-        Relative difference of speed up to which somebody says that friction is alike.
-    """
-
-    rests: Zeros | None = None
-    stated: float = float("nan")
-    others: tuple[float, ...] = ()
-    tolerance: float = 0.25
-
-
-@dataclass(frozen=True)
-class Reference:
-    """The zero of each segment and what it rests on.
-
-    Parameters
-    ----------
-    value
-        Zero of each segment at its middle [u] (segment).
-    slope
-        Its drift [u/s] (segment).
-    error
-        Function: own errors of the strokes -> errors of their forces without the zero (segment).
-    zero_from
-        What it rests on, in words (segment).
-    half_loop
-        Half the loop of each stroke's pair, its zero's drift taken out [u]; NaN without a pair.
-    method
-        One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
-    doubts
-        What is not sure: dictionaries with "check", "message", "cure", "segments" and "status".
-    """
-
-    value: np.ndarray
-    slope: np.ndarray
-    error: Callable[[np.ndarray], np.ndarray]
-    zero_from: np.ndarray
-    half_loop: np.ndarray
-    method: str
-    doubts: tuple[dict[str, Any], ...] = field(default=())
 
 
 def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name: str) -> Reference:
@@ -198,7 +107,7 @@ def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
             "Measure a rest without load before and after the strokes; or state `zero_uncertainty` "
             '(e.g. "0.2 N"), by how much the zero drifts, in the [[run]].'
         )
-        doubts = (_doubt(text, cure, np.flatnonzero(lonely)),)
+        doubts = (doubt(text, cure, np.flatnonzero(lonely)),)
     return Reference(
         value,
         rests.slope(strokes.time),
@@ -235,71 +144,11 @@ def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
         of_loops = np.hypot(error_of_rows(rows, loops, own, strokes.time), extra)
         return np.where(by_rest, np.hypot(own, rest_error), of_loops)
 
-    words = [_words(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
+    words = [words_of(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
     words = np.where(by_rest, "rests without load, interpolated in time", words).astype(object)
-    doubts = _of_speeds(strokes, loops, known, allowance, measured)
+    doubts = of_speeds(strokes, loops, known, allowance, measured)
     value = np.where(by_rest, at_rest, value)
     return Reference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
-
-
-def _words(
-    strokes: Strokes, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
-) -> str:
-    """Say what the zero of a segment rests on."""
-    number = strokes.number
-    drift = ", drift between the loops taken out" if np.any(loops.slope != 0) else ""
-    if pair[i] >= 0:
-        member = loops.member[pair[i]]
-        partner = int(member[0] if member[1] == i else member[1])
-        own, other = strokes.speed[i], strokes.speed[partner]
-        text = f"half loop with segment {number[partner]}"
-        if np.isfinite(own) and abs(own - other) > 0.05 * own:
-            text += f" at {other / own:.3g} of its speed (+-{allowance[pair[i]]:.2g}{strokes.unit})"
-        between = np.arange(min(number[i], number[partner]) + 1, max(number[i], number[partner]))
-        if between.size:
-            text += f", {_listed(between)} between them left out"
-        return text + drift
-    known = np.flatnonzero(np.isfinite(loops.value))
-    order = known[np.argsort(loops.time[known])]
-    after = int(np.searchsorted(loops.time[order], strokes.time[i]))
-    near = order[max(after - 1, 0) : after + 1]
-    named = ("-".join(str(number[s]) for s in sorted(loops.member[p])) for p in near)
-    return f"no partner: half loops of segments {' and '.join(named)}{drift}"
-
-
-def _listed(numbers: np.ndarray) -> str:
-    some = f"segment {numbers[0]}" if numbers.size == 1 else f"segments {numbers[0]}-{numbers[-1]}"
-    return some
-
-
-def _of_speeds(
-    strokes: Strokes,
-    loops: Middles,
-    known: Known,
-    allowance: np.ndarray,
-    measured: bool,
-) -> list[dict[str, Any]]:
-    """Doubt pairs across speeds that nobody stated to be alike and the run does not measure."""
-    speed = strokes.speed[loops.member]
-    mean = speed.mean(axis=1)
-    apart = np.abs(speed[:, 0] - speed[:, 1])
-    far = apart > known.tolerance * mean
-    if not far.any():
-        return []
-    worst = int(np.argmax(np.where(far, apart / mean, 0)))
-    slow, fast = np.sort(speed[worst])
-    text = (
-        f"strokes of {slow:.3g} and {fast:.3g} m/s were taken for one loop; what friction changes "
-        f"between these speeds is in the error, with {allowance[worst]:.2g}{strokes.unit}"
-    )
-    wanted = np.ceil(10 * (apart / mean).max()) / 10
-    cure = (
-        f"If friction hardly changes between them, say `pair_tolerance = {wanted:.1f}` under "
-        "[friction]; else measure both directions at one speed, or a rest without load."
-    )
-    # what the run measures is in the error; what it does not, is guessed there
-    status = "pass" if measured else "suspect"
-    return [_doubt(text, cure, np.flatnonzero(np.isin(strokes.pair, np.flatnonzero(far))), status)]
 
 
 def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) -> Reference:
@@ -354,7 +203,7 @@ def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) ->
             'If friction does not depend on direction, say `offset = "half loop"` under '
             "[friction]; else measure a rest without load."
         )
-    doubts = (*loop.doubts, _doubt(text, cure, np.arange(strokes.size)))
+    doubts = (*loop.doubts, doubt(text, cure, np.arange(strokes.size)))
     return replace(other, doubts=doubts)
 
 
@@ -373,8 +222,8 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     else:
         text += "is larger than friction; what part of it is an asymmetry is not known; "
     text += "their mean does not change"
-    doubt = _doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
-    return replace(loop, doubts=(*loop.doubts, doubt | {"noted": ASYMMETRY < share < 1}))
+    found = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
+    return replace(loop, doubts=(*loop.doubts, found | {"noted": ASYMMETRY < share < 1}))
 
 
 def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
@@ -405,28 +254,4 @@ def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
         f'State `zero_uncertainty` (e.g. "{example}") in the [[run]], or of the column in the '
         "dialect; or measure strokes both ways, or a rest without load."
     )
-    return replace(result, doubts=(_doubt(text, cure, np.arange(strokes.size)),))
-
-
-def _doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> dict[str, Any]:
-    return {
-        "check": "zero_reference",
-        "status": status,
-        "message": text,
-        "cure": cure,
-        "segments": [int(i) for i in which],
-        "noted": status == "pass",
-    }
-
-
-def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[dict[str, Any], ...]:
-    """Return the doubt about a sign that was lost, if there is one."""
-    if fold.kind == "signed" or not fold.why:
-        return ()
-    done = "the direction of sliding was put back as its sign" if unfolded else "it was left as is"
-    cure = (
-        "State `rectified = true` if the record holds no sign, `rectified = false` if its offset "
-        "is real: in the [[run]], or of the column in the dialect."
-    )
-    doubt = _doubt(f"{fold.why}; {done}", cure, np.arange(size))
-    return (doubt | {"check": "rectified"},)
+    return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))

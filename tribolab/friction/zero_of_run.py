@@ -12,7 +12,9 @@ from tribolab.friction.offsets import pair_strokes
 from tribolab.friction.rectified import SIGNED, Fold, Trace, folded
 from tribolab.friction.rests import UNLOADED, Zeros
 from tribolab.friction.unequal import TOO_FAR
-from tribolab.friction.zero import Known, Reference, Strokes, find_reference, of_fold
+from tribolab.friction.zero import find_reference
+from tribolab.friction.zero_parts import Known, Reference, Strokes
+from tribolab.friction.zero_words import of_fold
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 
