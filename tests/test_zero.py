@@ -154,6 +154,16 @@ def test_drift_of_both_zeros_is_taken_from_the_rests_without_load():
     assert not doubts(run, friction)
 
 
+@pytest.mark.parametrize("start", [-5.0, 2.5])
+def test_zero_of_the_normal_force_may_drift_far_from_rest_to_rest(start):
+    run = programme(
+        [*BOTH, None, *BOTH, None, *BOTH], normal_zero=lambda u: start + np.sign(start) * 3 * u
+    )
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, abs=2e-3)
+    assert (np.abs(off(friction)) < 3).all()
+
+
 def test_zero_between_two_rests_is_a_line_and_beyond_them_the_last():
     zeros = Zeros(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1.0, 1.0]), np.full(3, 0.1))
     value, error = zeros.at(np.array([-5.0, 5.0, 15.0, 25.0]))

@@ -85,8 +85,8 @@ def unloaded_rests(
     -------
     tuple
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them. The first reads less than a tenth of the load; a later one differs from
-        the one before by no more than that, so that a zero may drift further.
+        rest tells them. The first reads less than a tenth of the load; a later one no more than
+        that above the one before, so that a zero may drift further.
     """
     if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
         return None, None
@@ -104,7 +104,8 @@ def unloaded_rests(
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
         level = _level(normal, first, last, load)
-        if level.size < FEWEST or abs(np.mean(normal[level]) - before) > UNLOADED * load:
+        # more than the zero before may be a light load; less is none, surfaces hardly pull
+        if level.size < FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
             continue
         before = float(np.mean(normal[level]))
         when = float(time[level].mean())
