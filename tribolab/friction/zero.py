@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -47,8 +48,9 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
         If the zero that is wanted cannot be had.
     """
     loops = middles(strokes.mean, strokes.load, strokes.sign, strokes.pair, strokes.time)
-    found = loops is not None and bool(np.isfinite(loops.value).any())
-    if wanted == "half loop" and not found:
+    if loops is not None and not np.isfinite(loops.value).any():
+        loops = None
+    if wanted == "half loop" and loops is None:
         raise AnalysisError(
             f"{name}: offset 'half loop' needs two neighbouring strokes of one speed and opposite"
             " direction, and there are none; use offset='auto', or widen pair_tolerance"
@@ -61,14 +63,14 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     nothing = np.full(strokes.size, np.nan)
     if not strokes.size:
         return _constant(strokes, 0.0, 0.0, "", "none: no segment")
-    if found:
+    if loops is not None:
         loop = _from_loops(strokes, known, loops)
         nothing = loop.half_loop
     if wanted == "none":
         result = _constant(strokes, 0.0, 0.0, "not wanted", "none: not wanted")
-    elif wanted == "zero load":
+    elif wanted == "zero load" and known.rests is not None:
         result = _from_rests(strokes, known, known.rests)
-    elif found:
+    elif loops is not None:
         result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop)
     elif known.rests is not None:
         result = _from_rests(strokes, known, known.rests)
@@ -95,7 +97,7 @@ def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
     if rests.time.size > 1:
         words = f"{rests.time.size} rests without load, interpolated in time"
     lonely = ~rests.around(strokes.time)
-    doubts = ()
+    doubts: tuple[dict[str, Any], ...] = ()
     if np.isfinite(known.stated):
         error = np.where(lonely, np.hypot(error, known.stated), error)
     elif lonely.any():
@@ -144,8 +146,8 @@ def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
         of_loops = np.hypot(error_of_rows(rows, loops, own, strokes.time), extra)
         return np.where(by_rest, np.hypot(own, rest_error), of_loops)
 
-    words = [words_of(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
-    words = np.where(by_rest, "rests without load, interpolated in time", words).astype(object)
+    own = [words_of(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
+    words = np.where(by_rest, "rests without load, interpolated in time", own).astype(object)
     doubts = of_speeds(strokes, loops, known, allowance, measured)
     value = np.where(by_rest, at_rest, value)
     return Reference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
