@@ -11,6 +11,7 @@ import xarray as xr
 from tribolab.errors import ConfigError, nearest
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
+from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
 from tribolab.qc.register import Check, examine, resolve_limits
 from tribolab.qc.rig_checks import RIG_CHECKS
@@ -20,7 +21,8 @@ from tribolab.qc.zero_checks import ZERO_CHECKS
 from tribolab.units import to_si
 
 RUN_CHECKS: dict[str, Check] = {
-    c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *ZERO_CHECKS)
+    check.name: check
+    for check in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS)
 }
 
 
