@@ -15,7 +15,9 @@ def spiked():
     force = 1 + 0.01 * np.random.default_rng(0).standard_normal(2000)
     force[700] = 9.0
     run = xr.Dataset({"friction_force": ("time", force)}, {"time": np.arange(2000) / 100})
-    return run.assign(sliding_velocity=("time", np.full(2000, 1e-3))).assign_attrs(source="<a>.csv")
+    return run.assign(sliding_velocity=("time", np.full(2000, 1e-3))).assign_attrs(
+        source="<a>.csv", friction_force_zero_uncertainty_N=0.1
+    )
 
 
 def test_findings_tell_each_objection_whole_and_fold_the_rest_away(spiked):

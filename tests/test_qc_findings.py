@@ -46,6 +46,8 @@ BITS = {
     "segment_speed": 24,
     "rows_left_out": 25,
     "segments": 28,
+    "zero_reference": 29,
+    "rectified": 30,
 }
 
 

@@ -78,6 +78,7 @@ _ROWS = [
     ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
     ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
+    ("zero_from", "", "1", "what the zero of the friction signal rests on"),
     ("half_loop", "", "N", "half the difference of the friction force between the strokes"),
     ("pair", "", "1", "number of the pair of strokes"),
     ("runs", "", "1", "number of runs"),

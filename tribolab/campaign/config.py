@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -68,6 +69,24 @@ Patterns = Annotated[
             ]
         }
     ),
+]
+
+
+def _spread(value: Any) -> str:
+    """Check an uncertainty of a force, or of a coefficient where only that was recorded."""
+    if isinstance(value, str):
+        for unit in ("N", "1"):
+            with contextlib.suppress(UnitError):
+                if to_si(value, unit, name="") >= 0:
+                    return value
+    raise ValueError(f"{value!r} is no force and no pure number; write e.g. '0.2 N' or '2 %'")
+
+
+# text until the signal that it is for says its unit
+Spread = Annotated[
+    str,
+    BeforeValidator(_spread),
+    WithJsonSchema({"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["0.2 N", "2 %"]}),
 ]
 
 
@@ -156,6 +175,8 @@ class Friction(Table):
 
     offset: Literal["auto", "half loop", "zero load", "none"] = "auto"
     """Which offset of the friction force is removed."""
+    pair_tolerance: Annotated[float, Field(gt=0, lt=2)] = 0.25
+    """Up to which difference of speed, over their mean, two strokes have the same friction."""
 
 
 class Roughness(Table):
@@ -201,6 +222,10 @@ class RunEntry(Table):
     """What added to the companion log's clock gives the main log's; else the signals tell."""
     instrument: Text | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
+    zero_uncertainty: Spread | None = None
+    """Standard uncertainty of the zero of the friction force, where no stroke or rest tells it."""
+    rectified: bool | None = None
+    """Whether friction was recorded without its sign; left out, the reversals tell."""
     cycles: bool = False
     """The files are consecutive cycles of one run, not runs of their own."""
     segments: Segments | None = None
@@ -330,6 +355,12 @@ class Campaign(Table):
     def output(self) -> Path:
         """Folder of the results."""
         return self._file.parent / self.campaign.output
+
+    def friction_options(self, entry: RunEntry) -> dict[str, Any]:
+        """Arguments of `friction_coefficient` for the runs of an entry."""
+        stated = {"zero_uncertainty": entry.zero_uncertainty, "rectified": entry.rectified}
+        known = {key: value for key, value in stated.items() if value is not None}
+        return self.friction.model_dump() | known
 
     def segment_options(self, entry: RunEntry) -> dict[str, Any]:
         """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""

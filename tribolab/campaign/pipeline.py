@@ -39,6 +39,7 @@ from tribolab.campaign.work import (
     process_curve,
     process_run,
 )
+from tribolab.campaign.zeros import RunZero, to_lend, zero_of
 from tribolab.errors import ConfigError, OutputError, TribolabError
 from tribolab.provenance import sha256_of_file
 
@@ -102,6 +103,7 @@ def process(
         records[task.run.name] = _record(task, future.exception() or future.result(), staging)
         tell("runs", len(records), len(runs))
     _refuse_if_all_died(records[task.run.name].outcome for task in left)
+    _lend_zeros(runs, records, staging, executor)
     ordered = [records[run.name] for run in runs]
     outcomes = tuple(record.outcome for record in ordered)
     surfaces = _surfaces(campaign, outcomes, staging, previous, executor, tell)
@@ -119,6 +121,23 @@ def process(
         surfaces=tuple(found),
         models=models,
     )
+
+
+def _lend_zeros(
+    runs: Iterable[PlannedRun],
+    records: dict[str, RunRecord],
+    staging: Path,
+    executor: Executor | None,
+) -> None:
+    """Do runs again whose zero only other runs of the instrument tell."""
+    again = to_lend({run.name: records[run.name].zero for run in runs})
+    tasks = [
+        RunTask(replace(run, friction=run.friction | {"other_zeros": again[run.name]}), staging)
+        for run in runs
+        if run.name in again
+    ]
+    for task, future in completed(executor, process_run, tasks):
+        records[task.run.name] = _record(task, future.exception() or future.result(), staging)
 
 
 def _record(task: RunTask, answer: RunRecord | BaseException, staging: Path) -> RunRecord:
@@ -156,19 +175,21 @@ def _taken_over(
     taken = {}
     with ThreadPoolExecutor(4) as threads:  # hashing releases the interpreter's lock
         sums = threads.map(_checksums, [run.files for run, _ in candidates])
-        for (run, (known, outcome)), sources in zip(candidates, sums, strict=True):
+        for (run, (known, outcome, zero)), sources in zip(candidates, sums, strict=True):
             if known == sorted((name, checksum) for name, checksum, _ in sources):
                 try:
                     _link(previous / outcome.data_file, staging / outcome.data_file)
                 except FileNotFoundError:  # replaced by another process meanwhile: done anew
                     continue
                 rows = zip(run.labels, sources, strict=True)
-                taken[run.name] = RunRecord(outcome, tuple((n, c, b) for n, (_, c, b) in rows))
+                taken[run.name] = RunRecord(
+                    outcome, tuple((n, c, b) for n, (_, c, b) in rows), zero
+                )
     return taken
 
 
-def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutcome] | None:
-    """Checksums and outcome of an earlier data file, if settings and version are the same."""
+def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutcome, RunZero] | None:
+    """Checksums, outcome and zero of an earlier data file, if settings and version are the same."""
     import netCDF4
 
     from tribolab import __version__
@@ -180,6 +201,7 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
             attrs = file["run"].__dict__
             segments = len(file["segments"].dimensions["segment"])
             complete = "friction" in file.groups
+            friction = file["friction"].__dict__ if complete else {}
     except (OSError, RuntimeError, LookupError):  # damaged: done anew
         return None
     same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
@@ -200,7 +222,7 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
         segments=segments,
         quality=str(attrs.get(QUALITY, "")),
     )
-    return checksums(attrs), outcome
+    return checksums(attrs), outcome, zero_of(friction, str(attrs.get("instrument", "")))
 
 
 def _checksums(files: Iterable[Path]) -> list[Source]:

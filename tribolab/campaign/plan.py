@@ -189,7 +189,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
         "sliding_speed": entry.sliding_speed,
         "clock_shift": entry.clock_shift,
         "segments": campaign.segment_options(entry),
-        "friction": campaign.friction.model_dump(),
+        "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
     }
     shaping = settings | {

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
+from tribolab.campaign.zeros import RunZero, attributes, zero_of
 from tribolab.errors import ConfigError, OutputError, TribolabError
 from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
@@ -67,6 +68,7 @@ class RunRecord:
 
     outcome: RunOutcome
     sources: tuple[Source, ...]
+    zero: RunZero | None = None
 
 
 def process_run(task: RunTask) -> RunRecord:
@@ -106,7 +108,8 @@ def process_run(task: RunTask) -> RunRecord:
         segments=segments.sizes["segment"],
         quality=quality,
     )
-    return RunRecord(outcome, sources_of(run, signals.attrs))
+    zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")))
+    return RunRecord(outcome, sources_of(run, signals.attrs), zero)
 
 
 def process_curve(task: CurveTask) -> None:
@@ -219,6 +222,7 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
         signals.attrs |= _stated_speed(signals, run.sliding_speed)
     segments = find_segments(signals, **run.segments)
     friction = friction_coefficient(signals, segments, **run.friction)
+    friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
     found = check_run(signals, segments, friction, **run.quality)
     signals = found.flagged

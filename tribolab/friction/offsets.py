@@ -1,4 +1,4 @@
-"""Zero points: from rests without load, and from strokes that are run both ways."""
+"""Pairs of strokes that are run both ways, and how the zero moves between them."""
 
 from __future__ import annotations
 
@@ -7,82 +7,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.statistics import describe
-
-UNLOADED = 0.1  # share of the load below which a rest can be one without contact
-FEWEST = 10  # samples that an unloaded rest needs
-
-
-class Zero(NamedTuple):
-    """Reading of a sensor without load, and its standard error [N]."""
-
-    value: float
-    error: float
-
-
-def unloaded_rest(
-    run: xr.Dataset, segments: xr.Dataset, load: float
-) -> tuple[Zero | None, Zero | None]:
-    """Zero of the friction force and of the normal force from rests without load.
-
-    Parameters
-    ----------
-    run, segments
-        The run and its segments, whose omitted stretches say where it was at rest.
-    load
-        Usual normal force of the segments [N].
-
-    Returns
-    -------
-    tuple
-        Zero of the friction force and of the normal force; None where no rest tells it. Several
-        rests are averaged, and their spread (a drift of the zero) is part of the error.
-    """
-    if "normal_force" not in run or not load > 0:
-        return None, None
-    time = run["time"].values
-    normal = run["normal_force"].values
-    friction = run["friction_force"].values if "friction_force" in run else None
-    zeros: dict[str, list[tuple[float, float]]] = {"normal": [], "friction": []}
-    resting = segments["omitted_reason"].values == "at rest"
-    limits = zip(
-        segments["omitted_start"].values[resting],
-        segments["omitted_stop"].values[resting],
-        strict=True,
-    )
-    for start, stop in limits:
-        first, last = np.searchsorted(time, [start, stop])
-        light = first + np.flatnonzero(np.abs(normal[first:last]) < UNLOADED * load)
-        if light.size < FEWEST:
-            continue
-        # the load's ramp begins in the same rest: readings far from the usual one are left out
-        rest = np.abs(normal[light] - np.median(normal[light]))
-        level = light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
-        if level.size < FEWEST:
-            continue
-        found = describe(time[level], normal[level])
-        zeros["normal"].append((found.mean, found.sem))
-        if friction is not None:
-            found = describe(time[level], friction[level])
-            if found.samples >= FEWEST:
-                zeros["friction"].append((found.mean, found.sem))
-    return _mean_zero(zeros["friction"]), _mean_zero(zeros["normal"])
-
-
-def _mean_zero(found: list[tuple[float, float]]) -> Zero | None:
-    if not found:
-        return None
-    value, error = np.array(found).T
-    k = value.size
-    spread = np.var(value, ddof=1) / k if k > 1 else 0.0
-    return Zero(float(value.mean()), float(np.sqrt((error**2).sum() / k**2 + spread)))
+TOLERANCE = 0.25  # relative difference of speed up to which strokes are of one speed
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
     """Return the number of the pair that each segment belongs to, -1 for none (segment).
 
     Neighbours in time of opposite direction pair if their speeds differ by no more than
-    `tolerance` of their mean and, where the run has set speeds, those agree.
+    `tolerance` of their mean and, where the run has set speeds and `tolerance` is no more than
+    usual, those agree.
     """
     direction = segments["direction"].values
     speed = segments["sliding_speed"].values
@@ -93,7 +26,7 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
             continue
         mean = (speed[i] + speed[i + 1]) / 2
         alike = not abs(speed[i] - speed[i + 1]) > tolerance * mean  # unknown speeds may pair
-        if "set_speed" in segments:
+        if "set_speed" in segments and tolerance <= TOLERANCE:
             wanted = np.abs(segments["set_speed"].values[i : i + 2])
             alike &= not abs(wanted[0] - wanted[1]) > 1e-6 * abs(wanted).max()
         if alike:

@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import belong, trimmed_slices
 from tribolab.friction.examine import Examined, Limits, examine
-from tribolab.friction.offsets import unloaded_rest
+from tribolab.friction.rests import unloaded_rests
 from tribolab.friction.slip_table import (
     DOUBT,
     class_of,
@@ -182,8 +182,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
         zero = 0.0
         if normal is not None and "omitted_reason" in segments and len(parts):
             usual = float(np.nanmedian(np.concatenate([normal[s][:1000] for s in parts])))
-            rest = unloaded_rest(run, segments, usual)[1]
-            zero = rest.value if rest else 0.0
+            rests = unloaded_rests(run, segments, usual)[1]
+            zero = float(rests.value.mean()) if rests else 0.0
         for part, sign in zip(parts, direction, strict=True):
             raw = force[part]
             if normal is None:

@@ -10,6 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
+from tribolab.friction.zero_of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.quantities import stamp
 
@@ -126,7 +127,7 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
     known = np.isfinite(mu) & (speed > 0)
     own = -1 - np.arange(mu.size)
     key = own
-    if "pair" in friction and friction.attrs.get("offset") == "half loop":
+    if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         key = np.where(friction["pair"].values >= 0, friction["pair"].values, own)
     result = []
     for one in np.unique(key[known]):

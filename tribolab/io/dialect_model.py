@@ -55,6 +55,7 @@ Pattern = Annotated[str, AfterValidator(_is_pattern)]
 Encoding = Annotated[str, AfterValidator(_is_encoding)]
 QuantityName = Annotated[str, AfterValidator(_is_quantity)]
 Sign = Literal[1, -1]
+FRICTION = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
 
 
 class _Strict(BaseModel):
@@ -184,6 +185,12 @@ class Column(_Strict):
     offset: float = 0.0
     sign: Sign = 1
     optional: bool = Field(False, description="may be missing or empty in some files")
+    zero_uncertainty: str | None = Field(
+        None, description="standard uncertainty of its zero with unit, e.g. '0.2 N': friction only"
+    )
+    rectified: bool | None = Field(
+        None, description="recorded without sign (true) or surely with it (false): friction only"
+    )
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -192,7 +199,28 @@ class Column(_Strict):
         if self.unit is not None:
             known = quantity(self.quantity)
             _check_unit(self.unit, known.unit, known.bare)
+        stated = {"zero_uncertainty": self.zero_uncertainty, "rectified": self.rectified}
+        for key, value in stated.items():
+            if value is not None and self.quantity not in FRICTION:
+                raise ValueError(
+                    f"column '{self.quantity}': {key} is for {' and '.join(FRICTION)} only"
+                )
+        if self.zero_uncertainty is not None:
+            to_si(self.zero_uncertainty, quantity(self.quantity).unit, "zero_uncertainty")
         return self
+
+    @property
+    def attributes(self) -> dict[str, float | bool]:
+        """What is stated of its zero and sign, as attributes of the run."""
+        attrs: dict[str, float | bool] = {}
+        if self.zero_uncertainty is not None:
+            unit = quantity(self.quantity).unit
+            ending = "" if unit == "1" else f"_{unit}"
+            value = abs(to_si(self.zero_uncertainty, unit, "zero_uncertainty"))
+            attrs[f"{self.quantity}_zero_uncertainty{ending}"] = value
+        if self.rectified is not None:
+            attrs[f"{self.quantity}_rectified"] = self.rectified
+        return attrs
 
 
 class Value(_Strict):

@@ -389,6 +389,9 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> dic
     moment = contents[0].pieces[0].started
     if moment is not None:
         attrs["recorded_at"] = moment.isoformat()
+    for column in dialect.column:
+        if column.quantity in labels:
+            attrs.update(column.attributes)
     for content in contents:
         attrs.update(content.notes)
     return attrs

@@ -132,10 +132,10 @@ RIG_CHECKS = (
         "zero_drift",
         12,
         "Does the zero stay where it was?",
-        "Let the amplifier warm up; measure strokes both ways, whose half loop drops a drift.",
+        "Let the amplifier warm up; measure strokes both ways, whose half loops follow a drift.",
         {
             "suspect": Limit(
-                0.10, "1", "half loops leave what passes within a pair: 1 % in a run of ten pairs"
+                0.10, "1", "a tenth of such a drift may not be steady, and is not followed: 1 %"
             ),
             "fail": Limit(1.0, "1", "the zero moves as much as friction does"),
         },

@@ -17,10 +17,12 @@ from tribolab.qc.register import Check, Result, examine, resolve_limits
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
+from tribolab.qc.zero_checks import ZERO_CHECKS
 from tribolab.units import to_si
 
 RUN_CHECKS: dict[str, Check] = {
-    c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS)
+    check.name: check
+    for check in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS)
 }
 
 SEGMENTS = "segments"
@@ -145,7 +147,8 @@ def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -
     >>> time = np.arange(400) / 100
     >>> noise = 0.01 * np.random.default_rng(0).standard_normal(400)
     >>> run = xr.Dataset({"friction_force": ("time", 1 + noise)}, {"time": time})
-    >>> check(run.assign(sliding_velocity=("time", np.full(400, 1e-3)))).status
-    'pass'
+    >>> run = run.assign(sliding_velocity=("time", np.full(400, 1e-3)))
+    >>> check(run).status, check(run.assign_attrs(friction_force_zero_uncertainty_N=0.01)).status
+    ('suspect', 'pass')
     """
     return check_run(run, segments, **options)

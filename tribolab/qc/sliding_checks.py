@@ -73,7 +73,41 @@ def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = f"friction drives the motion in {Count(wrong.sum()):segment|segments}, first in {where}"
     unit = "1" if name == "friction_coefficient" else "N"
     value, count = float(values[first]), int(wrong.sum())
-    return [Result("fail", signal, text, value, unit, where, count, samples)]
+    cure = _cure_of_sign(subject, values, wrong)
+    return [Result("fail", signal, text, value, unit, where, count, samples, cure=cure)]
+
+
+def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) -> str:
+    """Propose another sign only where nothing but the sign can be wrong.
+
+    That is where all strokes are turned, both ways, and their loop lies about zero: an offset that
+    is larger than friction, or none that is known, turns strokes as well.
+    """
+    friction = subject.friction
+    direction = friction["direction"].values
+    method = str(friction.attrs.get("offset", ""))
+    both = all((direction[wrong] == d).any() for d in (1, -1))
+    if not wrong[np.isfinite(values)].all():
+        return (
+            "Only some strokes are turned, so it is not the sign of a column: look at the zero "
+            "(`zero_from` of these segments), at the direction of sliding, and at the clocks."
+        )
+    if not both:
+        if method == "zero load":
+            return ""
+        return (
+            "Strokes one way do not tell a turned sign from a zero that is off by more than "
+            "friction: measure both directions or a rest without load; set `sign = -1` in the "
+            "dialect only if the zero is sure."
+        )
+    raw = subject.segment_means(_signal(subject))
+    forward, backward = (float(np.nanmean(raw[direction == d])) for d in (1, -1))
+    if abs(forward + backward) < abs(forward - backward):
+        return ""
+    return (
+        "The loop does not lie about zero: its offset is larger than friction. Look at the zero "
+        "first; set `sign = -1` in the dialect only if the zero is right."
+    )
 
 
 def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

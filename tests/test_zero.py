@@ -1,0 +1,476 @@
+"""What the zero of the friction force rests on: drift, direction, lost sign, speed, nothing."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from made_runs import strokes, with_friction
+from real_runs import actuator, rock
+
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.pipeline import process
+from tribolab.errors import AnalysisError, ConfigError
+from tribolab.friction.coefficient import friction_coefficient
+from tribolab.friction.half_loops import half_loops
+from tribolab.friction.middles import middles
+from tribolab.friction.rests import Zeros
+from tribolab.friction.segments import find_segments
+from tribolab.io.netcdf import read_netcdf
+from tribolab.io.runs import read
+from tribolab.qc.run_checks import check_run
+
+MU, LOAD, SPEED = 0.3, 31.0, 1e-3
+
+
+def programme(
+    speeds,
+    *,
+    mu=lambda v: np.full(np.shape(v), MU),
+    zero=lambda u: 0.0 * u,
+    normal_zero=lambda u: 0.0 * u,
+    loaded_rests=False,
+    samples=300,
+    turn=4,
+    noise=0.02,
+    seed=0,
+):
+    """Strokes at signed speeds with unloaded rests before, after and, where None stands, between.
+
+    `mu` follows the signed speed, `zero` and `normal_zero` [N] the share of the run that passed.
+    Friction turns over within `turn` samples of a reversal.
+    """
+    rng = np.random.default_rng(seed)
+    speed, load = [], []
+    for v in (None, *speeds, None):
+        if v is None:
+            speed += [np.zeros(120)]
+            load += [np.r_[np.zeros(5), np.full(100, float(loaded_rests)), np.ones(15)]]
+            load[-1][:105] = float(loaded_rests)
+        else:
+            leg = np.linspace(0, v, turn + 2)[1:-1]
+            speed += [np.r_[leg, np.full(samples, v), leg[::-1], 0.0]]
+            load += [np.ones(speed[-1].size)]
+    v, pressed = np.concatenate(speed), np.concatenate(load)
+    pressed[-100:] = float(loaded_rests)
+    time = 0.01 * np.arange(v.size)
+    share = time / time[-1]
+    top = np.abs(v).max()
+    built = np.clip(v / (0.5 * np.min(np.abs([s for s in speeds if s]))), -1, 1)
+    force = built * mu(np.where(v == 0, top, v)) * LOAD * pressed
+    force = force + zero(share) + noise * rng.standard_normal(v.size)
+    normal = LOAD * pressed + normal_zero(share) + noise * rng.standard_normal(v.size)
+    return xr.Dataset(
+        {
+            "sliding_velocity": ("time", v + 1e-4 * top * rng.standard_normal(v.size)),
+            "friction_force": ("time", force),
+            "normal_force": ("time", normal),
+        },
+        {"time": time},
+        attrs={"source": "made.csv"},
+    )
+
+
+def analysed(run, **options):
+    return friction_coefficient(run, find_segments(run), **options)
+
+
+def off(friction, truth=MU):
+    """Error of each coefficient in standard errors."""
+    return (friction["friction_coefficient"] - truth) / friction["friction_coefficient_sem"]
+
+
+def doubts(run, friction, check="zero_reference"):
+    found = check_run(run, find_segments(run), friction)
+    return [row for row in found.rows if row["check"] == check and row["status"] == "suspect"]
+
+
+BOTH = [SPEED, -SPEED]
+
+
+# drift
+
+
+@pytest.mark.parametrize("total", [-9.0, 3.0])
+def test_linear_drift_of_the_zero_over_six_pairs_leaves_nothing(total):
+    run = programme(BOTH * 6, zero=lambda u: 1.0 + total * u, loaded_rests=True, noise=1e-6)
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 12, abs=2e-5)
+    # without following the drift: half of what passes between the strokes of a pair
+    middle = (friction["trimmed_start"] + friction["trimmed_stop"]).values / 2
+    passed = total * (middle[1] - middle[0]) / run["time"].values[-1]
+    raw = friction["friction_force"] + friction["direction"] * friction["friction_force_offset"]
+    biased = (raw.values[0] + raw.values[1]) / 2 / LOAD
+    assert biased - MU == pytest.approx(-passed / 2 / LOAD, rel=0.02)
+    assert half_loops(friction)["half_loop"].values == pytest.approx([MU * LOAD] * 6, abs=1e-3)
+    assert (np.abs(friction["trend_change"].values) < 1e-4).all()
+    assert (friction["friction_coefficient_sem"].values < 0.002).all()
+
+
+@pytest.mark.slow
+def test_error_covers_the_truth_where_the_zero_walks_or_drifts():
+    errors = []
+    for seed in range(20):
+        walk = np.random.default_rng(seed).standard_normal(4000).cumsum() / np.sqrt(4000)
+        run = programme(
+            BOTH * 6,
+            zero=lambda u, walk=walk: walk[(3999 * u).astype(int)] + 2 * u,
+            loaded_rests=True,
+            seed=seed,
+        )
+        errors.append(off(analysed(run)).values[::2])
+    errors = np.abs(np.concatenate(errors))
+    assert np.mean(errors < 1) >= 0.68
+    assert np.mean(errors < 3) >= 0.99
+
+
+def test_zero_that_jumps_once_is_not_taken_for_a_drift():
+    time, sign = np.arange(16.0), np.tile([1, -1], 8)
+    force = 9.0 * sign + np.where(time < 8, 0.0, 2.0)
+    found = middles(force, np.ones(16), sign, np.arange(16) // 2, time)
+    assert found.slope.tolist() == [0.0] * 8
+
+
+def test_stroke_without_partner_takes_the_zero_between_its_neighbours():
+    run = programme([*BOTH, SPEED, *BOTH], zero=lambda u: 5 + 3 * u, loaded_rests=True, noise=1e-6)
+    # the third stroke pairs with none of its speed: its partner is slower
+    friction = friction_coefficient(run, find_segments(run).isel(segment=[0, 1, 2, 3, 4]))
+    assert friction["pair"].values.tolist() == [0, 0, -1, 1, 1]
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 5, abs=1e-4)
+    assert (
+        friction["zero_from"].values[2].startswith("no partner: half loops of segments 1-2 and 4-5")
+    )
+
+
+def test_drift_of_both_zeros_is_taken_from_the_rests_without_load():
+    run = programme(
+        [SPEED, None, SPEED, None, SPEED],
+        zero=lambda u: 2.0 - 3 * u,
+        normal_zero=lambda u: 2.0 + 5 * u,
+    )
+    friction = analysed(run)
+    assert friction.attrs["offset"] == "zero load"
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 3, abs=1e-3)
+    assert np.ptp(friction["normal_force_offset"].values) == pytest.approx(5 * 0.6, rel=0.2)
+    assert (np.abs(off(friction)) < 3).all()
+    assert not doubts(run, friction)
+
+
+@pytest.mark.parametrize("start", [-5.0, 2.5])
+def test_zero_of_the_normal_force_may_drift_far_from_rest_to_rest(start):
+    run = programme(
+        [*BOTH, None, *BOTH, None, *BOTH], normal_zero=lambda u: start + np.sign(start) * 3 * u
+    )
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, abs=2e-3)
+    assert (np.abs(off(friction)) < 3).all()
+
+
+def test_zero_between_two_rests_is_a_line_and_beyond_them_the_last():
+    zeros = Zeros(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1.0, 1.0]), np.full(3, 0.1))
+    value, error = zeros.at(np.array([-5.0, 5.0, 15.0, 25.0]))
+    assert value.tolist() == [0.0, 0.5, 1.0, 1.0]
+    noise = 0.1 / np.sqrt(2)
+    assert error[2] == pytest.approx(noise)
+    assert error[1] == pytest.approx(np.hypot(noise, np.sqrt(0.98 / 12)))
+    assert zeros.slope(np.array([-5.0, 5.0, 15.0, 25.0])).tolist() == [0.0, 0.1, 0.0, 0.0]
+
+
+# nothing tells the zero
+
+
+@pytest.mark.parametrize("offset", [0.0, 4.0])
+def test_one_way_without_any_reference_is_suspect_and_says_what_to_state(offset):
+    run = programme([SPEED] * 3, zero=lambda u: offset + 0 * u, loaded_rests=True)
+    friction = analysed(run)
+    (row,) = doubts(run, friction)
+    assert "zero_uncertainty" in row["cure"]
+    assert set(friction["zero_from"].values) == {"nothing"}
+
+
+def test_stated_uncertainty_of_the_zero_is_in_the_error_and_settles_it():
+    run = programme([SPEED] * 3, zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
+    friction = analysed(run, zero_uncertainty="0.5 N")
+    assert friction["friction_coefficient_sem"].values == pytest.approx([0.5 / LOAD] * 3, rel=0.01)
+    assert (np.abs(off(friction)) < 3).all()
+    assert not doubts(run, friction)
+    as_read = run.assign_attrs(friction_force_zero_uncertainty_N=0.5)
+    xr.testing.assert_allclose(analysed(as_read), friction)
+
+
+def test_zeros_of_other_runs_are_the_zero_and_their_scatter_is_its_error():
+    stops = [SPEED, None, SPEED, None, SPEED]
+    run = programme(stops, zero=lambda u: 2.1 + 0 * u, loaded_rests=True)
+    friction = analysed(run, other_zeros=(1.9, 2.0, 2.1, 2.2, 1.8))
+    assert friction.attrs["offset"] == "other runs"
+    assert friction["friction_force_offset"].values == pytest.approx([2.0] * 3)
+    assert (np.abs(off(friction)) < 3).all()
+    assert (friction["friction_coefficient_sem"].values > 0.15 / LOAD).all()
+    assert not doubts(run, friction)
+
+
+def test_zero_measured_on_one_side_only_is_in_doubt():
+    run = programme([SPEED] * 3, zero=lambda u: 2 * u)
+    first = find_segments(run)
+    last = float(first["stop"].values[-1])
+    cut = run.isel(time=slice(0, int(np.searchsorted(run["time"].values, last)) + 3))
+    (row,) = doubts(cut, analysed(cut))
+    assert "one side" in row["message"]
+    assert not doubts(cut, analysed(cut, zero_uncertainty=1.0))
+
+
+# direction
+
+
+def two_ways(v):
+    return np.where(np.asarray(v) > 0, 0.36, 0.24)
+
+
+def test_friction_that_depends_on_direction_keeps_both_values_where_rests_tell_the_zero():
+    run = programme(BOTH * 3, mu=two_ways, zero=lambda u: 4 + 0 * u)
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([0.36, 0.24] * 3, abs=1e-3)
+    (row,) = doubts(run, friction)
+    assert "0.36 forward and 0.24 backward" in row["message"]
+    assert 'offset = "zero load"' in row["cure"] and 'offset = "half loop"' in row["cure"]
+    stated = analysed(run, offset="zero load")
+    assert not doubts(run, stated)
+    xr.testing.assert_allclose(stated.friction_coefficient, friction.friction_coefficient)
+
+
+def test_without_another_zero_the_asymmetry_that_an_offset_may_be_is_told_and_no_objection():
+    run = programme(BOTH * 3, mu=two_ways, loaded_rests=True)
+    friction = analysed(run)
+    assert friction["friction_coefficient"].values == pytest.approx([0.30] * 6, abs=1e-3)
+    assert not doubts(run, friction)
+    rows = check_run(run, find_segments(run), friction).rows
+    (row,) = [row for row in rows if row["check"] == "zero_reference"]
+    assert row["status"] == "pass" and row["noted"] and "20.0% more friction" in row["message"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sound_loops_with_rests_are_not_objected_to(seed):
+    run = programme(BOTH * 3, zero=lambda u: 1 + 0.2 * np.sin(3 * u), seed=seed)
+    friction = analysed(run)
+    assert friction.attrs["offset"] == "half loop"
+    assert not doubts(run, friction) and not doubts(run, friction, "rectified")
+    assert (np.abs(off(friction)) < 3).all()
+
+
+# sign
+
+
+@pytest.mark.parametrize("loaded_rests", [False, True])
+@pytest.mark.parametrize("offset", [0.0, 2.0, -2.0])
+def test_force_without_sign_gives_the_mean_of_both_directions(offset, loaded_rests):
+    run = programme(BOTH * 3, zero=lambda u: offset + 0 * u, loaded_rests=loaded_rests)
+    lost = run.assign(friction_force=np.abs(run["friction_force"]))
+    friction = analysed(lost)
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, abs=1e-3)
+    assert "without sign" in friction.attrs["offset"]
+    assert doubts(lost, friction, "rectified")
+    stated = analysed(lost, rectified=True)
+    assert stated["friction_coefficient"].values == pytest.approx([MU] * 6, abs=1e-3)
+    assert not doubts(lost, stated, "rectified")
+
+
+@pytest.mark.parametrize("offset", [12.0, 40.0, -40.0])
+def test_offset_larger_than_friction_is_no_lost_sign(offset):
+    run = programme(BOTH * 3, zero=lambda u: offset + 0 * u, loaded_rests=True, turn=20)
+    friction = analysed(run)
+    assert (np.sign(run["friction_force"]) == np.sign(offset)).all()
+    assert friction.attrs["offset"] == "half loop"
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, abs=1e-3)
+    assert not doubts(run, friction, "rectified")
+
+
+def test_levels_that_swap_between_two_samples_are_in_doubt_either_way():
+    run = programme(BOTH * 3, loaded_rests=True, turn=1, noise=0.05)
+    force = np.abs(run["friction_force"].values)
+    lost = run.assign(friction_force=("time", np.where(force < 0.8 * MU * LOAD, MU * LOAD, force)))
+    friction = analysed(lost)
+    assert doubts(lost, friction, "rectified")
+    assert friction["friction_coefficient"].values == pytest.approx([MU] * 6, rel=0.01)
+
+
+def test_force_and_speed_without_sign_are_told_by_the_stops():
+    run = programme(BOTH * 3, loaded_rests=True)
+    lost = run.assign({k: np.abs(run[k]) for k in ("friction_force", "sliding_velocity")})
+    friction = analysed(lost)
+    assert doubts(lost, friction, "rectified") and doubts(lost, friction)
+
+
+@pytest.mark.parametrize("name", ["Circle_1bar", "Kidney_2bar", "O-ring257_1bar"])
+def test_actuator_under_pressure_has_its_sign(shared_data, name):
+    run = actuator(shared_data, name)
+    segments = find_segments(run, position_range=("5 mm", "32 mm"))
+    friction = friction_coefficient(run, segments)
+    assert friction.attrs["offset"] == "half loop"
+    assert not [d for d in friction.attrs["zero_doubts"] if d["status"] == "suspect"]
+
+
+def test_recorded_coefficient_of_one_direction_has_no_zero(shared_data):
+    run = rock(shared_data)
+    assert doubts(run, analysed(run))
+    assert not doubts(run, analysed(run, zero_uncertainty=0.005))
+
+
+# speeds
+
+
+def slower_backwards(v):
+    return MU * (1 + 0.1 * np.log(np.abs(v) / SPEED))
+
+
+def test_strokes_of_unequal_speed_are_a_loop_in_doubt_until_it_is_stated():
+    unequal = [6.7e-3, -14e-3] * 4
+    run = programme(unequal, mu=slower_backwards, zero=lambda u: 200 + 0 * u, loaded_rests=True)
+    truth = slower_backwards(np.array(unequal))
+    friction = analysed(run)
+    assert friction["pair"].values.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    assert (np.abs(off(friction, truth)) < 3).all()
+    (row,) = doubts(run, friction)
+    assert "pair_tolerance = 0.8" in row["cure"]
+    assert "2.09 of its speed" in friction["zero_from"].values[0]
+    stated = analysed(run, pair_tolerance=0.8)
+    assert not doubts(run, stated)
+    assert (np.abs(off(stated, truth)) < 3).all()
+    assert (stated["friction_coefficient_sem"].values > 0.03 * MU).all()
+
+
+def test_loops_of_one_speed_say_what_unequal_speeds_may_change():
+    speeds = [5e-3, -5e-3, 7e-3, -14e-3, 20e-3, -20e-3]
+    run = programme(speeds, mu=slower_backwards, zero=lambda u: 50 + 0 * u, loaded_rests=True)
+    friction = analysed(run, pair_tolerance=0.8)
+    truth = slower_backwards(np.array(speeds))
+    assert (np.abs(off(friction, truth)) < 3).all()
+    sem = friction["friction_coefficient_sem"].values
+    # half of 0.1 mu ln 2, the run's own slope, and what its loop's middle is beside the others
+    assert 1.0 < sem[2] / (0.5 * 0.1 * MU * np.log(2)) < 1.6
+    assert not doubts(run, analysed(run))
+
+
+@pytest.mark.parametrize(
+    ("turned", "offset", "one_way", "cure"),
+    [
+        (True, 0.0, False, "Set `sign = -1`"),
+        (True, 40.0, False, "does not lie about zero"),
+        (False, -12.0, True, "do not tell a turned sign"),
+    ],
+)
+def test_another_sign_is_proposed_only_where_the_loop_is_centred(turned, offset, one_way, cure):
+    speeds = [SPEED] * 3 if one_way else BOTH * 3
+    run = programme(speeds, zero=lambda u: offset + 0 * u, loaded_rests=True, turn=20)
+    if turned:
+        run = run.assign(sliding_velocity=-run["sliding_velocity"])
+    rows = check_run(run, find_segments(run), analysed(run)).rows
+    (row,) = [row for row in rows if row["check"] == "friction_sign"]
+    assert row["status"] == "fail" and cure in row["cure"]
+
+
+# segments that are taken out
+
+
+def test_a_partner_that_changes_is_named():
+    made = strokes([SPEED] * 3, samples=300)
+    run = with_friction(made, offset=2.0)
+    segments = find_segments(run)
+    whole = friction_coefficient(run, segments)
+    assert whole["zero_from"].values[1].startswith("half loop with segment 1")
+    left = friction_coefficient(run, segments.drop_isel(segment=[0]))
+    assert left["zero_from"].values[0].startswith("half loop with segment 3")
+    apart = friction_coefficient(run, segments.drop_isel(segment=[1, 2]))
+    assert "segments 2-3 between them left out" in apart["zero_from"].values[0]
+
+
+def test_wanted_zero_that_is_not_there_is_an_error_that_names_the_cure():
+    run = programme([SPEED] * 2, loaded_rests=True)
+    with pytest.raises(AnalysisError, match="offset='auto'"):
+        analysed(run, offset="zero load")
+
+
+# a campaign
+
+DIALECT = """
+name = "one_rig"
+title = "one rig"
+[header]
+line = 1
+[[column]]
+quantity = "time"
+name = "t"
+[[column]]
+quantity = "sliding_velocity"
+name = "v"
+[[column]]
+quantity = "friction_force"
+name = "F"
+[[column]]
+quantity = "normal_force"
+name = "N"
+"""
+
+
+def write_campaign(folder, runs, entry=""):
+    (folder / "raw").mkdir(parents=True, exist_ok=True)
+    (folder / "one_rig.toml").write_text(DIALECT, "utf-8")
+    for name, run in runs.items():
+        columns = [run["time"], run["sliding_velocity"], run["friction_force"], run["normal_force"]]
+        rows = np.column_stack([column.values for column in columns])
+        header = "t [s],v [m/s],F [N],N [N]"
+        np.savetxt(folder / "raw" / name, rows, "%.9g", ",", header=header, comments="")
+    text = '[campaign]\nname = "zeros"\n[[run]]\nfiles = "*.csv"\ninstrument = "one_rig.toml"\n'
+    (folder / "campaign.toml").write_text(text + entry, "utf-8")
+    return load_campaign(folder / "campaign.toml")
+
+
+@pytest.mark.slow
+def test_runs_of_a_campaign_lend_their_zeros_to_one_that_has_none(tmp_path):
+    runs = {
+        f"{i}.csv": programme(BOTH, zero=lambda u, f=f: f + 0 * u, loaded_rests=True, seed=i)
+        for i, f in enumerate((1.9, 2.0, 2.15))
+    }
+    stops = [SPEED, None, SPEED]
+    runs["one_way.csv"] = programme(stops, zero=lambda u: 2.05 + 0 * u, loaded_rests=True, seed=9)
+    campaign = write_campaign(tmp_path, runs)
+    outcome = process(campaign, tmp_path / "first")
+    lent = {run.name: run for run in outcome.runs}["one_way"]
+    friction = read_netcdf(tmp_path / "first" / lent.data_file, group="friction")
+    assert friction.attrs["offset"] == "other runs"
+    assert set(friction["zero_from"].values) == {"zeros of 3 other runs on this instrument"}
+    assert (np.abs(off(friction)) < 3).all()
+    # taken over as it is, and done again once a lender is gone
+    again = process(campaign, tmp_path / "second", previous=tmp_path / "first")
+    assert all(run.reused for run in again.runs)
+    (tmp_path / "raw" / "2.csv").unlink()
+    left = process(campaign, tmp_path / "third", previous=tmp_path / "second")
+    assert [run.name for run in left.runs if not run.reused] == ["one_way"]
+    friction = read_netcdf(tmp_path / "third" / lent.data_file, group="friction")
+    assert set(friction["zero_from"].values) == {"zeros of 2 other runs on this instrument"}
+
+
+@pytest.mark.parametrize("entry", ["", 'zero_uncertainty = "1 N"\n', "rectified = true\n"])
+def test_what_the_campaign_file_states_of_the_zero_reaches_the_result(tmp_path, entry):
+    run = programme([SPEED, None, SPEED], zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
+    outcome = process(write_campaign(tmp_path, {"one.csv": run}, entry), tmp_path / "new")
+    friction = read_netcdf(tmp_path / "new" / outcome.runs[0].data_file, group="friction")
+    stated = "zero_uncertainty" in entry
+    assert (friction.attrs["offset"] == "stated") == stated
+    assert friction["zero_from"].values[0].startswith("recorded without sign") == (
+        "rectified" in entry
+    )
+    assert (outcome.runs[0].quality == "pass") == stated
+
+
+def test_the_dialect_states_zero_and_sign_of_friction_only(tmp_path):
+    run = programme([SPEED] * 2, zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
+    write_campaign(tmp_path, {"one.csv": run})
+    stated = DIALECT.replace(
+        'name = "F"', 'name = "F"\nzero_uncertainty = "500 mN"\nrectified = false'
+    )
+    (tmp_path / "one_rig.toml").write_text(stated, "utf-8")
+    found = read(tmp_path / "raw" / "one.csv", tmp_path / "one_rig.toml")
+    assert found.attrs["friction_force_zero_uncertainty_N"] == 0.5
+    assert found.attrs["friction_force_rectified"] is False
+    wrong = DIALECT.replace('name = "N"', 'name = "N"\nzero_uncertainty = "1 N"')
+    (tmp_path / "one_rig.toml").write_text(wrong, "utf-8")
+    with pytest.raises(ConfigError, match="zero_uncertainty is for friction_force"):
+        read(tmp_path / "raw" / "one.csv", tmp_path / "one_rig.toml")

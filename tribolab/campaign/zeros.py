@@ -1,0 +1,88 @@
+"""Zeros of the friction force that runs of one instrument lend to those that have none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+OWN = "own_zero_N"  # attribute of a friction result: its zero, where it is sure of it
+LENT = "zeros_of_other_runs_N"  # attribute: what others lent; there, if empty, where it has none
+FEWEST = 2  # zeros without which their scatter is not known
+_DIGITS = 6
+
+
+class RunZero(NamedTuple):
+    """What a run's result says of its zero.
+
+    Parameters
+    ----------
+    instrument
+        What recorded it.
+    own
+        Its own zero [N], or None.
+    lent
+        What other runs lent to it, as text; None where it wants nothing.
+    """
+
+    instrument: str
+    own: float | None
+    lent: str | None
+
+
+def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, Any]:
+    """Attributes of a friction result that later say what `zero_of` returns."""
+    method = str(friction.attrs.get("offset", ""))
+    sure = all(d["status"] == "pass" for d in friction.attrs.get("zero_doubts", []))
+    if method in ("half loop", "zero load") and sure and "friction_force_offset" in friction:
+        zeros = friction["friction_force_offset"].values
+        if np.isfinite(zeros).any():
+            return {OWN: float(np.nanmedian(zeros))}
+    if "friction_force_offset" in friction and method.startswith(("none: no pair", "other runs")):
+        return {LENT: as_text(lent)}
+    return {}
+
+
+def zero_of(attrs: Mapping[str, Any], instrument: str) -> RunZero:
+    """Return what the attributes of a friction result say of its zero."""
+    own = attrs.get(OWN)
+    lent = attrs.get(LENT)
+    return RunZero(instrument, None if own is None else float(own), lent)
+
+
+def as_text(zeros: Iterable[float]) -> str:
+    """Write zeros so that equal ones are equal text."""
+    return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
+
+
+def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]:
+    """Return which runs have to be done again, and with which zeros of others.
+
+    Parameters
+    ----------
+    zeros
+        By name of the run, in the order of the campaign; None for a run that failed.
+
+    Examples
+    --------
+    >>> one, two = RunZero("rig", 0.5, None), RunZero("rig", 0.7, None)
+    >>> to_lend({"a": one, "b": two, "c": RunZero("rig", None, ""), "d": RunZero("x", None, "")})
+    {'c': (0.5, 0.7)}
+    """
+    again = {}
+    for name, zero in zeros.items():
+        if zero is None or zero.lent is None:
+            continue
+        others = tuple(
+            other.own
+            for other in zeros.values()
+            if other and other.own is not None and other.instrument == zero.instrument
+        )
+        others = others if len(others) >= FEWEST else ()
+        if as_text(others) != zero.lent:
+            again[name] = others
+    return again

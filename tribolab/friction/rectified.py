@@ -1,0 +1,204 @@
+"""Was the sign of the friction force lost? Told by the force at the reversals."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
+TOUCH = 5.0  # standard deviations from zero within which a force touches it
+MOST = 0.5  # share of the reversals that have to show it
+LIKE = 0.25  # of their mean: strokes that differ by less are of one level
+CLEAR = 5.0  # standard errors beyond which levels differ
+
+
+class Trace(NamedTuple):
+    """What a fold is told by: the samples of the force and where the strokes are.
+
+    Parameters
+    ----------
+    force
+        (time)
+    loaded
+        Whether the surfaces are pressed together (time).
+    parts
+        Samples of each trimmed segment, in the order of time.
+    mean, error
+        Mean force of each segment and its standard error (segment).
+    sign
+        Recorded direction of each segment (segment).
+    rest
+        Reading of the force in rests without load, NaN without one.
+    """
+
+    force: np.ndarray
+    loaded: np.ndarray
+    parts: list[slice]
+    mean: np.ndarray
+    error: np.ndarray
+    sign: np.ndarray
+    rest: float
+
+
+class Fold(NamedTuple):
+    """Whether the force lost its sign ("signed", "rectified", "undecided"), and what shows it."""
+
+    kind: str
+    why: str
+
+
+SIGNED = Fold("signed", "")
+
+
+def folded(trace: Trace) -> Fold:
+    """Tell whether a friction force was recorded without its sign.
+
+    Parameters
+    ----------
+    trace
+        The force and its strokes.
+
+    Returns
+    -------
+    Fold
+        "signed" where the force changes its sign with the direction, and where it does not, but
+        goes from one level straight to the other: then a large offset is real. "rectified" where it
+        goes to zero and back at the reversals, or rests without load show its zero beside the
+        strokes instead of between them. "undecided" where neither is to be seen.
+
+    Notes
+    -----
+    A force F = |s mu N + Z| has the levels mu N + Z and mu N - Z in the two directions, and an
+    offset Z > mu N gives Z + mu N and Z - mu N: the half sum of the one is the half difference
+    of the other. The levels alone do not tell; the way between them does.
+
+    Examples
+    --------
+    >>> force = 9.0 * np.sin(np.linspace(0, 4 * np.pi, 400)).clip(-0.5, 0.5)
+    >>> parts = [slice(30, 80), slice(130, 180), slice(230, 280), slice(330, 380)]
+    >>> def told(force):
+    ...     mean = np.array([force[part].mean() for part in parts])
+    ...     sign, error = np.array([1, -1, 1, -1]), np.full(4, 0.01)
+    ...     return folded(Trace(force, force == force, parts, mean, error, sign, np.nan)).kind
+    >>> told(force), told(np.abs(force)), told(force + 20)
+    ('signed', 'rectified', 'signed')
+    """
+    known = np.isfinite(trace.mean)
+    if known.sum() < 2 or not (known & (trace.sign > 0)).any():
+        return SIGNED
+    turned = 1.0 if np.nanmedian(trace.mean) >= 0 else -1.0
+    trace = trace._replace(
+        force=turned * trace.force, mean=turned * trace.mean, rest=turned * trace.rest
+    )
+    # a stroke below zero, beyond its error, has a sign
+    if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
+        return SIGNED
+    if (known & (trace.sign < 0)).any():
+        return _both_ways(trace, known)
+    return _one_way(trace)
+
+
+def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
+    """Directions are recorded, the force has one sign."""
+    forward, backward = (
+        np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
+    )
+    levels = [float(np.median(trace.mean[which])) for which in (forward, backward)]
+    low, high = sorted(levels)
+    one_sign = "the friction force has one sign in both directions of sliding"
+    if np.isfinite(trace.rest):
+        beside = abs(abs(trace.rest) - (high - low) / 2)
+        between = abs(trace.rest - (high + low) / 2)
+        if between < 0.5 * beside:
+            return SIGNED
+        if beside < 0.5 * between:
+            return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
+    dips, straight, seen = _reversals(trace)
+    if dips >= MOST:
+        return Fold(
+            "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
+        )
+    error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
+    differ = high - low > max(CLEAR * error, 1e-6 * high)
+    if seen and dips < 1 - MOST and differ and straight >= MOST:
+        return SIGNED
+    like = high - low < LIKE * (high + low) / 2
+    why = f"{one_sign}, and the turns do not show whether it passes through zero"
+    return Fold("undecided: alike" if like else "undecided", why)
+
+
+def _reversals(trace: Trace) -> tuple[float, float, int]:
+    """Share of the turns that dip towards zero, share that goes straight across, number of turns.
+
+    "Straight" is a turn with readings between the two levels and none below them, where these are
+    apart by more than the readings scatter; where they are not, one of at least ten readings.
+    """
+    dips, straight, seen = 0, 0, 0
+    for i in range(len(trace.parts) - 1):
+        if trace.sign[i] * trace.sign[i + 1] > 0 and (trace.sign < 0).any():
+            continue
+        here, there = trace.parts[i], trace.parts[i + 1]
+        between = slice(here.stop, there.start)
+        turn = trace.force[between][trace.loaded[between]]
+        turn = turn[np.isfinite(turn)]
+        first, second = (
+            trace.force[part][np.isfinite(trace.force[part])] for part in (here, there)
+        )
+        if turn.size < 3 or first.size < 3 or second.size < 3:
+            continue
+        seen += 1
+        ends = sorted(
+            (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
+        )
+        (low, top), (bottom, _) = ends
+        if turn.min() < DIP * low:
+            dips += 1
+        elif top < bottom:
+            straight += bool(((turn > top) & (turn < bottom)).any())
+        else:
+            straight += turn.size >= 10
+    return (dips / seen, straight / seen, seen) if seen else (0.0, 0.0, 0)
+
+
+def _one_way(trace: Trace) -> Fold:
+    """No direction is recorded: a force that touches zero at the stops and is never below it."""
+    force = trace.force[np.isfinite(trace.force)]
+    if len(trace.parts) < 2 or (force < 0).any():
+        return SIGNED
+    level = float(np.nanmedian(trace.mean))
+    if np.isfinite(trace.rest) and abs(trace.rest) > 0.02 * level:
+        odd, even = np.nanmean(trace.mean[::2]), np.nanmean(trace.mean[1::2])
+        error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
+        apart = abs(odd - even)
+        if apart > CLEAR * error and abs(apart - 2 * abs(trace.rest)) < 0.3 * apart:
+            why = "strokes are by turns above and below their mean by what rests without load read"
+            return Fold("rectified", why)
+        return SIGNED
+    touched = [_touches(trace, i) for i in range(len(trace.parts) - 1)]
+    touched = [one for one in touched if one is not None]
+    dips = sum(touched) / len(touched) if touched else 0.0
+    if dips >= MOST:
+        why = (
+            f"neither speed nor force has a sign, and the force goes to zero at {dips:.0%} of the "
+            "stops and never below it"
+        )
+        return Fold("rectified", why)
+    return SIGNED
+
+
+def _touches(trace: Trace, number: int) -> bool | None:
+    """Whether the force comes to zero between two strokes, as near as its noise and steps allow."""
+    here, there = trace.parts[number], trace.parts[number + 1]
+    between = slice(here.stop, there.start)
+    turn = trace.force[between][trace.loaded[between]]
+    turn = turn[np.isfinite(turn)]
+    stroke = trace.force[here][np.isfinite(trace.force[here])]
+    if turn.size < 3 or stroke.size < 3:
+        return None
+    lowest = int(np.argmin(turn))
+    # of four steps around it a V has three that are large, and a flat stop two at most
+    steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
+    # differences between neighbours: a wave in the stroke is no noise
+    noise = np.median(np.abs(np.diff(stroke))) / 0.954
+    return bool(turn[lowest] < max(TOUCH * noise, steps[1]))

@@ -1,0 +1,69 @@
+"""Loops of strokes at different speeds: what friction may change between the two."""
+
+from __future__ import annotations
+
+import numpy as np
+
+ALIKE = 0.05  # relative difference of speed up to which strokes measure friction at one speed
+USUAL = 0.15  # share of friction that a change of speed by e is taken to change, where not measured
+LEAST = 0.05  # the same where it was measured to be less
+NEAR = np.log(10)  # loops further apart than a decade say nothing of each other
+TOO_FAR = 1.0  # of their mean: speeds that differ by more make no loop unless somebody says so
+
+
+def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return by how much the half loop of unequal speeds may miss the friction of either stroke.
+
+    Parameters
+    ----------
+    half
+        Half loop of each pair, in any unit (pair).
+    speed
+        Speed of the two strokes [m/s] (pair, 2).
+
+    Returns
+    -------
+    tuple
+        Standard uncertainty (pair), in the unit of `half`, and whether the run itself shows how
+        friction changes with speed.
+
+    Notes
+    -----
+    The half loop is the mean of the friction at both speeds, and misses either by half their
+    difference, |dF/d ln v| |ln v_f/v_b|/2. The slope is the steepest between the loop and its
+    neighbours in speed within a decade, loops of one speed taken together; at least 5 % of
+    friction for a change of speed by e, and 15 % where there is no neighbour.
+
+    Examples
+    --------
+    >>> across_speeds(np.array([10.0]), np.array([[1e-3, 2e-3]]))[0].round(3).tolist()
+    [0.52]
+    >>> same = np.array([[1e-3, 1e-3], [2e-3, 2e-3], [1e-3, 2e-3]])
+    >>> found, measured = across_speeds(np.array([10.0, 11.0, 10.5]), same)
+    >>> found.round(2).tolist(), measured
+    ([0.0, 0.0, 0.5], True)
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place, ratio = np.log(speed).mean(axis=1), np.abs(np.log(speed[:, 0] / speed[:, 1]))
+    known = np.isfinite(place + half)
+    ratio = np.where(np.isfinite(ratio), ratio, 0.0)
+    steep = np.full(half.size, USUAL) * np.abs(half)
+    if not known.any() or not (ratio > 0).any():
+        return np.nan_to_num(steep * ratio / 2), False
+    # strokes of one speed measure; others only where there are none
+    source = known & (ratio <= ALIKE)
+    measured = bool(source.any() and np.ptp(place[source]) > ALIKE)
+    if not measured:
+        source = known
+    order = np.flatnonzero(source)[np.argsort(place[source], kind="stable")]
+    groups = np.split(order, np.flatnonzero(np.diff(place[order]) > ALIKE) + 1)
+    at = np.array([place[g].mean() for g in groups])
+    level = np.array([np.abs(half[g]).mean() for g in groups])
+    slope = np.abs(np.diff(level) / np.diff(at)) if at.size > 1 else np.zeros(0)
+    near = np.diff(at) <= NEAR
+    for i in np.flatnonzero(known):
+        # steps of the curve that touch the loop's range of speeds
+        inside = near & (at[:-1] <= place[i] + ratio[i]) & (at[1:] >= place[i] - ratio[i])
+        if inside.any():
+            steep[i] = max(float(slope[inside].max()), LEAST * abs(half[i]))
+    return np.nan_to_num(steep * ratio / 2), measured

@@ -1,0 +1,73 @@
+"""Checks on the zero of the friction force: what it rests on, and whether the sign was lost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tribolab.qc.register import Check, Result, Skip
+from tribolab.qc.subject import RunSubject
+
+
+def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    friction = subject.friction
+    signal = _signal(subject)
+    told = _doubts(subject, "zero_reference", signal)
+    method = str(friction.attrs.get("offset", ""))
+    return told or [Result("pass", signal, f"the zero rests on: {method}")]
+
+
+def _rectified(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    signal = _signal(subject)
+    told = _doubts(subject, "rectified", signal)
+    return told or [Result("pass", signal, "nothing says that the signal lost its sign")]
+
+
+def _signal(subject: RunSubject) -> str:
+    if subject.friction_signal is None:
+        raise Skip("no friction was recorded")
+    return subject.friction_signal
+
+
+def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
+    """Turn what the analysis was not sure of into results; no single sample is to blame."""
+    found: list[dict[str, Any]] = list(subject.friction.attrs.get("zero_doubts", []))
+    results = []
+    for doubt in found:
+        if doubt["check"] != check:
+            continue
+        which = [int(i) for i in doubt["segments"]]
+        where = subject.segment_label(which[0]) if 0 < len(which) < len(subject.slices) else ""
+        results.append(
+            Result(
+                doubt["status"],
+                signal,
+                doubt["message"],
+                where=where,
+                count=len(which) if doubt["status"] == "suspect" else 0,
+                noted=bool(doubt.get("noted")),
+                cure=doubt["cure"],
+            )
+        )
+    return results
+
+
+ZERO_CHECKS = (
+    Check(
+        "zero_reference",
+        29,
+        "Is the zero of the friction force known, and do all that tell it agree?",
+        "Measure strokes both ways at one speed, or a rest without load; or state "
+        "`zero_uncertainty` in the [[run]].",
+        {},
+        _zero_reference,
+    ),
+    Check(
+        "rectified",
+        30,
+        "Does the friction signal hold its sign?",
+        "State `rectified` in the [[run]], or of the column in the dialect.",
+        {},
+        _rectified,
+    ),
+)
