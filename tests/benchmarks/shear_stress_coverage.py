@@ -61,7 +61,7 @@ def one_campaign(seed: int, shift: dict[str, tuple[float, float]]) -> list[dict[
             )
             true = dict(xu2026.surface(model.surface).shear_stress)[model.normal_force]
             scanned = fit.attrs["shear_stress_Pa"]
-            half = fit.attrs["shear_stress_half_interval_Pa"]
+            half = fit.attrs["shear_stress_statistical_half_interval_Pa"]
             low, high = shift[model.surface]
             low, high = np.hypot(half, low * scanned), np.hypot(half, high * scanned)
             rows.append(

@@ -19,15 +19,17 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import ModelOutcome, Outcome
 
+_95 = 1.959963984540054
+STATISTICAL = "statistical only: the spectrum's error is not in it"
 LABELS = ("surface", "medium", "normal_force_N")
 _FITTED = (
     *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_common_error_Pa"),
-    *("shear_stress_total_error_Pa", "shear_stress_half_interval_Pa"),
+    *("shear_stress_total_error_Pa", "shear_stress_statistical_half_interval_Pa"),
     *("area_enhancement", "area_enhancement_error"),
     *("area_enhancement_low", "area_enhancement_high"),
     *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa"),
     *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
-    *("valid_speed_low_m_s", "valid_speed_high_m_s"),
+    *("valid_speed_low_m_s", "valid_speed_high_m_s", "residual_correlation", "interval_says"),
 )
 SHEAR_STRESS = [
     "curve",
@@ -156,7 +158,10 @@ def complete(rows: Sequence[ModelRows]) -> None:
         ]
         source = one if one.shift else (same or [None])[0]
         low, high = source.shift if source else (None, None)
-        stress, half = (one.fit[f"shear_stress_{k}Pa"] for k in ("", "half_interval_"))
+        names = ("", "statistical_half_interval_")
+        stress, half = (one.fit[f"shear_stress_{k}Pa"] for k in names)
+        if not source:
+            one.fit["interval_says"] = f"{STATISTICAL}; {one.fit['interval_says']}"
         one.fit |= {
             "spectrum_error_low": low,
             "spectrum_error_high": high,
@@ -164,6 +169,8 @@ def complete(rows: Sequence[ModelRows]) -> None:
             "shear_stress_low_Pa": stress - float(np.hypot(half, stress * (low or 0))),
             "shear_stress_high_Pa": stress + float(np.hypot(half, stress * (high or 0))),
         }
+        if source:
+            _add_spectrum(one.fit, (high - low) / (2 * _95))
     for one in fitted:
         one.fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
         # the others at the same load and in the same medium, in the order of the campaign
@@ -187,6 +194,13 @@ def complete(rows: Sequence[ModelRows]) -> None:
                 "ratio": ratio,
                 "ratio_error": float(abs(ratio) * np.hypot(*parts)),
             }
+
+
+def _add_spectrum(fit: dict[str, Any], relative: float) -> None:
+    """Add the spectrum's relative standard error to those of the shear stresses."""
+    for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
+        value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
+        fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
 def _is_known(fit: dict[str, Any]) -> bool:
