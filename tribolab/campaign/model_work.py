@@ -12,11 +12,12 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.model_plan import PlannedModel, optional, read
-from tribolab.campaign.outcome import Finding, ModelOutcome
+from tribolab.campaign.outcome import Finding, ModelOutcome, beyond_limits
 from tribolab.campaign.work import explain, write_data
 from tribolab.errors import AnalysisError, OutputError
 from tribolab.provenance import made
 from tribolab.quantities import stamp
+from tribolab.validity import together
 
 if TYPE_CHECKING:
     from tribolab.compare.shear_stress import ShearStressFit
@@ -116,7 +117,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
         )
-    return groups, findings
+    return groups, findings + beyond_limits(groups)
 
 
 def _fit(
@@ -222,7 +223,8 @@ def _profiles(
         .rename_dims(x="point")
         for v in (float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES))
     ]
-    return stamp(xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts"))
+    profiles = xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts")
+    return stamp(profiles, **together([one.attrs for one in found]))
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:

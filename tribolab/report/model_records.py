@@ -12,7 +12,7 @@ import pandas as pd
 
 from tribolab.report.model_words import judgement
 from tribolab.report.tables import frame
-from tribolab.report.wording import plain_value
+from tribolab.report.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,6 +67,7 @@ class ModelRows:
     sensitivity: list[dict[str, Any]] = field(default_factory=list)
     not_varied: str = ""
     shift: tuple[float, float] | None = None
+    validity: str = ""
 
     @property
     def labels(self) -> dict[str, Any]:
@@ -91,6 +92,7 @@ def model_rows(outcome: Outcome, model: ModelOutcome) -> ModelRows:
     groups = read_groups(path, model.parts)
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
     rows = ModelRows(model, None, curve)
+    rows.validity = validity_of(groups.values())
     if "fit" in groups:
         attrs = groups["fit"].attrs
         rows.fit = {key: attrs[key] for key in _FITTED}
@@ -249,5 +251,6 @@ def model_record(model: ModelOutcome, rows: ModelRows | None) -> dict[str, Any]:
             "fit": fit,
             "sensitivity": rows.sensitivity if rows else [],
             "not_varied": rows.not_varied if rows else "",
+            "validity": rows.validity if rows else "",
         }
     )
