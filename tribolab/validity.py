@@ -71,8 +71,8 @@ LIMITS = {
         1.0,
         3.0,
         "roughness cannot bind more than smooth surfaces do but by its larger area",
-        "look at work of adhesion, modulus and spectrum: so soft a body is in complete contact, and "
-        "capillary or large-strain theories apply",
+        "look at work of adhesion, modulus and spectrum: so soft a body is in complete contact, "
+        "and capillary or large-strain theories apply",
     ),
     "frequency": Limit(
         "share of rubber friction or stiffness that rests on frequencies outside the modulus table",
