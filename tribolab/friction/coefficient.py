@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, nearest
 from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest, wander
-from tribolab.friction.statistics import NOTHING, Estimate, describe
+from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
 from tribolab.friction.steadiness import judged
 from tribolab.quantities import stamp
 
@@ -263,7 +263,8 @@ def _from_forces(
     }
     if not loads:
         empty = [one.samples == 0 for one in forces]
-        remarks = np.where(empty, "no samples that are numbers", "").astype(object)
+        few = np.array([student_remark(one.effective_samples) for one in forces], dtype=object)
+        remarks = np.where(empty, "no samples that are numbers", few).astype(object)
         data |= _memory(forces) | {"force_trend": sign * _column(forces, "trend")}
         return _table(data, remarks, method)
 
@@ -318,7 +319,8 @@ def _ratio(
     if found.samples == 0:
         return found, "friction force is not a number"
     left = normal.size - int(np.count_nonzero(pressed))
-    return found, f"{left} samples without contact left out" if left else ""
+    said = [f"{left} samples without contact left out"] if left else []
+    return found, "; ".join([*said, *filter(None, [student_remark(found.effective_samples)])])
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.ndarray) -> xr.Dataset:
@@ -347,7 +349,8 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.nda
         "trend": sign * _column(found, "trend"),
         "trend_change": sign * _column(found, "trend_change"),
     }
-    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", "")
+    few = np.array([student_remark(one.effective_samples) for one in found], dtype=object)
+    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), method)
 
 
