@@ -49,13 +49,14 @@ def test_below_the_rolloff_profiles_give_the_plateau_with_its_error(hurst, rollo
 @pytest.mark.slow
 def test_below_the_rolloff_maps_give_the_plateau_with_its_error():
     spectrum, parts = SelfAffine(0.8, 1.5e5, 1e-22, 300.0, 1e9), []
-    for seed in range(40):
+    for seed in range(120):
         longer = synthesise_map(spectrum, points=256, pitch=4e-6, rng=seed)
         part = longer.isel(x=slice(128), y=slice(128))
         tilted = part.assign(height=part.height + 0.01 * part.x + np.sqrt(0.07**2 - part.y**2))
         parts.append(held(psd_2d(tilted), spectrum))
     ratio, low, _ = (np.concatenate(part) for part in zip(*parts, strict=True))
-    assert 0.93 < ratio.mean() < 1.08
+    # one annulus of some four independent values in each map
+    assert abs(ratio.mean() - 1) < 3 * 0.5 / np.sqrt(120)
     assert low.mean() >= 0.92
 
 
