@@ -17,6 +17,7 @@ from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.report.page import _environment
 from tribolab.report.wording import validity_of
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
@@ -139,3 +140,12 @@ def test_frequencies_outside_the_table_are_said_at_either_end():
         assert f"the table holds {ends[0]:.3g} to {ends[1]:.3g} rad/s" in validity_of([short])
     with pytest.raises(AnalysisError, match="outside the modulus table"):
         viscoelastic_friction([1.0], 4e4, psd, table(1e-8, 1e-6))
+
+
+@pytest.mark.parametrize(("reasons", "shown"), [("", False), ("too steep: a; b", True)])
+def test_the_page_marks_what_is_beyond_the_limits(reasons, shown, tmp_path):
+    text = '{% from "cells.html.j2" import limits, named with context %}{{ named(row) }}'
+    row = {"name": "Sb-R", "quality": "pass", "validity": reasons}
+    cell = _environment(tmp_path).from_string(text).render(row=row)
+    assert ('class="chip suspect"' in cell) == shown
+    assert (f'title="{reasons}"' in cell) == shown
