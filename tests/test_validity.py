@@ -89,7 +89,7 @@ def test_a_thick_film_is_said_with_the_speed_from_which_on():
     assert thick.tolist() == [False, False, True]
     assert "(above the limit from 0.5 m/s on)" in validity_of([curve])
     with pytest.raises(AnalysisError, match="film thickness"):
-        line_limits("curve", narrow, 1.0, speed=[1.0], film=[2e-4])
+        line_limits("curve", narrow, 1.0, speed=[1.0], film=[6e-4])
 
 
 def test_steep_surfaces_are_said_and_steeper_ones_refused():

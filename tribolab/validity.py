@@ -48,7 +48,7 @@ LIMITS = {
     "film": Limit(
         "film thickness over the radius R",
         1e-2,
-        1e-1,
+        0.5,
         "the gap is taken as a parabola and the film as thin",
         "take lower speeds or a thinner liquid",
     ),
