@@ -267,7 +267,10 @@ def test_an_error_that_all_points_share_is_in_the_error_bar():
     assert fit.half_interval > 2 * fit.common_error
     alone = fit_shear_stress(*given, curve=bare)
     assert alone.shear_stress == fit.shear_stress
-    assert alone.half_interval < alone.shear_stress - 1e6 < fit.half_interval
+    assert alone.shear_stress - 1e6 < fit.half_interval
+    assert fit.half_interval == pytest.approx(
+        np.hypot(alone.half_interval, 2.228 * fit.common_error), rel=1e-3
+    )
 
 
 def described(residual, **attrs):

@@ -49,7 +49,7 @@ def test_hertz_pressure_carries_the_load_and_peaks_at_the_maximum():
 
 
 @properties
-@given(force=st.floats(-1, 1e6), work=st.floats(1e-6, 10))
+@given(force=st.floats(-1, 5e4), work=st.floats(1e-6, 10))
 def test_jkr_solves_its_equation_on_the_branch_connected_to_hertz(force, work):
     smallest = jkr_smallest_load(CONTACT, work)
     load = smallest * -force if force < 0 else force

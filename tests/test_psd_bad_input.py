@@ -73,7 +73,7 @@ def test_profiles_of_no_isotropic_surface_are_named():
     edges = np.array([1e3, 2e3, 4e3])
     found = Annuli(edges, np.array([-2.0, -1.0]), np.eye(2), 1.0, 1.0)
     with pytest.raises(AnalysisError, match="isotropic"):
-        join(found, np.array([0.1, 0.1]))
+        join(found, found, np.array([0.1, 0.1]))
 
 
 ONE_D = xr.Dataset({"psd_2d": ("wavenumber", [1.0, 2.0])}, {"wavenumber": [1.0, 2.0]})

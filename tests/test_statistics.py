@@ -12,6 +12,7 @@ from tribolab.friction.statistics import (
     error_of_mean,
     on_grid,
     sample_weights,
+    student_widening,
     trend,
 )
 
@@ -207,3 +208,21 @@ def test_estimates_follow_scale_shift_and_time_origin(seed, n, scale, shift, ori
             scale * getattr(plain, name), rel=1e-4, abs=1e-6 * scale
         )
     assert other.trend_p_value == pytest.approx(plain.trend_p_value, abs=1e-4)
+
+
+def test_intervals_of_few_effective_samples_hold_by_student_s_t():
+    """A memory of a third of the record: 95 % intervals missed the mean two times in five."""
+    rng = np.random.default_rng(77)
+    time = np.arange(N) * 0.01
+    found = [describe(time, record) for record in memory(rng, N / 4)[:400]]
+    few = [one for one in found if one.effective_samples < 4]
+    assert len(few) > 100
+    inside = np.mean([abs(one.mean) < 1.96 * one.sem for one in few])
+    blocks = memory(np.random.default_rng(77), N / 4)[:400].reshape(400, BLOCKS, -1).mean(axis=2)
+    plain, _ = error_of_mean(blocks)
+    assert np.mean(np.abs(blocks.mean(axis=1)) < 1.96 * plain) < 0.75
+    assert inside > 0.85
+    for one in few:
+        assert one.sem >= 0.99 * student_widening(one.effective_samples) * one.std / np.sqrt(
+            one.effective_samples
+        )

@@ -12,11 +12,12 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.model_plan import PlannedModel, optional, read
-from tribolab.campaign.outcome import Finding, ModelOutcome
+from tribolab.campaign.outcome import Finding, ModelOutcome, beyond_limits
 from tribolab.campaign.work import explain, write_data
 from tribolab.errors import AnalysisError, OutputError
 from tribolab.provenance import made
 from tribolab.quantities import stamp
+from tribolab.validity import together
 
 if TYPE_CHECKING:
     from tribolab.compare.shear_stress import ShearStressFit
@@ -116,7 +117,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
         )
-    return groups, findings
+    return groups, findings + beyond_limits(groups)
 
 
 def _fit(
@@ -188,7 +189,9 @@ def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
         shear_stress_error_inflated_Pa=fit.shear_stress_error_inflated,
         shear_stress_common_error_Pa=fit.common_error,
         shear_stress_total_error_Pa=fit.total_error,
-        shear_stress_half_interval_Pa=fit.half_interval,
+        shear_stress_statistical_half_interval_Pa=fit.statistical_half_interval,
+        residual_correlation=fit.residual_correlation,
+        interval_says=fit.interval_says,
         chi_square=fit.chi_square,
         degrees_of_freedom=fit.degrees_of_freedom,
         chi_square_p_value=fit.chi_square_p_value,
@@ -220,7 +223,8 @@ def _profiles(
         .rename_dims(x="point")
         for v in (float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES))
     ]
-    return stamp(xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts"))
+    profiles = xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts")
+    return stamp(profiles, **together([one.attrs for one in found]))
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:

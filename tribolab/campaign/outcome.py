@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tribolab.validity import reasons_of
+
 if TYPE_CHECKING:
+    import xarray as xr
+
     from tribolab.campaign.config import Campaign
 
 
@@ -96,6 +101,21 @@ class Finding(NamedTuple):
     severity: str
     message: str
     check: str = ""
+
+
+def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
+    """Return a finding for each limit of the theory that a result leaves, see `validity`.
+
+    Parameters
+    ----------
+    groups
+        Results by the name of their group, with the attribute ``validity_reasons``.
+    """
+    where: dict[str, list[str]] = {}
+    for name, data in groups.items():
+        for reason in reasons_of(data.attrs):
+            where.setdefault(reason, []).append(name)
+    return [Finding("suspect", f"{', '.join(names)}: {reason}") for reason, names in where.items()]
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.outcome import Finding
+from tribolab.campaign.outcome import Finding, beyond_limits
 from tribolab.campaign.work import explain
 from tribolab.errors import TribolabError
 from tribolab.quantities import stamp
+from tribolab.validity import together
 
 if TYPE_CHECKING:
     from tribolab.campaign.surface_plan import PlannedSurface
@@ -100,7 +101,7 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
         attempt("adhesion", names, lambda: _adhesion(surface, grid, loads, contact, psd, modulus))
         if "adhesion_loads" in groups:
             findings += _undecided(groups["adhesion_loads"])
-    return groups, findings
+    return groups, findings + beyond_limits(groups)
 
 
 def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
@@ -128,12 +129,14 @@ def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
     pressure = labelled(grid, "pressure")
     data = _areas(pressure, psd, modulus)
     data["separation"] = mean_separation(pressure, psd, modulus)
-    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus)
+    valid = data["contact_area_ratio"].attrs
+    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **together([valid]))
 
 
 def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
     """Hertz contact at each load, and the rough contact at its mean pressure."""
     from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure, hertz_mean_pressure
+    from tribolab.contact.limits import line_limits
     from tribolab.contact.persson import mean_separation
 
     load = forces / contact.length
@@ -152,7 +155,8 @@ def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
         **_areas(pressure, psd, modulus),
         "separation": mean_separation(pressure, psd, modulus),
     }
-    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus)
+    valid = line_limits("line contact", contact, load, psd)
+    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **valid)
 
 
 def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
@@ -164,7 +168,8 @@ def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
         line = rough_line_contact(contact.load(float(force)), contact, psd)
         found.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
     lines = xr.concat(found, "load", combine_attrs="drop_conflicts")
-    return stamp(lines.assign(normal_force=("load", forces)))
+    valid = together([line.attrs for line in found])
+    return stamp(lines.assign(normal_force=("load", forces)), **valid)
 
 
 def _gaps(loads: xr.Dataset, psd: xr.Dataset, modulus: float) -> xr.Dataset:
@@ -196,9 +201,10 @@ def _adhesion(
     # a band is smooth, so a third of the grid tells it
     bounding = np.concatenate([[0.0], at_loads, grid[::3]])
     spectra = _bounds(psd)
-    curves, points = [], []
+    curves, points, valid = [], [], []
     for medium in surface.media:
         found = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
+        valid.append(found.attrs)
         curve = found.isel(pressure=slice(1 + at_loads.size, None))
         curve = curve[["contact_area_ratio", "area_enhancement"]]
         rest, under_load = found.isel(pressure=0), found.isel(pressure=slice(1, 1 + at_loads.size))
@@ -245,10 +251,9 @@ def _adhesion(
             point["pressure"] = loads.pressure
         points.append(point)
     names = xr.DataArray([medium.name for medium in surface.media], dims="medium", name="medium")
-    together = [
-        xr.concat(parts, names, combine_attrs="drop_conflicts") for parts in (curves, points)
-    ]
-    return stamp(together[0]), stamp(together[1])
+    joined = [xr.concat(parts, names, combine_attrs="drop_conflicts") for parts in (curves, points)]
+    limits = together(valid)
+    return stamp(joined[0], **limits), stamp(joined[1], **limits)
 
 
 def _undecided(points: xr.Dataset) -> list[Finding]:

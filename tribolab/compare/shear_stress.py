@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,8 @@ from scipy import stats
 from scipy.optimize import least_squares
 from scipy.special import comb
 
+from tribolab.compare.residual_error import residual_error
+from tribolab.compare.shear_stress_fit import ShearStressFit
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, nearest
 from tribolab.friction.stribeck import measured_stribeck_curve
@@ -26,93 +28,6 @@ _ATOM = 1e-19  # m2, contact area under which the bodies do not touch
 _STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
 
 
-@dataclass(frozen=True, eq=False)
-class ShearStressFit:
-    """A fitted shear stress, how well it fits, and the curve that goes with it.
-
-    Parameters
-    ----------
-    shear_stress
-        sigma_f [Pa], effective: for the contact area without adhesion.
-    shear_stress_error
-        Its standard error [Pa] from those of the measured points.
-    shear_stress_error_inflated
-        The same times the Birge ratio where that is above 1: what is left of the misfit, if the
-        points' errors are too small by one factor.
-    chi_square, degrees_of_freedom, chi_square_p_value
-        Of the residuals.
-    birge_ratio
-        sqrt(chi_square/degrees_of_freedom).
-    runs_p_value
-        Probability of so few changes of the residuals' sign by chance; small means that the
-        measured curve has another shape.
-    valid_speed_range
-        Ends [m/s] of the widest range of speeds that one sigma_f describes (chi-square's
-        probability above 0.01 when fitted alone); NaN if none of four speeds or more does.
-    common_error
-        The part [Pa] of the standard error that all points have in common, such as the level of
-        the runs; not in `shear_stress_error`.
-    common_freedom
-        Degrees of freedom from which that part is known.
-    area_enhancement, area_enhancement_error
-        Real contact area with adhesion over that without [1], as given.
-    curve
-        The computed curve at the measured speeds, with ``friction_coefficient_residual`` [1]
-        (measured less computed; NaN where nothing was measured) and ``used``.
-    error_from
-        Where the points' errors come from: "sem", "std" or "scatter".
-    parameters, covariance
-        Names and values of all free parameters in SI, sigma_f first, and their covariance.
-    """
-
-    shear_stress: float
-    shear_stress_error: float
-    shear_stress_error_inflated: float
-    chi_square: float
-    degrees_of_freedom: int
-    chi_square_p_value: float
-    birge_ratio: float
-    runs_p_value: float
-    valid_speed_range: tuple[float, float]
-    common_error: float
-    common_freedom: float
-    area_enhancement: float
-    area_enhancement_error: float
-    error_from: str
-    curve: xr.Dataset = field(repr=False)
-    parameters: dict[str, float] = field(repr=False)
-    covariance: np.ndarray = field(repr=False)
-
-    @property
-    def total_error(self) -> float:
-        """Standard error [Pa]: what the points scatter, inflated, with what they have in common."""
-        return float(np.hypot(self.shear_stress_error_inflated, self.common_error))
-
-    @property
-    def half_interval(self) -> float:
-        """Half the 95 % interval of sigma_f [Pa], with Student's t where errors are estimated.
-
-        Each part has its own t, and the two are added in quadrature: a common error known from two
-        runs alone, which may agree by chance, counts with the t of one degree of freedom.
-        """
-        parts = np.array([self.shear_stress_error_inflated, self.common_error])
-        freedom = np.array([self.degrees_of_freedom, max(self.common_freedom, 1.0)])
-        return float(np.linalg.norm(stats.t.ppf(0.975, freedom) * parts))
-
-    @property
-    def corrected_shear_stress(self) -> float:
-        """Shear stress [Pa] in the area that adhesion makes: sigma_f / area_enhancement."""
-        return self.shear_stress / self.area_enhancement
-
-    @property
-    def corrected_shear_stress_error(self) -> float:
-        """Standard error [Pa] of `corrected_shear_stress`, from `total_error` and the area's."""
-        return abs(self.corrected_shear_stress) * np.hypot(
-            self.total_error / self.shear_stress,
-            self.area_enhancement_error / self.area_enhancement,
-        )
-
-
 def fit_shear_stress(
     measured: xr.Dataset,
     contact: LineContact,
@@ -125,6 +40,7 @@ def fit_shear_stress(
     free: Sequence[str] = (),
     common_error: float = 0.0,
     common_freedom: float = np.inf,
+    spectrum_error: tuple[float, float] | None = None,
     curve: xr.Dataset | None = None,
     **model: Any,
 ) -> ShearStressFit:
@@ -148,6 +64,10 @@ def fit_shear_stress(
         Relative standard error [1] that all measured points share, such as the repeatability of
         a run's level over the square root of the number of runs, and the degrees of freedom
         behind it.
+    spectrum_error
+        Relative changes [1] of sigma_f, down and up, that an uncertain spectrum may make, from
+        `shear_stress_shift`. A spectrum with ``psd_2d_low`` was measured: without this argument
+        there is no interval but a statistical one.
     curve
         The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
         speeds (and others), with ``"0 Pa"``.
@@ -171,7 +91,9 @@ def fit_shear_stress(
     is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
     An error that all points share cannot be averaged away. It does not move the estimate; it moves
     sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
-    The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the inflation is
+    The errors of neighbouring speeds may go together, since a run's level wanders: how much is
+    told by the residuals, and the error bar grows with it (`residual_error`).
+    The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the ratio is
     Birge's [2]_.
 
     References
@@ -238,6 +160,13 @@ def fit_shear_stress(
     level = ((fluid + stress * area) / error)[used]
     shared = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
     spread = float(np.sqrt(covariance[0, 0]))
+    scatter = residual_error(
+        residual[used],
+        jacobian * error[used, None],
+        error[used],
+        np.log(speed[used]),
+        known=source != "scatter",
+    )
     found = with_shear_stress(found, stress).assign(
         friction_coefficient_residual=("sliding_speed", residual),
         used=("sliding_speed", used.astype(int)),
@@ -245,7 +174,9 @@ def fit_shear_stress(
     return ShearStressFit(
         shear_stress=stress,
         shear_stress_error=spread,
-        shear_stress_error_inflated=spread * max(1.0, birge),
+        shear_stress_error_inflated=max(spread, scatter.error),
+        scatter_half_interval=scatter.half_interval,
+        residual_correlation=scatter.correlation,
         chi_square=chi_square,
         degrees_of_freedom=freedom,
         chi_square_p_value=float(stats.chi2.sf(chi_square, freedom)),
@@ -257,6 +188,8 @@ def fit_shear_stress(
         area_enhancement=enhancement,
         area_enhancement_error=float(area_enhancement_error),
         error_from=source,
+        spectrum_error=spectrum_error,
+        spectrum_scanned="psd_2d_low" in (psd if psd is not None else ()),
         curve=stamp(found),
         parameters={"shear_stress": stress, **dict(zip(free, np.exp(best).tolist(), strict=True))},
         covariance=covariance,

@@ -10,6 +10,8 @@ import xarray as xr
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
 from tribolab.errors import AnalysisError
 from tribolab.quantities import labelled, stamp
+from tribolab.surface.moments import rms_slope
+from tribolab.validity import TINY, examine
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 
@@ -122,10 +124,14 @@ def adhesion(
         "root_search_steps": (dims, solved.iterations.reshape(shape)),
         "balance_residual": (dims, solved.residual.reshape(shape)),
     }
+    valid = examine(
+        "adhesion", slope=rms_slope(psd), binding=solved.binding[:, 0] / max(work, TINY)
+    )
     return stamp(
         xr.Dataset(data, coords=pressure_coords(over))
         .assign_coords(wavenumber=q)
         .assign_coords(magnification=("wavenumber", q / q[0])),
+        **valid,
         work_of_adhesion_J_m2=work,
         **parameters(surface),
     )
@@ -191,8 +197,14 @@ def macroscopic_work_of_adhesion(
         "pull_off": np.int8(sticks),
         "contact_area_ratio": float(solved.area[0, -1]) if sticks else 0.0,
     }
+    valid = examine(
+        "macroscopic_work_of_adhesion",
+        slope=rms_slope(psd),
+        binding=solved.binding[0, 0] / max(work, TINY),
+    )
     return stamp(
         xr.Dataset(data),
+        **valid,
         verdict=f"gamma_eff(1) {verdict}",
         work_of_adhesion_J_m2=work,
         **parameters(surface),

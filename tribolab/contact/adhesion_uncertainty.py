@@ -15,6 +15,8 @@ from tribolab.contact.work_of_adhesion import (
     work_of_adhesion_spread,
 )
 from tribolab.quantities import stamp
+from tribolab.surface.moments import rms_slope
+from tribolab.validity import TINY, examine
 
 
 def adhesion_uncertainty(
@@ -104,4 +106,6 @@ def adhesion_uncertainty(
         spread[f"macroscopic_work_of_adhesion{ending}"] = ("medium", at_rest)
     deviation = read(area, drawn).std(axis=1, ddof=1).reshape(2, *over.shape)
     spread["contact_area_ratio_std"] = (dims, deviation)
-    return stamp(spread.assign_coords(pressure_coords(over)), **parameters(surface))
+    binding = macroscopic / np.maximum(curve, TINY)
+    valid = examine("adhesion_uncertainty", slope=rms_slope(psd), binding=binding)
+    return stamp(spread.assign_coords(pressure_coords(over)), **valid, **parameters(surface))

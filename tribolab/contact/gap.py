@@ -13,8 +13,9 @@ from scipy.special import erf
 from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
 from tribolab.errors import AnalysisError, nearest
 from tribolab.quantities import labelled, stamp
-from tribolab.surface.moments import cumulative_at
+from tribolab.surface.moments import cumulative_at, rms_slope
 from tribolab.units import positive
+from tribolab.validity import examine
 
 Variant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
@@ -133,6 +134,7 @@ def gap_distributions(
             f"separation {mean[closed].max():.2g} m; no gap is left: leave such pressures out"
         )
     facts = {"gamma": gamma, "cutoff_m": smallest}
+    facts |= examine("gap_distribution", slope=rms_slope(psd))
     return [
         stamp(
             _distribution(over, mean, openings, area, variant, smallest), variant=variant, **facts

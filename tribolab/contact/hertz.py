@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError
 from tribolab.units import to_si
+from tribolab.validity import examine
 
 
 def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray | float:
@@ -28,7 +29,7 @@ def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray 
     Raises
     ------
     AnalysisError
-        If a load is negative.
+        If a load is negative, or the contact wider than its cylinder (`tribolab.validity`).
 
     Notes
     -----
@@ -51,7 +52,9 @@ def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray 
         raise AnalysisError(
             f"load: without adhesion a contact cannot be pulled; got {np.min(force):g} N/m"
         )
-    return np.sqrt(4 * contact.radius * force / (np.pi * contact.effective_modulus))[()]
+    half_width = np.sqrt(4 * contact.radius * force / (np.pi * contact.effective_modulus))[()]
+    examine("hertz_half_width", half_width=half_width / contact.radius)
+    return half_width
 
 
 def hertz_max_pressure(load: str | ArrayLike, contact: LineContact) -> np.ndarray | float:
@@ -164,7 +167,9 @@ def jkr_half_width(
         b, before = np.maximum(b - (b**4 - 4 * b - phi) / steep, 1.0), b
         if np.allclose(b, before, rtol=1e-15, atol=0):
             break
-    return (_detaching(contact, w) * b**2)[()]
+    half_width = (_detaching(contact, w) * b**2)[()]
+    examine("jkr_half_width", half_width=half_width / contact.radius)
+    return half_width
 
 
 def _detaching(contact: LineContact, w: float) -> float:

@@ -8,6 +8,7 @@ from scipy.linalg import lu_factor, lu_solve
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError
@@ -108,6 +109,7 @@ def rough_line_contact(
     balance = pressure.sum() * (x[1] - x[0]) / force - 1
     return stamp(
         profile,
+        **line_limits("rough_line_contact", contact, force, psd, table),
         residual=residual,
         load_balance=float(balance),
         steps=steps,

@@ -21,9 +21,11 @@ from tribolab.surface.moments import (
     cumulative,
     cumulative_at,
     refined,
+    rms_slope,
     spectrum_arrays,
 )
 from tribolab.units import positive
+from tribolab.validity import examine
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 ROOT_PI = np.sqrt(np.pi)
@@ -75,8 +77,10 @@ def contact_area_ratio(
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     slope = cumulative(*spectrum_arrays(psd), 3)[-1]
+    valid = examine("contact_area_ratio", slope=np.sqrt(2 * np.pi * slope))
     values = pressure_values(pressure)
-    return like(_area(values, modulus * np.sqrt(np.pi * slope)), pressure, "contact_area_ratio")
+    area = like(_area(values, modulus * np.sqrt(np.pi * slope)), pressure, "contact_area_ratio")
+    return _with(area, valid)
 
 
 def apparent_contact_area_ratio(
@@ -100,6 +104,7 @@ def apparent_contact_area_ratio(
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     stiffness = modulus * np.sqrt(np.pi * cumulative(*spectrum_arrays(psd), 3))
+    valid = examine("apparent_contact_area_ratio", slope=stiffness[-1] / modulus * np.sqrt(2))
     values = pressure_values(pressure)
     over, q = labelled(pressure, "pressure"), psd["wavenumber"]
     area = xr.DataArray(
@@ -107,7 +112,7 @@ def apparent_contact_area_ratio(
         coords={**over.coords, "wavenumber": q},
         dims=(*over.dims, "wavenumber"),
     )
-    return stamp_array(area, "contact_area_ratio")
+    return _with(stamp_array(area, "contact_area_ratio"), valid)
 
 
 def mean_separation(
@@ -167,13 +172,19 @@ def mean_separation(
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     slope, weight = slope_quadrature(*spectrum_arrays(psd))
+    valid = examine("mean_separation", slope=rms_slope(psd))
     values = pressure_values(pressure)
     flat = values.ravel() / (ROOT_PI * modulus)
     separation = np.empty_like(flat)
     for part in range(0, flat.size, 128):  # bounds the memory of pressures times wavenumbers
         piece = flat[part : part + 128, None]
         separation[part : part + 128] = tail(piece / slope, gamma) @ weight
-    return like(separation.reshape(values.shape), pressure, "separation")
+    return _with(like(separation.reshape(values.shape), pressure, "separation"), valid)
+
+
+def _with(result: Pressure, valid: dict[str, str]) -> Pressure:
+    """Add the attributes of `tribolab.validity` to a result that has attributes."""
+    return result.assign_attrs(valid) if isinstance(result, xr.DataArray) else result
 
 
 def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

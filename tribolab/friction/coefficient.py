@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, nearest
 from tribolab.friction.rests import unloaded_rests
-from tribolab.friction.statistics import NOTHING, Estimate, describe
+from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
 from tribolab.friction.steadiness import judged
 from tribolab.friction.zero_of_run import Settings, zero_of_run
 from tribolab.friction.zero_parts import Reference
@@ -207,7 +207,8 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     }
     if not loads:
         empty = [one.samples == 0 for one in forces]
-        remarks = np.where(empty, "no samples that are numbers", "").astype(object)
+        few = np.array([student_remark(one.effective_samples) for one in forces], dtype=object)
+        remarks = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
         return _table(data, remarks, zero)
@@ -264,7 +265,8 @@ def _ratio(
     if found.samples == 0:
         return found, "friction force is not a number"
     left = normal.size - int(np.count_nonzero(pressed))
-    return found, f"{left} samples without contact left out" if left else ""
+    said = [f"{left} samples without contact left out"] if left else []
+    return found, "; ".join([*said, *filter(None, [student_remark(found.effective_samples)])])
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
@@ -288,7 +290,8 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         "trend": turn * _column(found, "trend"),
         "trend_change": turn * _column(found, "trend_change"),
     }
-    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", "")
+    few = np.array([student_remark(one.effective_samples) for one in found], dtype=object)
+    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), zero)
 
 

@@ -43,6 +43,7 @@ BESIDE = 0.3  # widening where the noise beside a line is all that moves the mea
 # was overestimated), and below how many effective samples
 WIDENING, FEW = 0.62, 20.0
 NARROWING, FEWER = 0.2, 11.0
+STUDENT = 8.0  # effective samples below which the error is at least as wide as Student's t asks
 
 
 class Estimate(NamedTuple):
@@ -79,6 +80,8 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
         changes by more than a factor of two, mean and std are weighted by time.
         ``effective_samples`` n_eff is std^2 over the variance of the mean, at most the number of
         samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
+        ``sem`` is widened below 8 effective samples to what Student's t asks for, so that 1.96 of
+        it make a 95 % interval with n_eff - 1 degrees of freedom (`student_widening`).
         ``trend_p_value`` tests the least-squares slope against the signal's own memory.
 
     Examples
@@ -109,12 +112,13 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
     plain, sem = error_of_mean(blocks[None, :])
     effective = float(np.clip((std / plain[0]) ** 2, 1.0, n))
+    error = max(float(sem[0]), float(plain[0]) * student_widening(effective))
     slope, p_value = trend(blocks)
     change = slope * blocks.size
     return Estimate(
         mean,
         std,
-        float(sem[0]),
+        error,
         n,
         effective,
         duration / (2 * effective),
@@ -122,6 +126,41 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
         change,
         p_value,
     )
+
+
+def student_widening(effective: float) -> float:
+    """Return what widens a standard error known from few effective samples, 1 from 8 on.
+
+    Parameters
+    ----------
+    effective
+        n_eff [1].
+
+    Notes
+    -----
+    ``t_(0.975, n_eff - 1) / 1.96``, with one degree of freedom at least.
+
+    Examples
+    --------
+    >>> [round(student_widening(n), 2) for n in (1.5, 3.0, 5.0, 8.0)]
+    [6.48, 2.2, 1.42, 1.0]
+    """
+    if effective >= STUDENT:
+        return 1.0
+    return float(special.stdtrit(max(effective - 1, 1.0), 0.975) / special.ndtri(0.975))
+
+
+def student_remark(effective: float) -> str:
+    """Say that an error was widened, and why; "" from 8 effective samples on.
+
+    Examples
+    --------
+    >>> student_remark(2.84)
+    "2.8 effective samples: the standard error is widened by Student's t"
+    """
+    if not effective < STUDENT:
+        return ""
+    return f"{effective:.2g} effective samples: the standard error is widened by Student's t"
 
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width
+from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
@@ -148,6 +149,15 @@ def stribeck_curve(
     return stamp(
         data,
         **_facts(system),
+        **line_limits(
+            "stribeck_curve",
+            contact,
+            loads.values,
+            psd,
+            system.separation,
+            speeds.values,
+            data.minimum_separation.values,
+        ),
         friction_factors="yes" if friction_factors else "no",
     )
 
@@ -243,7 +253,9 @@ def film_profile(
         {name: ("x", value[::side]) for name, value in values.items()} | scalars,
         coords={"x": x[::side], "sliding_speed": v, "load": force},
     )
-    return stamp(data, **_facts(system))
+    thinnest = values["separation"].min()
+    limits = line_limits("film_profile", contact, force, psd, system.separation, [v], [thinnest])
+    return stamp(data, **_facts(system), **limits)
 
 
 def _system(

@@ -12,22 +12,24 @@ import pandas as pd
 
 from tribolab.report.model_words import judgement
 from tribolab.report.tables import frame
-from tribolab.report.wording import plain_value
+from tribolab.report.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.outcome import ModelOutcome, Outcome
 
+_95 = 1.959963984540054
+STATISTICAL = "statistical only: the spectrum's error is not in it"
 LABELS = ("surface", "medium", "normal_force_N")
 _FITTED = (
     *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_common_error_Pa"),
-    *("shear_stress_total_error_Pa", "shear_stress_half_interval_Pa"),
+    *("shear_stress_total_error_Pa", "shear_stress_statistical_half_interval_Pa"),
     *("area_enhancement", "area_enhancement_error"),
     *("area_enhancement_low", "area_enhancement_high"),
     *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa"),
     *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
-    *("valid_speed_low_m_s", "valid_speed_high_m_s"),
+    *("valid_speed_low_m_s", "valid_speed_high_m_s", "residual_correlation", "interval_says"),
 )
 SHEAR_STRESS = [
     "curve",
@@ -65,6 +67,7 @@ class ModelRows:
     sensitivity: list[dict[str, Any]] = field(default_factory=list)
     not_varied: str = ""
     shift: tuple[float, float] | None = None
+    validity: str = ""
 
     @property
     def labels(self) -> dict[str, Any]:
@@ -89,6 +92,7 @@ def model_rows(outcome: Outcome, model: ModelOutcome) -> ModelRows:
     groups = read_groups(path, model.parts)
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
     rows = ModelRows(model, None, curve)
+    rows.validity = validity_of(groups.values())
     if "fit" in groups:
         attrs = groups["fit"].attrs
         rows.fit = {key: attrs[key] for key in _FITTED}
@@ -156,7 +160,10 @@ def complete(rows: Sequence[ModelRows]) -> None:
         ]
         source = one if one.shift else (same or [None])[0]
         low, high = source.shift if source else (None, None)
-        stress, half = (one.fit[f"shear_stress_{k}Pa"] for k in ("", "half_interval_"))
+        names = ("", "statistical_half_interval_")
+        stress, half = (one.fit[f"shear_stress_{k}Pa"] for k in names)
+        if not source:
+            one.fit["interval_says"] = f"{STATISTICAL}; {one.fit['interval_says']}"
         one.fit |= {
             "spectrum_error_low": low,
             "spectrum_error_high": high,
@@ -164,6 +171,8 @@ def complete(rows: Sequence[ModelRows]) -> None:
             "shear_stress_low_Pa": stress - float(np.hypot(half, stress * (low or 0))),
             "shear_stress_high_Pa": stress + float(np.hypot(half, stress * (high or 0))),
         }
+        if source:
+            _add_spectrum(one.fit, (high - low) / (2 * _95))
     for one in fitted:
         one.fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
         # the others at the same load and in the same medium, in the order of the campaign
@@ -187,6 +196,13 @@ def complete(rows: Sequence[ModelRows]) -> None:
                 "ratio": ratio,
                 "ratio_error": float(abs(ratio) * np.hypot(*parts)),
             }
+
+
+def _add_spectrum(fit: dict[str, Any], relative: float) -> None:
+    """Add the spectrum's relative standard error to those of the shear stresses."""
+    for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
+        value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
+        fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
 def _is_known(fit: dict[str, Any]) -> bool:
@@ -235,5 +251,6 @@ def model_record(model: ModelOutcome, rows: ModelRows | None) -> dict[str, Any]:
             "fit": fit,
             "sensitivity": rows.sensitivity if rows else [],
             "not_varied": rows.not_varied if rows else "",
+            "validity": rows.validity if rows else "",
         }
     )

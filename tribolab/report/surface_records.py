@@ -12,7 +12,7 @@ import pandas as pd
 
 from tribolab.campaign.surface_work import SCANS
 from tribolab.plot.labels import column
-from tribolab.report.wording import plain_value
+from tribolab.report.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +61,7 @@ class SurfaceRows:
     adhesion: list[dict[str, Any]]
     modulus: str
     quality: str = ""
+    validity: str = ""
 
 
 def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
@@ -82,6 +83,7 @@ def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
         plain_value(_adhesion(groups)),
         str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
         surface.quality,
+        validity_of(groups.values()),
     )
 
 
@@ -112,6 +114,7 @@ def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[st
         "contact": rows.contact if rows else [],
         "adhesion": rows.adhesion if rows else [],
         "modulus": rows.modulus if rows else "",
+        "validity": rows.validity if rows else "",
     }
 
 

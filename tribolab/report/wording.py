@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from tribolab.plot.labels import MINUS, number, speed_text
+from tribolab.validity import together
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
 # whose standard deviation and error are those of the quantity
@@ -33,6 +34,17 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
     decimals = min(max((error / 10**place < 1.95) - place, 0), 6)
     text = f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", MINUS)
     return f"({text}){unit}" if unit else text
+
+
+def validity_of(groups: Iterable[Any]) -> str:
+    """Return why results are not sure, beyond the limits of the theory; "" where they are.
+
+    Parameters
+    ----------
+    groups
+        Datasets with the attribute ``validity_reasons``, see `tribolab.validity`.
+    """
+    return together([data.attrs for data in groups])["validity_reasons"]
 
 
 def span(values: Iterable[float | None], unit: str = "") -> str:

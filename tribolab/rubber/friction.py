@@ -9,8 +9,15 @@ from scipy.special import erf
 
 from tribolab.errors import AnalysisError
 from tribolab.quantities import labelled, stamp
-from tribolab.rubber.modulus import Modulus
-from tribolab.surface.moments import bin_integrals, cumulative, refined, spectrum_arrays
+from tribolab.rubber.modulus import Modulus, TabulatedModulus
+from tribolab.surface.moments import (
+    bin_integrals,
+    cumulative,
+    refined,
+    rms_slope,
+    spectrum_arrays,
+)
+from tribolab.validity import LIMITS, examine, together
 
 _PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
 _ANGLES = 24  # Gauss-Legendre points on a quarter of a turn
@@ -87,6 +94,36 @@ def viscoelastic_friction(
         raise AnalysisError(
             f"pressure: it must be above zero and finite; the lowest is {over.values.min():g} Pa"
         )
+    friction, area = _solved(speed, over, psd, modulus, poisson_ratio, complete_contact)
+    valid = examine("viscoelastic_friction", slope=rms_slope(psd))
+    if isinstance(modulus, TabulatedModulus):
+        other = _solved(speed, over, psd, modulus.continued, poisson_ratio, complete_contact)
+        valid = together([valid, _outside((friction, area), other, speed, modulus)])
+    dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
+    return stamp(
+        xr.Dataset(
+            {
+                "friction_coefficient": (dims, friction.reshape(shape)),
+                "contact_area_ratio": (dims, area.reshape(shape)),
+            },
+            coords={**over.coords, **speed.coords},
+        ),
+        poisson_ratio=poisson_ratio,
+        complete_contact=int(complete_contact),
+        modulus=repr(modulus),
+        **valid,
+    )
+
+
+def _solved(
+    speed: xr.DataArray,
+    over: xr.DataArray,
+    psd: xr.Dataset,
+    modulus: Modulus,
+    poisson_ratio: float,
+    complete_contact: bool,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
     q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
     stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
     # pressures first, then speeds and wavenumbers
@@ -96,18 +133,32 @@ def viscoelastic_friction(
         area = np.ones_like(g) if complete_contact else erf(1 / (2 * np.sqrt(g)))
     integrand = spectrum * area * (1 + area**2) / 2 * lost
     friction = relative[..., 0] / 2 * bin_integrals(q, integrand, 3).sum(axis=-1)
-    dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
-    return stamp(
-        xr.Dataset(
-            {
-                "friction_coefficient": (dims, friction.reshape(shape)),
-                "contact_area_ratio": (dims, area[..., -1].reshape(shape)),
-            },
-            coords={**over.coords, **speed.coords},
-        ),
-        poisson_ratio=poisson_ratio,
-        complete_contact=int(complete_contact),
-        modulus=repr(modulus),
+    return friction, area[..., -1]
+
+
+def _outside(
+    found: tuple[np.ndarray, ...],
+    other: tuple[np.ndarray, ...],
+    speed: xr.DataArray,
+    modulus: TabulatedModulus,
+) -> dict[str, str]:
+    """Judge how much rests on frequencies outside the table, by two ways to go on there.
+
+    An error only if no speed is inside the second limit: a curve may have ends that are not sure.
+    """
+    share = np.zeros(np.atleast_1d(speed.values).size)
+    for one, two in zip(found, other, strict=True):
+        largest = np.maximum(np.abs(one), np.abs(two))
+        apart = np.divide(np.abs(one - two), largest, out=np.zeros_like(one), where=largest > 0)
+        share = np.maximum(share, apart.reshape(-1, share.size).max(axis=0))
+    limit, speeds = LIMITS["frequency"], np.atleast_1d(speed.values)
+    ends = modulus.angular_frequency[[0, -1]]
+    table = f"the table holds {ends[0]:.3g} to {ends[1]:.3g} rad/s"
+    examine("viscoelastic_friction", f"at every speed, {table}", frequency=share.min())
+    sure = speeds[share <= limit.suspect]
+    known = f"sure from {sure.min():.3g} to {sure.max():.3g} m/s" if sure.size else "at no speed"
+    return examine(
+        "viscoelastic_friction", f"({known}; {table})", frequency=min(share.max(), limit.refuse)
     )
 
 

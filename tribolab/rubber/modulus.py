@@ -131,7 +131,44 @@ class TabulatedModulus:
         loss = loss * np.minimum(size / ends[0], 1) * ends[1] / np.maximum(size, ends[1])
         return storage + 1j * np.sign(omega) * loss
 
+    @property
+    def continued(self) -> Modulus:
+        """The same table with its power laws of the last decades going on outside.
 
+        What differs between the two is what the table does not tell.
+        """
+        return _Continued(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Continued:
+    """A table whose storage and loss go on as over its first and last decade, up to a glass."""
+
+    table: TabulatedModulus
+
+    def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
+        """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
+        size, table = np.abs(np.asarray(angular_frequency, dtype=float)), self.table
+        nodes, found = np.log(table.angular_frequency), []
+        with np.errstate(divide="ignore"):
+            at = np.log(size)
+        for values in (table.storage, np.maximum(table.loss, 1e-6 * table.storage)):
+            logs = np.log(values)
+            inside = np.interp(at, nodes, logs)
+            for end, near in (
+                (0, nodes <= nodes[0] + _DECADE),
+                (-1, nodes >= nodes[-1] - _DECADE),
+            ):
+                near[[end, 1 if end == 0 else -2]] = True
+                slope = float(np.clip(np.polyfit(nodes[near], logs[near], 1)[0], 0.0, 1.0))
+                beyond = at < nodes[0] if end == 0 else at > nodes[-1]
+                inside = np.where(beyond, logs[end] + slope * (at - nodes[end]), inside)
+            found.append(np.minimum(np.exp(inside), max(_GLASS, float(values.max()))))
+        return found[0] + 1j * np.sign(angular_frequency) * found[1]
+
+
+_DECADE = np.log(10.0)
+_GLASS = 3e9  # Pa, no polymer is stiffer
 _COLUMNS = {
     "frequency": re.compile(r"f|freq(uency)?|omega|ω|w", re.IGNORECASE),
     "storage": re.compile(r"E'|E_?stor(age)?|storage[ _]modulus", re.IGNORECASE),

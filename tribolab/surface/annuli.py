@@ -8,11 +8,13 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.surface.abel import Annuli, PowerLaws
 from tribolab.surface.moments import bin_integrals
+from tribolab.surface.self_affine import SelfAffine, psd_2d
+from tribolab.surface.smooth_law import FittedLaw, smooth
 
 CONFIDENCE = 0.95
 _LARGEST_ERROR = 0.25  # relative standard error that an annulus may have
 _TAIL_DECADES = 0.5
-_PLATEAU = 3.0  # an annulus wider than this was joined, and is taken as flat
+_PLATEAU = 3.0  # an annulus wider than this was joined
 
 
 def confidence_band(
@@ -29,19 +31,21 @@ def confidence_band(
     )
 
 
-def bins_of(profile: xr.Dataset) -> tuple[PowerLaws, np.ndarray]:
+def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaws, np.ndarray]:
     """Bins of a profile's spectrum as power laws that hold each bin's mean square height.
 
     Parameters
     ----------
     profile
         Trusted part of what `psd_1d` gave.
+    fitted
+        Plateau and power law that are nearest to it, from `fitted_law`.
 
     Returns
     -------
-    tuple of PowerLaws and numpy.ndarray
-        The bins, whose tail is fitted over the last half decade, and the relative standard error
-        of each.
+    tuple of PowerLaws, PowerLaws and numpy.ndarray
+        The bins, whose tail is fitted over the last half decade; the same of the smooth spectrum
+        behind them, see `smooth`; and the relative standard error of each bin.
     """
     q, c = profile.wavenumber.values, profile.psd_1d.values
     power = profile.mean_square_height.values
@@ -55,16 +59,23 @@ def bins_of(profile: xr.Dataset) -> tuple[PowerLaws, np.ndarray]:
     weights[-1] = tail
     edges = np.append(profile.wavenumber_low.values, profile.wavenumber_high.values[-1])
     offset = float(tail @ np.log(c / power))
-    return PowerLaws(edges, power, weights @ np.log(c), weights, tail, offset), relative
+    typical = smooth(q, c, relative, fitted.law)
+    found, behind = (
+        PowerLaws(edges, p, weights @ np.log(level), weights, tail, offset)
+        for p, level in ((power, c), (power * typical / c, typical))
+    )
+    return found, behind, relative
 
 
-def join(found: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
+def join(found: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
     """Join neighbouring annuli until each is known well enough.
 
     Parameters
     ----------
     found
         Annuli with their sensitivities to the bins of C_1D.
+    behind
+        Those of the smooth spectrum behind C_1D, over the same edges.
     relative
         Relative standard error of C_1D in its bins.
 
@@ -77,14 +88,17 @@ def join(found: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
     -----
     From the lowest one on, an annulus is joined with the fewest neighbours above that bring its
     standard error below 25 %; if none do, as in a short single scan, to within a fifth of the
-    least that joining can reach.
+    least that joining can reach. How well an annulus is known is judged by the smooth spectrum:
+    judged by its own power, joining would stop where that happens to be high, which put 20 % on
+    the lowest annulus and made its error too small.
     """
     ends, first, number = [0], 0, found.power.size
     while first < number:
-        power = np.cumsum(found.power[first:])
-        rows = np.cumsum(found.sensitivity[first:], axis=0) * relative
-        with np.errstate(divide="ignore"):
-            error = np.where(power > 0, np.sqrt((rows**2).sum(1)) / np.abs(power), np.inf)
+        typical, power = (np.cumsum(one.power[first:]) for one in (behind, found))
+        rows = np.cumsum(behind.sensitivity[first:], axis=0) * relative
+        known = (typical > 0) & (power > 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            error = np.where(known, np.sqrt((rows**2).sum(1)) / np.abs(typical), np.inf)
         if not np.isfinite(error).any():
             break
         first += 1 + int(np.argmax(error <= max(_LARGEST_ERROR, 1.2 * error.min())))
@@ -95,30 +109,38 @@ def join(found: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
             "spectrum is negative; average more scans, or check that the surface is isotropic"
         )
     ends[-1] = number  # what is left at the end has no power of its own
-    starts = ends[:-1]
-    joined = Annuli(
-        found.edges[ends],
-        np.add.reduceat(found.power, starts),
-        np.add.reduceat(found.sensitivity, starts, axis=0),
-        found.below,
-        found.above,
-    )
-    error = np.sqrt(((joined.sensitivity * relative) ** 2).sum(1)) / np.abs(joined.power)
+    joined, typical = (_joined(one, ends) for one in (found, behind))
+    error = np.sqrt(((typical.sensitivity * relative) ** 2).sum(1)) / np.abs(typical.power)
     return joined, error
 
 
-def _node_values(annuli: Annuli) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _joined(annuli: Annuli, ends: list[int]) -> Annuli:
+    """Annuli between every second of whose edges some were left out."""
+    starts = ends[:-1]
+    return Annuli(
+        annuli.edges[ends],
+        np.add.reduceat(annuli.power, starts),
+        np.add.reduceat(annuli.sensitivity, starts, axis=0),
+        annuli.below,
+        annuli.above,
+    )
+
+
+def _node_values(
+    annuli: Annuli, error: np.ndarray, fitted: FittedLaw
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Carry the mean over each annulus to its rms radius, along the local power law.
 
-    The lowest annulus, where it was joined from several, is a plateau with a node at either end.
+    The lowest annulus, where it was joined from several, has a node at either end and one at the
+    roll-off between them, and is shaped as the law; how well that is known counts beside.
 
     Returns
     -------
     tuple of numpy.ndarray
-        Wavenumbers [1/m], C [m4] there, and the annulus that each belongs to.
+        Wavenumbers [1/m], C [m4] there, and its relative standard error.
     """
     low, high, mean = annuli.edges[:-1], annuli.edges[1:], annuli.mean
-    node, owner = np.sqrt(0.5 * (low**2 + high**2)), np.arange(mean.size)
+    node = np.sqrt(0.5 * (low**2 + high**2))
     if mean.size > 1:
         slope = np.clip(np.gradient(np.log(mean), np.log(node)), -8.0, 1.0)
         left, right = (2 + slope) * np.log(low / node), (2 + slope) * np.log(high / node)
@@ -129,9 +151,17 @@ def _node_values(annuli: Annuli) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     else:
         value = mean
     if high[0] > _PLATEAU * low[0]:
-        node, owner = np.append(low[0], node), np.append(0, owner)
-        node[1], value = high[0], np.concatenate([mean[:1], mean[:1], value[1:]])
-    return node, value, owner
+        first = np.unique(np.clip([low[0], fitted.law.rolloff, high[0]], low[0], high[0]))
+        grid = np.geomspace(low[0], high[0], 200)
+
+        def shape(law: SelfAffine) -> np.ndarray:
+            area = np.trapezoid(psd_2d(law, grid) * grid**2, np.log(grid))
+            return np.log(psd_2d(law, first) * (high[0] ** 2 - low[0] ** 2) / (2 * area))
+
+        node = np.concatenate([first, node[1:]])
+        value = np.concatenate([mean[0] * np.exp(shape(fitted.law)), value[1:]])
+        error = np.concatenate([np.hypot(error[0], fitted.spread(shape)), error[1:]])
+    return node, value, error
 
 
 def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
@@ -145,31 +175,35 @@ def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
     return float(2 * np.pi * bin_integrals(grid, value, 1).sum())
 
 
-def _share(
-    edges: np.ndarray, q: np.ndarray, c: np.ndarray, lowest: np.ndarray, whole: float
-) -> float:
-    """Factor on the lowest annulus with which the power laws hold the whole mean square height."""
+def _balanced(
+    edges: np.ndarray, q: np.ndarray, c: np.ndarray, error: np.ndarray, whole: float
+) -> np.ndarray:
+    """Change C, each node as far as its error allows, until the power laws hold `whole` [m2].
+
+    With factors ``exp(s error^2)``: the smallest change in units of the standard errors.
+    """
     from scipy.optimize import brentq
 
-    def excess(factor: float) -> float:
-        return _held(edges, q, np.where(lowest, c * factor, c)) / whole - 1
+    def excess(s: float) -> float:
+        return _held(edges, q, c * np.exp(s * error**2)) / whole - 1
 
-    if excess(0.2) > 0 or excess(5.0) < 0:
-        return 1.0
-    return float(brentq(excess, 0.2, 5.0, xtol=1e-12, rtol=1e-12))
+    most = 1.6 / float(error.max() ** 2)  # at most a factor of five
+    if excess(-most) > 0 or excess(most) < 0:
+        return c
+    return c * np.exp(brentq(excess, -most, most, xtol=1e-12 * most, rtol=1e-12) * error**2)
 
 
-def spectrum(annuli: Annuli, error: np.ndarray) -> xr.Dataset:
+def spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
     """Put the annuli on nodes, with their band.
 
     What the power laws between the nodes hold more or less than the annuli, at most some per
-    cent and mostly beside the roll-off, the lowest annulus takes up: it is the least certain.
+    cent and mostly beside the roll-off, is taken up by all, the least certain most.
     """
-    q, c, owner = _node_values(annuli)
+    q, c, error = _node_values(annuli, error, fitted)
     whole = float(annuli.power.sum())
     if q.size > 2:
-        c = np.where(owner == 0, c * _share(annuli.edges, q, c, owner == 0, whole), c)
-    low, high = confidence_band(c, 1 / error[owner] ** 2)
+        c = _balanced(annuli.edges, q, c, error, whole)
+    low, high = confidence_band(c, 1 / error**2)
     result = xr.Dataset(
         {
             "psd_2d": ("wavenumber", c),

@@ -16,6 +16,7 @@ from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.fourier import binned_power, fast_length
 from tribolab.surface.level import level_rows, refuse_level
 from tribolab.surface.reliability import trusted_band
+from tribolab.surface.smooth_law import fitted_law
 
 _FEWEST_POINTS = 64
 
@@ -199,10 +200,15 @@ def psd_2d(
             f"{at['trusted_high_limited_by']} those below {at['trusted_high_1_m']:.3g} 1/m: take "
             "longer or finer scans"
         )
-    bins, relative = bins_of(profile)
-    annuli, error = join(abel.invert(bins), relative)
+    fitted = fitted_law(
+        profile.wavenumber.values,
+        profile.psd_1d.values,
+        1 / np.sqrt(profile.independent_values.values),
+    )
+    bins, behind, relative = bins_of(profile, fitted)
+    annuli, error = join(abel.invert(bins), abel.invert(behind), relative)
     inherited = _inherited(scans, "2D power spectrum by the inverse Abel transform")
-    found = spectrum(annuli, error)
+    found = spectrum(annuli, error, fitted)
     return stamp(
         found.assign_attrs({**inherited, **found.attrs, "convention": "<h^2> = 2 pi int q C dq"})
     )

@@ -87,12 +87,13 @@ def trusted_band(
     """
     q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
     left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
-    highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q, c)}
+    first = min(q.size - 1, 1 if lowest > 1 else 0)  # what form removal took is not noise
+    highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q[first:], c[first:])}
     radius = scans.attrs.get("tip_radius_m") if tip_radius is None else tip_radius
     if radius is not None:
         radius = to_si(radius, "m", "tip_radius")
         highs["stylus tip"] = tip_cutoff(q, c, right - left, radius)
-    lows = {"form removal": float(left[min(q.size - 1, 1 if lowest > 1 else 0)])}
+    lows = {"form removal": float(left[first])}
     if "lambda_s_m" in scans.attrs:
         kept = -0.5 * np.log(1 - _FILTER_LOSS)
         highs["lambda_s"] = float(np.sqrt(kept / _GAUSS) / scans.attrs["lambda_s_m"])

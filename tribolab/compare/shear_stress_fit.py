@@ -1,0 +1,170 @@
+"""What a fit of the shear stress found, and how well it is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from tribolab.errors import AnalysisError
+
+_FEW = 30  # degrees of freedom under which Student's t is worth a word
+
+
+@dataclass(frozen=True, eq=False)
+class ShearStressFit:
+    """A fitted shear stress, how well it fits, and the curve that goes with it.
+
+    Parameters
+    ----------
+    shear_stress
+        sigma_f [Pa], effective: for the contact area without adhesion.
+    shear_stress_error
+        Its standard error [Pa] from those of the measured points.
+    shear_stress_error_inflated
+        The same with what the residuals tell of the points' errors: whether they are too small by
+        one factor, and whether those of neighbouring speeds go together (see `residual_error`).
+    scatter_half_interval
+        Half the 95 % interval [Pa] that belongs to it.
+    residual_correlation
+        Correlation [1] of the errors of neighbouring speeds, as the residuals tell it.
+    chi_square, degrees_of_freedom, chi_square_p_value
+        Of the residuals.
+    birge_ratio
+        sqrt(chi_square/degrees_of_freedom).
+    runs_p_value
+        Probability of so few changes of the residuals' sign by chance; small means that the
+        measured curve has another shape.
+    valid_speed_range
+        Ends [m/s] of the widest range of speeds that one sigma_f describes (chi-square's
+        probability above 0.01 when fitted alone); NaN if none of four speeds or more does.
+    common_error
+        The part [Pa] of the standard error that all points have in common, such as the level of
+        the runs; not in `shear_stress_error`.
+    common_freedom
+        Degrees of freedom from which that part is known.
+    area_enhancement, area_enhancement_error
+        Real contact area with adhesion over that without [1], as given.
+    curve
+        The computed curve at the measured speeds, with ``friction_coefficient_residual`` [1]
+        (measured less computed; NaN where nothing was measured) and ``used``.
+    error_from
+        Where the points' errors come from: "sem", "std" or "scatter".
+    spectrum_error
+        Relative changes [1] of sigma_f, down (not above 0) and up, that an uncertain spectrum
+        may make, from `shear_stress_shift`; None if it is not known.
+    spectrum_scanned
+        Whether the spectrum was measured, so that its error counts.
+    parameters, covariance
+        Names and values of all free parameters in SI, sigma_f first, and their covariance.
+    """
+
+    shear_stress: float
+    shear_stress_error: float
+    shear_stress_error_inflated: float
+    scatter_half_interval: float
+    residual_correlation: float
+    chi_square: float
+    degrees_of_freedom: int
+    chi_square_p_value: float
+    birge_ratio: float
+    runs_p_value: float
+    valid_speed_range: tuple[float, float]
+    common_error: float
+    common_freedom: float
+    area_enhancement: float
+    area_enhancement_error: float
+    error_from: str
+    spectrum_error: tuple[float, float] | None
+    spectrum_scanned: bool
+    curve: xr.Dataset = field(repr=False)
+    parameters: dict[str, float] = field(repr=False)
+    covariance: np.ndarray = field(repr=False)
+
+    @property
+    def total_error(self) -> float:
+        """Standard error [Pa] but for the spectrum's: the points' scatter and what they share."""
+        return float(np.hypot(self.shear_stress_error_inflated, self.common_error))
+
+    @property
+    def statistical_half_interval(self) -> float:
+        """Half the 95 % interval of sigma_f [Pa] for the spectrum as it is given.
+
+        Two parts in quadrature: that of the points, and the common error with the Student's t of
+        its own degrees of freedom; known from two runs alone, which may agree by chance, it counts
+        with the t of one degree of freedom.
+        """
+        t = stats.t.ppf(0.975, max(self.common_freedom, 1.0))
+        return float(np.hypot(self.scatter_half_interval, t * self.common_error))
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Ends of the 95 % interval of sigma_f [Pa], with the spectrum's error if it was measured.
+
+        Raises
+        ------
+        AnalysisError
+            If the spectrum was measured and its error is not known.
+        """
+        if self.spectrum_scanned and self.spectrum_error is None:
+            raise AnalysisError(
+                "interval: the spectrum was measured, and its error is not in this fit; give "
+                "fit_shear_stress the argument spectrum_error=shear_stress_shift("
+                "model_uncertainty(...)), or take statistical_half_interval and say so"
+            )
+        parts = np.abs(self.spectrum_error or (0.0, 0.0)) * abs(self.shear_stress)
+        low, high = np.hypot(self.statistical_half_interval, parts)
+        return float(self.shear_stress - low), float(self.shear_stress + high)
+
+    @property
+    def half_interval(self) -> float:
+        """Half the 95 % interval of sigma_f [Pa], to its farther end; see `interval`."""
+        return float(np.max(np.abs(np.array(self.interval) - self.shear_stress)))
+
+    @property
+    def interval_says(self) -> str:
+        """What the 95 % interval holds, and which quantile was taken, in words."""
+        return interval_words(
+            self.common_error > 0,
+            self.common_freedom,
+            self.error_from,
+            self.degrees_of_freedom,
+            self.residual_correlation,
+        )
+
+    @property
+    def corrected_shear_stress(self) -> float:
+        """Shear stress [Pa] in the area that adhesion makes: sigma_f / area_enhancement."""
+        return self.shear_stress / self.area_enhancement
+
+    @property
+    def corrected_shear_stress_error(self) -> float:
+        """Standard error [Pa] of `corrected_shear_stress`, from `total_error` and the area's."""
+        return abs(self.corrected_shear_stress) * np.hypot(
+            self.total_error / self.shear_stress,
+            self.area_enhancement_error / self.area_enhancement,
+        )
+
+
+def interval_words(
+    shared: bool, common_freedom: float, error_from: str, freedom: int, correlation: float
+) -> str:
+    """Say which quantiles a 95 % interval of sigma_f was made with, and of what.
+
+    Examples
+    --------
+    >>> interval_words(True, 3, "sem", 11, 0.62)
+    "residuals of neighbouring speeds correlate by 0.62; repeatability with Student's t of 3 degrees of freedom"
+    """  # noqa: E501 (the sentence is one line)
+    parts = [f"residuals of neighbouring speeds correlate by {correlation:.2g}"]
+    if error_from == "scatter":
+        parts.append(f"scatter with Student's t of {freedom} degrees of freedom")
+    if shared and common_freedom < _FEW:
+        parts.append(
+            f"repeatability with Student's t of {max(common_freedom, 1):.3g} degrees of freedom"
+        )
+    elif not shared:
+        parts.append("the repeatability of a run's level is not known and not in it")
+    return "; ".join(parts)

@@ -1,0 +1,72 @@
+"""How far a contact lies inside the limits of the theory, see `tribolab.validity`."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
+from tribolab.contact.separation import Separation
+from tribolab.surface.moments import rms_slope
+from tribolab.validity import LIMITS, examine, together
+
+
+def line_limits(
+    who: str,
+    contact: LineContact,
+    load: ArrayLike,
+    psd: xr.Dataset | None = None,
+    separation: Separation | None = None,
+    speed: ArrayLike = (),
+    film: ArrayLike = (),
+) -> dict[str, str]:
+    """Return the attributes ``validity`` and ``validity_reasons`` of a line contact.
+
+    Parameters
+    ----------
+    who
+        The function that asks, for its error.
+    contact, load, psd
+        The contact, its loads F_N/L [N/m], and the spectrum if it is rough.
+    separation
+        Table of p(u), which the pressure should not leave.
+    speed, film
+        Sliding speeds [m/s] and film thicknesses [m] at them (speed, ...).
+
+    Raises
+    ------
+    AnalysisError
+        If the contact is beyond the second limit.
+
+    Examples
+    --------
+    >>> soft = LineContact("7 mm", "10 cm", "0.1 MPa", 0.5)
+    >>> line_limits("curve", soft, 310.0)["validity"]
+    'suspect'
+    """
+    loads = np.atleast_1d(np.asarray(load, dtype=float))
+    loads = loads[loads > 0]
+    if not loads.size:
+        return together([])
+    largest = float(loads.max())
+    found = [
+        examine(
+            who,
+            f"at {largest:.3g} N/m",
+            half_width=hertz_half_width(largest, contact) / contact.radius,
+            pressure=np.nan
+            if separation is None
+            else hertz_max_pressure(largest, contact) / separation.table_pressure[-1],
+        )
+    ]
+    if psd is not None:
+        found.append(examine(who, slope=rms_slope(psd)))
+    if np.size(film):
+        speeds, films = np.abs(np.asarray(speed, dtype=float)), np.asarray(film, dtype=float)
+        thick = films.reshape(speeds.size, -1).max(axis=1) / contact.radius
+        beyond = speeds[thick > LIMITS["film"].suspect]
+        where = f"(above the limit from {beyond.min():.3g} m/s on)" if beyond.size else ""
+        found.append(examine(who, where, film=thick))
+    return together(found)

@@ -1,0 +1,123 @@
+"""The smooth spectrum behind a measured one, by which its scatter is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.surface.self_affine import SelfAffine, psd_1d
+
+_STIFFNESS = 1e3  # of the smoother: it averages over some ten bins
+_STARTS = (0.25, 0.5, 0.75)  # of the logarithmic axis, where the roll-off is looked for
+
+
+class FittedLaw(NamedTuple):
+    """A plateau and power law, with the covariance of ln(roll-off) and the Hurst exponent."""
+
+    law: SelfAffine
+    covariance: np.ndarray
+
+    def spread(self, quantity: Callable[[SelfAffine], np.ndarray]) -> np.ndarray:
+        """Return the standard error of a quantity that depends on the law's shape."""
+        steps = []
+        for name, scale in (("rolloff", self.law.rolloff), ("hurst", 1.0)):
+            at = getattr(self.law, name)
+            ends = [replace(self.law, **{name: at + h * scale}) for h in (1e-3, -1e-3)]
+            steps.append((quantity(ends[0]) - quantity(ends[1])) / 2e-3)
+        by = np.stack(steps)
+        return np.sqrt(np.maximum(np.einsum("i...,ij,j...->...", by, self.covariance, by), 0.0))
+
+
+def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray) -> FittedLaw:
+    """Return the plateau and power law whose profiles have the nearest spectrum.
+
+    Parameters
+    ----------
+    wavenumber, measured
+        Bins of C_1D [1/m], [m3].
+    relative
+        Relative standard error of each.
+
+    Notes
+    -----
+    Least squares of the logarithms. That of a mean of m values lies by about 1/(2m) too low on
+    the average, which is undone.
+
+    Examples
+    --------
+    >>> q = np.geomspace(1e3, 1e6, 31)
+    >>> exact = psd_1d(SelfAffine(0.8, 3e4, 1e-21, 1.0, 1e12), q)
+    >>> law, _ = fitted_law(q, exact, np.full(31, 1e-3))
+    >>> round(law.hurst, 3), float(f"{law.rolloff:.3g}")
+    (0.8, 30000.0)
+    """
+    from scipy.optimize import least_squares
+
+    level, weights = _level(measured, relative), relative**-2.0
+    ends = np.log(wavenumber[[0, -1]])
+
+    def law(rolloff: float, hurst: float, plateau: float = 1.0) -> SelfAffine:
+        edges = 1e-3 * float(wavenumber[0]), 1e9 * float(wavenumber[-1])
+        return SelfAffine(float(hurst), float(np.exp(rolloff)), plateau, *edges)
+
+    def off(given: np.ndarray) -> np.ndarray:
+        return level - np.log(psd_1d(law(*given), wavenumber))
+
+    def residual(given: np.ndarray) -> np.ndarray:
+        miss = off(given)
+        return (miss - np.average(miss, weights=weights)) / relative
+
+    bounds = ([ends[0] - 2.0, 0.02], [ends[1], 4.0])
+    tried = [
+        least_squares(residual, (start, 0.8), bounds=bounds, x_scale=(1.0, 0.3))
+        for start in ends[0] + np.array(_STARTS) * np.diff(ends)
+    ]
+    best = min(tried, key=lambda one: one.cost)
+    plateau = float(np.exp(np.average(off(best.x), weights=weights)))
+    growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))  # where the surface is another
+    return FittedLaw(law(*best.x, plateau), growth * np.linalg.pinv(best.jac.T @ best.jac))
+
+
+def smooth(
+    wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray, law: SelfAffine
+) -> np.ndarray:
+    """Return the smooth spectrum behind a C_1D that scatters.
+
+    Parameters
+    ----------
+    wavenumber, measured, relative
+        As for `fitted_law`.
+    law
+        What that returned.
+
+    Notes
+    -----
+    The law's spectrum times what the surface has beside it, by Whittaker's smoother [1]_, stiff
+    enough to average over some ten bins. C_1D of an isotropic surface never rises with k, so
+    neither does this.
+
+    References
+    ----------
+    .. [1] P. H. C. Eilers, A perfect smoother, Anal. Chem. 75 (2003) 3631,
+       doi:10.1021/ac034173t.
+
+    Examples
+    --------
+    >>> q, law = np.geomspace(1e3, 1e6, 31), SelfAffine(0.8, 3e4, 1e-21, 1.0, 1e12)
+    >>> twice = smooth(q, 2 * psd_1d(law, q), np.full(31, 0.001), law)
+    >>> bool(np.allclose(twice, 2 * psd_1d(law, q), rtol=1e-3))
+    True
+    """
+    model = np.log(psd_1d(law, wavenumber))
+    if model.size > 3:
+        bend, weights = np.diff(np.eye(model.size), 2, axis=0), relative**-2.0
+        stiff = np.diag(weights) + _STIFFNESS * np.median(weights) * bend.T @ bend
+        model = model + np.linalg.solve(stiff, weights * (_level(measured, relative) - model))
+    return np.exp(np.minimum.accumulate(model))
+
+
+def _level(measured: np.ndarray, relative: np.ndarray) -> np.ndarray:
+    return np.log(measured) + 0.5 * relative**2

@@ -1,0 +1,159 @@
+"""Where the theory ends: the limits of its approximations, in one place.
+
+Every model result carries what `examine` says as the attributes ``validity`` ("pass" or "suspect")
+and ``validity_reasons``; campaigns make findings of it, and the page a word. Beyond the second,
+wider limit there is no result but an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import AnalysisError
+
+PASS, SUSPECT = "pass", "suspect"
+TINY = float(np.finfo(float).tiny)  # what is divided by a number that may be 0
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One approximation and how far it reaches.
+
+    Parameters
+    ----------
+    what
+        The number that is compared, in words.
+    suspect
+        Above this a result is not sure.
+    refuse
+        Above this there is none.
+    because
+        What the theory takes for granted, and fails.
+    cure
+        What to do.
+    """
+
+    what: str
+    suspect: float
+    refuse: float
+    because: str
+    cure: str
+
+
+LIMITS = {
+    "film": Limit(
+        "film thickness over the radius R",
+        1e-2,
+        0.5,
+        "the gap is taken as a parabola and the film as thin",
+        "take lower speeds or a thinner liquid",
+    ),
+    "half_width": Limit(
+        "half-width of the contact over the radius R",
+        0.3,
+        1.0,
+        "the bodies are taken as a parabola on a half-space",
+        "take a smaller load, a larger radius or a stiffer body, or compute with finite elements",
+    ),
+    "slope": Limit(
+        "rms slope of the surface",
+        1.0,
+        5.0,
+        "slopes are taken as small in elasticity and flow",
+        "end the spectrum at a smaller wavenumber (q_high), or look whether the scans hold noise",
+    ),
+    "binding": Limit(
+        "gamma_eff at magnification 1 over the work of adhesion",
+        1.0,
+        3.0,
+        "roughness cannot bind more than smooth surfaces do but by its larger area",
+        "look at work of adhesion, modulus and spectrum: so soft a body is in complete contact, "
+        "and capillary or large-strain theories apply",
+    ),
+    "frequency": Limit(
+        "share of rubber friction or stiffness that rests on frequencies outside the modulus table",
+        0.05,
+        0.98,
+        "outside its table the modulus is a guess",
+        "give a master curve that reaches over the frequencies q v (shift sweeps of several "
+        "temperatures), or other speeds",
+    ),
+    "pressure": Limit(
+        "contact pressure over the largest in the table of p(u)",
+        1.0,
+        3.0,
+        "beyond it the roughness is pressed flat and p(u) is extrapolated",
+        "take a smaller load, or smooth surfaces (psd=None)",
+    ),
+}
+
+
+def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
+    """Compare numbers with the limits of the theory.
+
+    Parameters
+    ----------
+    who
+        The function that asks, for the error.
+    where
+        At which load, speed or surface.
+    **values
+        The numbers [1] by the limits' names; of arrays the largest counts, and what is not a
+        number does not.
+
+    Returns
+    -------
+    dict
+        Attributes ``validity`` ("pass" or "suspect") and ``validity_reasons``, "" where it passes.
+
+    Raises
+    ------
+    AnalysisError
+        If a number is beyond the second limit.
+
+    Examples
+    --------
+    >>> examine("curve", half_width=0.1)["validity"]
+    'pass'
+    >>> examine("curve", "at 9 N/m", half_width=[0.1, 0.5])["validity_reasons"][:66]
+    'half-width of the contact over the radius R is 0.5 at 9 N/m, above'
+    """
+    reasons = []
+    for name, value in values.items():
+        limit, numbers = LIMITS[name], np.asarray(value, dtype=float)
+        numbers = numbers[~np.isnan(numbers)]
+        if not numbers.size or not (largest := float(numbers.max())) > limit.suspect:
+            continue
+        found = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
+        if largest > limit.refuse:
+            raise AnalysisError(
+                f"{who}: {found}, far above {limit.suspect:g}: {limit.because}; {limit.cure}"
+            )
+        reasons.append(f"{found}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
+    return {
+        "validity": SUSPECT if reasons else PASS,
+        "validity_reasons": " | ".join(reasons),
+    }
+
+
+def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
+    """Join what several results say of their validity; each reason once.
+
+    Examples
+    --------
+    >>> one = {"validity": "suspect", "validity_reasons": "too steep"}
+    >>> together([one, one, {"validity": "pass", "validity_reasons": ""}, {}])
+    {'validity': 'suspect', 'validity_reasons': 'too steep'}
+    """
+    reasons = [reason for one in attrs for reason in reasons_of(one)]
+    unique = list(dict.fromkeys(reasons))
+    return {"validity": SUSPECT if unique else PASS, "validity_reasons": " | ".join(unique)}
+
+
+def reasons_of(attrs: Mapping[Any, Any]) -> list[str]:
+    """Return why a result is not sure, from its attributes."""
+    return [reason for reason in str(attrs.get("validity_reasons", "")).split(" | ") if reason]
