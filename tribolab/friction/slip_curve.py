@@ -10,8 +10,8 @@ import xarray as xr
 from scipy import stats
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.slip_table import NOT_EVALUATED, ringing
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.slip_table import ringing
+from tribolab.friction.waveform import CLASSES, NOT_EVALUATED
 from tribolab.quantities import stamp
 
 STEADY = CLASSES[0]

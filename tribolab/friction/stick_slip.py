@@ -12,11 +12,12 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import belong, trimmed_slices
 from tribolab.friction.examine import Examined, Limits, examine
 from tribolab.friction.offsets import unloaded_rest
+from tribolab.friction.regularity import KINDS
 from tribolab.friction.slip_table import (
-    DOUBT,
     class_of,
     class_table,
     event_list,
+    line_table,
     oscillates,
     ranked,
     ringing,
@@ -24,7 +25,7 @@ from tribolab.friction.slip_table import (
     table,
 )
 from tribolab.friction.stretches import name_of
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.quantities import stamp
 
 _SOME = 100_000  # samples of a segment that tell its sign
@@ -41,10 +42,18 @@ _IN_SIGNAL_UNIT = (
     "mains_amplitude",
     "loading_slope",
     "event_drop",
+    "line_swing",
     "psd",
     "psd_background",
     "psd_significant",
     "distance_psd",
+)
+
+
+REVERSED = (
+    "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
+    "turned: look at the sensor's sense, and set `sign = -1` for the friction force in the dialect "
+    "if it is so"
 )
 
 
@@ -158,6 +167,7 @@ def stick_slip(
         segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
     )
     result = result.merge(spectra(found, speed)).merge(event_list(found))
+    result = result.merge(line_table(found, speed))
     if force:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
         result = result.rename(names)
@@ -242,19 +252,39 @@ def _remark(found: Examined | str, cut: bool, speed: float) -> str:
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
     if not np.isfinite(speed):
         words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
-    if oscillates(found) and found.waveform.events < 3:
-        words.append("fewer than three whole cycles")
-    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
-        words.append("noise and spikes hold more of the fluctuation than the oscillation")
-    likely, second = ranked(found)[:2]
-    if likely[0] != class_of(found):
-        text = f"not decided: {likely[0]} is more probable, but smooth sliding not improbable"
-        words.append(text)
-    elif likely[0] == CLASSES[0] and second[1] > DOUBT:
+    if found.verdict.kind == UNDECIDED:
+        return "; ".join([*words, f"not decided: {found.verdict.doubt}"])
+    words += _form_words(found, speed)
+    second = ranked(found)[1]
+    if class_of(found) == CLASSES[0] and second[1] > DOUBT:
         words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
         if found.oscillation.share < 0.5:
             words.append("noise and spikes hold more of the fluctuation")
     return "; ".join(words)
+
+
+def _form_words(found: Examined, speed: float) -> list[str]:
+    """Say what is special of an oscillation that is claimed."""
+    if not oscillates(found):
+        return []
+    words, seen = [], found.regularity
+    if class_of(found) == CLASSES[3]:
+        words.append(REVERSED)
+    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
+        words.append("noise and spikes hold more of the fluctuation than the oscillation")
+    if seen.kind == KINDS[2]:
+        words.append(f"oscillates {seen.share:.0%} of the time")
+    if seen.kind == KINDS[1] and speed > 0:
+        spectral = 1e6 * speed / found.verdict.frequency
+        apart = 1e6 * speed * float(seen.periods.mean())
+        words.append(
+            f"periods scatter by {found.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
+            f"apart in the mean, the mean frequency of the spectrum is that of {spectral:.3g} µm"
+        )
+    if len(found.lines) > 1:
+        listed = ", ".join(f"{line.frequency:.4g} Hz" for line in found.lines)
+        words.append(f"{len(found.lines)} frequencies, the strongest first: {listed}")
+    return words
 
 
 def _instrument(found: list[Examined | str], speed: np.ndarray) -> list[str]:
