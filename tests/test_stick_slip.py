@@ -16,7 +16,7 @@ CLASS = {
     "none": "smooth sliding",
     "sawtooth": "sawtooth stick-slip",
     "rounded": "sinus-like oscillation",
-    "irregular": "irregular",
+    "irregular": "sawtooth stick-slip",
 }
 
 

@@ -28,7 +28,7 @@ CLASS = {
     "none": "smooth sliding",
     "sawtooth": "sawtooth stick-slip",
     "rounded": "sinus-like oscillation",
-    "irregular": "irregular",
+    "irregular": "sawtooth stick-slip",
 }
 DROP = 0.2
 _SHAPES = {"10 periods": (10, 4000), "25 periods": (25, 4000), "100 periods": (100, 4000)}

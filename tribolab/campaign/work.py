@@ -220,7 +220,7 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     segments = find_segments(signals, **run.segments)
     friction = friction_coefficient(signals, segments, **run.friction)
     slip = stick_slip(signals, segments)
-    found = check_run(signals, segments, friction, **run.quality)
+    found = check_run(signals, segments, friction, slip, **run.quality)
     signals = found.flagged
     signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
     for data in (signals, segments, friction, slip):

@@ -30,6 +30,7 @@ MOST = 1 << 17  # samples that events are sought in: thousands of periods
 DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
 WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
 WANDERS = 6  # periods in a record, at least, that a wander can be told beside
+PER_DEGREE, DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
 CALMER = 0.8  # of the scatter of the periods, that is left without the wander
 STEPS = 1.5  # quantisation steps
 SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
@@ -145,6 +146,18 @@ def _settled(record: Record, surveyed: Survey, noise: float, limits: Limits) -> 
     return view
 
 
+def _without_drift(record: Record, frequency: float) -> Record:
+    """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
+    periods = frequency * record.values.size * record.spacing
+    degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
+    place = np.linspace(-1, 1, record.values.size)
+    if not record.even:
+        place = 2 * (record.time - record.time[0]) / np.ptp(record.time) - 1
+    series = np.polynomial.legendre
+    drift = series.legval(place, series.legfit(place, record.values, degree))
+    return record._replace(values=record.values - drift)
+
+
 def _beside_wander(record: Record, found: Oscillation) -> Record | None:
     """Take the mean over one period off; None where there is hardly a wander.
 
@@ -172,7 +185,9 @@ def _view(
     # no more is averaged than the noise calls for: means round off what is abrupt
     wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
-    part = coarse(Record(record.time[: MOST * size], record.values[: MOST * size], *record[2:]), size)
+    first = slice(MOST * size)
+    part = coarse(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = _without_drift(part, found.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
         limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step

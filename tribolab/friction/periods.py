@@ -98,11 +98,13 @@ def verdict(
         error = frequency * scatter(periods) / np.sqrt(periods.size)
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
-    if slow is not None and (kind == CLASSES[0] or abs(np.log(slow.periods / count)) > _AGREE):
+    unclaimed = kind in (CLASSES[0], UNDECIDED)
+    if slow is not None and (unclaimed or abs(np.log(slow.periods / count)) > _AGREE):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
     odd, significant = at_odds(found, seen), found.false_alarm < CHANCE
-    if kind != CLASSES[0] and not significant and (odd or not seen.periods.size):
-        kind = CLASSES[0]  # neither a line nor drops that repeat
+    repeats = seen.periods.size > 0 and not odd and seen.kind != KINDS[2]
+    if kind != CLASSES[0] and not significant and not repeats:
+        kind = CLASSES[0]  # neither a line nor drops that go on repeating
     if kind == CLASSES[0]:
         return Verdict(kind, np.nan, np.nan, np.nan)
     if kind == UNDECIDED:

@@ -43,9 +43,7 @@ class Waveform(NamedTuple):
     events: int
 
 
-def describe_waveform(
-    values: np.ndarray, lag: int, events: Events, period: np.ndarray
-) -> Waveform:
+def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.ndarray) -> Waveform:
     """Features of the form of a record.
 
     Parameters
@@ -107,19 +105,19 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([3.39, -2.24, 1.10, -2.24])
+INTERCEPT = np.array([3.52, -2.46, 1.40, -2.46])
 COEFFICIENTS = {
-    "prominence": np.array([-0.10, -0.22, 0.54, -0.22]),
-    "significance": np.array([-0.25, -0.02, 0.29, -0.02]),
-    "strength": np.array([-0.61, -0.32, 1.25, -0.32]),
-    "share": np.array([-3.11, 1.19, 0.74, 1.19]),
-    "harmonics": np.array([-0.32, 0.54, -0.75, 0.54]),
-    "asymmetry": np.array([0.00, 6.86, 0.00, -6.86]),
-    "lean": np.array([-0.76, 5.13, -9.51, 5.13]),
-    "reversal": np.array([-0.62, 0.27, 0.07, 0.27]),
-    "skewness": np.array([0.00, -0.83, 0.00, 0.83]),
-    "sharpness": np.array([-0.48, 0.78, -1.09, 0.78]),
-    "scatter": np.array([4.01, 0.00, -4.00, 0.00]),
+    "prominence": np.array([-0.57, -0.06, 0.69, -0.06]),
+    "significance": np.array([-0.15, -0.07, 0.29, -0.07]),
+    "strength": np.array([-0.01, -0.53, 1.08, -0.53]),
+    "share": np.array([-2.46, 1.19, 0.08, 1.19]),
+    "harmonics": np.array([0.25, 0.15, -0.55, 0.15]),
+    "asymmetry": np.array([0.00, 6.85, 0.00, -6.85]),
+    "lean": np.array([-1.47, 5.72, -9.97, 5.72]),
+    "reversal": np.array([-0.92, 0.38, 0.15, 0.38]),
+    "skewness": np.array([0.00, -0.82, 0.00, 0.82]),
+    "sharpness": np.array([-0.57, 0.76, -0.95, 0.76]),
+    "scatter": np.array([2.75, 0.93, -4.60, 0.93]),
 }
 
 
@@ -155,6 +153,17 @@ def class_probabilities(values: dict[str, float]) -> np.ndarray:
     score = INTERCEPT + sum(COEFFICIENTS[name] * value for name, value in values.items())
     weight = np.exp(score - score.max())
     return weight / weight.sum()
+
+
+def oscillating(kind: np.ndarray) -> np.ndarray:
+    """Return where a class of waveform claims an oscillation.
+
+    Examples
+    --------
+    >>> oscillating(np.array(["smooth sliding", "sawtooth stick-slip", "not decided"])).tolist()
+    [False, True, False]
+    """
+    return np.isin(kind.astype(str), CLASSES[1:])
 
 
 def most_probable(probability: np.ndarray) -> str:
