@@ -82,7 +82,7 @@ def _apart(row: xr.Dataset) -> str:
         apart = spectral
     text = f" every {apart:.3g} µm" if np.isfinite(apart) else ""
     if kind == "irregular" and np.isfinite(spectral):
-        text += f" in the mean, irregularly (mean frequency: that of {spectral:.3g} µm)"
+        text += f" in the mean, irregularly (by the spectrum: {spectral:.3g} µm)"
     if kind == "intermittent" and "oscillating_time_share" in row:
         text += f", {percent_text(float(row['oscillating_time_share']))} of the time"
     return text

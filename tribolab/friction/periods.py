@@ -18,6 +18,8 @@ _AGREE = 0.15  # drops and spectrum agree on the period to this
 _LOOSE = 0.6  # natural log; the mean over a broad spectrum is not the mean distance between drops
 _ERRORS = 3.0
 _STRONG = 0.25  # of the strongest line's swing, that makes another one beat with it
+_SHARP = 0.7  # part of the faster variance, above which a line is sharp however periods scatter
+_MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
 _FEWEST = 6  # periods that tell how they scatter
 
 
@@ -88,12 +90,14 @@ def verdict(
     periods = seen.periods
     frequency, error = found.frequency, found.frequency_error
     # drops tell the period better than the spectrum, where periods are alike and the two agree
+    odd, significant = at_odds(found, seen), found.false_alarm < CHANCE
     # where two frequencies beat, periods scatter, and yet there are lines
     several = len(lines) > 1 and lines[1].swing > _STRONG * lines[0].swing
     irregular = seen.kind == KINDS[1] and not several
-    if irregular:  # no line in the spectrum to speak of
+    sharp = significant and found.share > _SHARP
+    if irregular and not sharp:  # no line in the spectrum to speak of
         frequency, error = found.mean_frequency, found.mean_frequency_error
-    elif periods.size > 1 and scatter(periods) < ALIKE and not at_odds(found, seen):
+    elif periods.size > 1 and scatter(periods) < ALIKE and not odd:
         frequency = 1 / float(periods.mean())
         error = frequency * scatter(periods) / np.sqrt(periods.size)
     own = 1 / float(periods.mean()) if irregular else frequency
@@ -101,7 +105,6 @@ def verdict(
     unclaimed = kind in (CLASSES[0], UNDECIDED)
     if slow is not None and (unclaimed or abs(np.log(slow.periods / count)) > _AGREE):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
-    odd, significant = at_odds(found, seen), found.false_alarm < CHANCE
     repeats = seen.periods.size > 0 and not odd and seen.kind != KINDS[2]
     if kind != CLASSES[0] and not significant and not repeats:
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
@@ -110,6 +113,9 @@ def verdict(
     if kind == UNDECIDED:
         likely = CLASSES[int(np.argmax(probability))]
         return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
+    hum = [m.name for m in found.mains if abs(found.frequency / m.frequency - 1) < _MAINS]
+    if hum:
+        return _withheld(f"the strongest line stands where the mains hums ({hum[0]})")
     if odd and not several:
         return _withheld(
             f"the spectrum tells a period of {1 / frequency:.3g} s, the drops are "

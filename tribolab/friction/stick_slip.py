@@ -279,7 +279,7 @@ def _form_words(found: Examined, speed: float) -> list[str]:
         apart = 1e6 * speed * float(seen.periods.mean())
         words.append(
             f"periods scatter by {found.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
-            f"apart in the mean, the mean frequency of the spectrum is that of {spectral:.3g} µm"
+            f"apart in the mean, the spectrum tells a wavelength of {spectral:.3g} µm"
         )
     if len(found.lines) > 1:
         listed = ", ".join(f"{line.frequency:.4g} Hz" for line in found.lines)
