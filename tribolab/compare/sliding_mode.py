@@ -69,7 +69,8 @@ class SlidingMode:
         All of it in words.
     curve
         Per sliding speed: ``regime`` and ``model_regime`` (text), ``waveform`` and
-        ``regularity`` (text), ``drop``, ``dominant_wavelength`` and ``recurrence_distance`` [m], measured and computed ``friction_coefficient``.
+        ``regularity`` (text), ``drop``, ``dominant_wavelength`` and ``recurrence_distance`` [m],
+        measured and computed ``friction_coefficient``.
     numbers
         ``boundary_end_m_s``, ``model_boundary_end_m_s``, ``uniform_friction``,
         ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit``,

@@ -41,8 +41,8 @@ def components(seen: Survey) -> tuple[Component, ...]:
     -----
     The strongest is taken out of the spectrum with its harmonics, whose width grows as the square
     of their number [1]_, then the next is sought. Harmonics no stronger than a saw's are not
-    listed. A second line has to stand out of its surroundings, too: the spectrum of an irregular wave is
-    ragged, but no line stands out of it.
+    listed. A second line has to stand out of its surroundings, too: the spectrum of an irregular
+    wave is ragged, but no line stands out of it.
 
     References
     ----------

@@ -49,8 +49,8 @@ def slow_wave(record: Record) -> SlowWave | None:
     Notes
     -----
     Means over blocks are fitted with a straight line beside a sine and its second harmonic, two to
-    five of them in the record. Noise whose spectrum falls wanders at all scales: a single wave holds
-    three quarters of it in less than one record of a hundred. A drift is met as well by a
+    five of them in the record. Noise whose spectrum falls wanders at all scales: a single wave
+    holds three quarters of it in less than one record of a hundred. A drift is met as well by a
     polynomial of fourth degree.
 
     Examples

@@ -20,6 +20,7 @@ _ERRORS = 3.0
 _STRONG = 0.25  # of the strongest line's swing, that makes another one beat with it
 _SHARP = 0.7  # part of the faster variance, above which a line is sharp however periods scatter
 _MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
+_UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
 _FEWEST = 6  # periods that tell how they scatter
 
 
@@ -106,7 +107,7 @@ def verdict(
     if slow is not None and (unclaimed or abs(np.log(slow.periods / count)) > _AGREE):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
     repeats = seen.periods.size > 0 and not odd and seen.kind != KINDS[2]
-    if kind != CLASSES[0] and not significant and not repeats:
+    if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
     if kind == CLASSES[0]:
         return Verdict(kind, np.nan, np.nan, np.nan)

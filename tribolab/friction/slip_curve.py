@@ -69,8 +69,9 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         are not), there means over those and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of
         the spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
         ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
-        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates. Segments whose oscillation is a resonance of the
-        rig, seen in one run or over all, count as smooth. Attributes ``scaling_exponent``,
+        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates.
+        Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
+        smooth. Attributes ``scaling_exponent``,
         ``scaling_error``, ``scaling`` and, of a resonance, ``resonance_frequency_Hz``.
 
     Raises

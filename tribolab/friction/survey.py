@@ -1,4 +1,4 @@
-"""A record's spectrum in bands, beside what noise would have been: what stands out, and by how much."""
+"""A record's spectrum in bands beside what noise would have been: what stands out of it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The form of an oscillation: how steeply it rises and falls, how alike its periods are.
 
 The class follows from eleven features by a multinomial logistic model. Its coefficients stand
-below; they were fitted to traces of the virtual rig (``tests/benchmarks/calibrate_stick_slip.py``, whose
+below; they were fitted to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, whose
 seeds no test and no table uses) and looked at on real records.
 """
 

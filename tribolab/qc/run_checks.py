@@ -122,7 +122,8 @@ def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -
     run, segments
         The run dataset (time); its segments, found if not given.
     **options
-        As for `check_run`: ``friction``, ``slip``, ``limits``, ``skip``, ``normal_force``, ``contact_width``.
+        As for `check_run`: ``friction``, ``slip``, ``limits``, ``skip``, ``normal_force``,
+        ``contact_width``.
 
     Returns
     -------

@@ -182,7 +182,8 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
         what = "speed" if over_speed else "segment"
         return {
             "class": UNDECIDED,
-            "detail": f"at {(kind == UNDECIDED).sum()} of {many(kind.size, what)}",
+            "detail": f"{'at' if over_speed else 'in'} {(kind == UNDECIDED).sum()} of "
+            f"{many(kind.size, what)}",
         }
     if not moving.any():  # without a speed, standing still may be among the sliding
         return {"class": STEADY, "detail": "" if over_speed else "if it slides: speed not known"}
