@@ -5,12 +5,15 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.friction.segments import find_segments
+from tribolab.friction.stick_slip import stick_slip
 from tribolab.io.runs import read
 from tribolab.qc.run_checks import check_run
+from tribolab.quantities import stamp
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
 from tribolab.rig.files import force_file, motion_file, write_run
 
@@ -229,3 +232,25 @@ def test_the_command_explains_wrong_use(faulty):
     done = tribolab_check(file, "--instrument", "linear_slidr")
     assert done.exit_code == 2 and "linear_slider" in done.stderr
     assert tribolab_check(faulty / "none.csv").exit_code == 3
+
+
+def test_checks_and_results_tell_the_same_periods_whatever_drifts():
+    rng = np.random.default_rng(5)
+    t = 0.01 * np.arange(20_000)
+    load = 30 * (1 + 0.2 * np.sin(2 * np.pi * 3.25 * t / t[-1]))  # three slow waves of the load
+    saw = 0.05 * (0.7 * t % 1.0)
+    for wave, periods in ((0.0, np.nan), (saw, 140.0)):
+        data = {
+            "normal_force": ("time", load + 0.05 * rng.standard_normal(t.size)),
+            "friction_force": ("time", load * (0.5 + wave) + 0.05 * rng.standard_normal(t.size)),
+            "sliding_velocity": ("time", np.full(t.size, 1e-4)),
+        }
+        run = stamp(xr.Dataset(data, {"time": t}))
+        slip = stick_slip(run, find_segments(run))
+        rows = {row["check"]: row for row in check_run(run, contact_width=1e-3).rows}
+        if np.isnan(periods):
+            assert slip["waveform"].item() == "smooth sliding"
+            assert rows["sampling"]["message"] == "no stick-slip to resolve"
+        else:
+            assert rows["distance"]["value"] == slip["periods"].item()
+            assert rows["sampling"]["value"] == pytest.approx(100 / 0.7, rel=0.02)

@@ -17,6 +17,7 @@ _HIGHEST = 16  # harmonic that is looked at by itself
 _WIDTH = 0.04  # relative, of a line
 _AROUND = (1.15, 1.5)  # factors of frequency within which a line stands out of its surroundings
 _MOSTLY = 0.7  # of the power around them, that lines hold
+_WINDOW = 0.8  # bins, that the window makes of a line
 _RARE = 1e-3  # that noise as strong as the surroundings shows such a line
 
 
@@ -104,7 +105,9 @@ def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
     weight = np.maximum(seen.fine.power - level, 0)[near]
     if not weight.sum() > 0:
         return 0.0
-    return float(np.sqrt((f[near] - frequency) ** 2 @ weight / weight.sum()))
+    variance = (f[near] - frequency) ** 2 @ weight / weight.sum()
+    # what the window alone makes of a line is no width of its own
+    return float(np.sqrt(max(variance - (_WINDOW * seen.fine.width[0]) ** 2, 0.0)))
 
 
 def _harmonics(

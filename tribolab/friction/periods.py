@@ -21,6 +21,7 @@ _STRONG = 0.25  # of the strongest line's swing, that makes another one beat wit
 _SHARP = 0.7  # part of the faster variance, above which a line is sharp however periods scatter
 _MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
 _UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
+_FASTER = 5.0  # than a slow wave: no harmonic of it
 _FEWEST = 6  # periods that tell how they scatter
 
 
@@ -104,7 +105,9 @@ def verdict(
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
     unclaimed = kind in (CLASSES[0], UNDECIDED)
-    if slow is not None and (unclaimed or abs(np.log(slow.periods / count)) > _AGREE):
+    # beside many periods of a wave, a slow one is the wander that they ride on
+    few = slow is not None and count < _FASTER * slow.periods
+    if slow is not None and (unclaimed or (few and abs(np.log(slow.periods / count)) > _AGREE)):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
     repeats = seen.periods.size > 0 and not odd and seen.kind != KINDS[2]
     if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:

@@ -94,9 +94,11 @@ def stick_slip(
     -------
     xarray.Dataset
         On dim ``segment``, beside ``sliding_speed``, ``direction`` and ``sliding_distance``:
-        ``waveform`` (text: one of ``waveform.CLASSES``, or "not evaluated") and
-        ``class_probability`` (segment, waveform_class); ``dominant_frequency`` [Hz] and
-        ``dominant_wavelength`` [m] (with ``_sem``), ``false_alarm_probability``,
+        ``waveform`` (text: one of ``waveform.CLASSES``, "not decided" or "not evaluated") and
+        ``class_probability`` (segment, waveform_class); ``regularity`` (text: "regular",
+        "irregular" or "intermittent") and ``oscillating_time_share``; ``periods`` in the segment;
+        ``dominant_frequency`` [Hz] and ``dominant_wavelength`` [m] of the spectrum (with ``_sem``;
+        of the drops where these are alike and agree), ``false_alarm_probability``,
         ``peak_prominence``, ``oscillation_swing``, ``oscillation_share``, ``background_noise``,
         ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
@@ -104,8 +106,10 @@ def stick_slip(
         ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
         ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``spike_share``;
         ``instrument`` (text: mains and resonances), ``method``, ``remark`` (text).
-        Where the class is smooth sliding, only what describes the noise is a number; its
-        ``oscillation_swing`` bounds what could be hidden.
+        Where the class is smooth sliding or not decided, only what describes the noise is a number;
+        its ``oscillation_swing`` bounds what could be hidden.
+        On (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
+        ``line_swing``, ``line_false_alarm_probability`` of all oscillations that are significant.
         On (segment, frequency): ``psd``, ``psd_background``, ``psd_significant`` [1/Hz]; on
         (segment, inverse_wavelength): ``distance_psd`` [m]. On dim ``event``: ``event_segment``,
         ``event_time`` [s], ``event_drop``, ``event_stick``, ``event_slip`` [s].
@@ -120,13 +124,17 @@ def stick_slip(
     -----
     The spectrum, its background and significance: `tribolab.friction.oscillation`; events:
     `tribolab.friction.events`; the class and its limits: `tribolab.friction.waveform`. Distance is
-    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. An
-    oscillation with fewer than four periods in a segment is not told from a slow wander. Periods
-    are counted from the middle of one fall to that of the next. Of ten cycles at an amplitude three
-    times the noise, a mean drop is known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
+    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods
+    are counted from the middle of one sharp fall to that of the next (of a reversed sawtooth, of
+    its rises), pauses left out. Of ten cycles at an amplitude three times the noise, a mean drop is
+    known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
     Irregular stick-slip has no period: its dominant wavelength is that of the mean frequency of its
-    spectrum (`tribolab.friction.oscillation.mean_frequency`), good to 4 % of 25 such cycles; the
-    mean distance between drops, which depends on what counts as one, is ``recurrence_distance``.
+    spectrum (`tribolab.friction.oscillation.mean_frequency`), or of its line where there is a sharp
+    one; the mean distance between drops is another number, ``recurrence_distance``.
+    Spectrum and drops have to agree on the period within 15 % or three errors (where periods
+    scatter, within a factor of 1.8), and the segment has to hold four periods: else the class is
+    "not decided", and the remark says why. An oscillation with fewer than four periods is not told
+    from a slow wander.
     A line of the mains is taken out before anything else is sought; an oscillation that keeps its
     frequency within 3 % over speeds that differ by a factor of two or more is named as a resonance.
 
