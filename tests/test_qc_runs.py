@@ -115,8 +115,8 @@ def test_paper_on_paper_has_spikes_and_its_stick_slip_is_no_fault(shared_data, n
     run, found = verdict(shared_data, "stickslip_paper_CeCILL-B", f"{name}.mat")
     known = objections(found)
     assert known.pop("spikes") == "suspect"
-    # 3.6 periods in the whole record: the mean depends on where it is cut
-    assert known == ({"distance": "suspect"} if name == "k168Nm_v4300" else {})
+    # a slow wander on which the softest one's forty swings ride is no period of theirs
+    assert known == {}
     flagged = found.flagged.friction_coefficient_qc.values == 3
     values = run.friction_coefficient.values
     assert 20 < flagged.sum() < 0.01 * values.size
