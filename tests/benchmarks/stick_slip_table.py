@@ -157,9 +157,7 @@ def _listed(trace: Tricky, found) -> bool:
 
 def print_tricky(seeds: range) -> None:
     """Print what is seen of tricky traces, and what is claimed where nothing oscillates."""
-    print(
-        f"{'tricky traces':40s}  right withheld  wrong  missed regular  wavelength by spectrum"
-    )
+    print(f"{'tricky traces':40s}  right withheld  wrong  missed regular  wavelength by spectrum")
     print(" " * 79 + "and distance between drops: within 10 %, bias; error of the share")
     draws = [np.random.default_rng(_FIRST + s) for s in seeds]
     for name, make in tricky_kinds().items():

@@ -75,13 +75,16 @@ def regularity(record: Record, events: Events) -> Regularity:
     paused = np.zeros(between.size, bool)
     for k in np.flatnonzero(between > _PAUSE * usual):
         a, b = events.middle[k], events.middle[k + 1]
-        if _still(record, a + 0.3 * usual, b - usual, drop * (b - a - 1.3 * usual) / (b - a)):
+        climb = drop * (b - a - 1.3 * usual) / (b - a)
+        # a train ends with a drop and begins with a climb; a reversed one the other way round
+        if any(_still(record, a + c * usual, b - (1.3 - c) * usual, climb) for c in (0.3, 1.0)):
             paused[k] = True
             quiet += float(b - a - usual)
     # at an end of the record a part of a period is cut off
-    for a, b in ((ends[0], first - usual), (last + 0.3 * usual, ends[1])):
-        if b - a > usual and _still(record, a, b, drop * min((b - a) / usual, 1.0)):
-            quiet += float(b - a)
+    for c in (0.3, 1.0):
+        for a, b in ((ends[0], first - c * usual), (last + c * usual, ends[1])):
+            if b - a > usual and _still(record, a, b, drop * min((b - a) / usual, 1.0)):
+                quiet += 0.5 * float(b - a)  # one half for each of the two ways
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
     if share < 1 - _QUIET:

@@ -167,8 +167,9 @@ def _row(
 
 
 def _commonest(words: np.ndarray) -> str:
-    names, counts = np.unique(words.astype(str), return_counts=True)
-    return str(names[np.argmax(counts)])
+    """Return the most frequent word; of equally frequent ones that which comes first."""
+    known = words.astype(str).tolist()
+    return max(dict.fromkeys(known), key=known.count)
 
 
 def frequency_scaling(curve: xr.Dataset) -> Scaling:
