@@ -22,7 +22,7 @@ _SHARP = 0.7  # part of the faster variance, above which a line is sharp however
 _MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
 _UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
 _FASTER = 5.0  # than a slow wave: no harmonic of it
-_FEWEST = 6  # periods that tell how they scatter
+_FEWEST = 4  # periods that tell how they scatter
 
 
 class Verdict(NamedTuple):
@@ -126,7 +126,9 @@ def verdict(
             f"{periods.mean():.3g} s apart"
         )
     if count < CYCLES:
-        return _withheld(f"only {count:.1f} periods, {_FEW}", count)
+        # a wander has a "period" as well; it counts where one wave is nearly all there is
+        known = count if slow is not None else np.nan
+        return _withheld(f"only {count:.1f} periods, {_FEW}", known)
     if not seen.kind and significant and count >= 2 * CYCLES and not periods.size:
         return Verdict(kind, frequency, error, count)  # noise hides the drops of a line
     if not seen.kind or (irregular and periods.size < _FEWEST):

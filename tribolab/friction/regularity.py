@@ -13,7 +13,7 @@ KINDS = ("regular", "irregular", "intermittent")
 IRREGULAR = 0.18  # scatter of the periods above which they are irregular
 _PAUSE = 2.2  # usual periods between two drops, that may be a pause
 _STILL = 0.5  # of the climb or of the swing that a stick or a wave would show in a pause
-_QUIET = 0.1  # of the time that is quiet, above which an oscillation is intermittent
+_QUIET = 0.15  # of the time that is quiet, above which an oscillation is intermittent
 
 
 class Regularity(NamedTuple):
@@ -47,7 +47,7 @@ def regularity(record: Record, events: Events) -> Regularity:
     Returns
     -------
     Regularity
-        Intermittent where more than a tenth of the time is quiet, else irregular where the periods
+        Intermittent where more than a seventh of the time is quiet, else irregular where the periods
         scatter by more than 18 %.
 
     Notes

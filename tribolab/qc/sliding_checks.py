@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.friction.coefficient import SIGNIFICANT
 from tribolab.friction.lines import Line
+from tribolab.friction.regularity import KINDS
 from tribolab.friction.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
@@ -56,7 +57,8 @@ def _strongest(
 def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Friction that falls slowly and rises sharply belongs to a sensor whose sign is turned."""
     kind = subject.slip["waveform"].values
-    reversed_ = kind == CLASSES[3]
+    # what varies along a track may fall slowly, too, but not again and again alike
+    reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == KINDS[0])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
         return []
     first = int(np.flatnonzero(reversed_)[0])
