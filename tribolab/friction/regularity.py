@@ -47,7 +47,7 @@ def regularity(record: Record, events: Events) -> Regularity:
     Returns
     -------
     Regularity
-        Intermittent where more than a seventh of the time is quiet, else irregular where the periods
+        Intermittent where over a seventh of the time is quiet, else irregular where the periods
         scatter by more than 18 %.
 
     Notes
