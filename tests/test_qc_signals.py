@@ -11,7 +11,6 @@ from tribolab.friction.noise import noise_level
 from tribolab.io.table_schema import validate
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
-from tribolab.qc.subject import stick_slip_periods
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -171,19 +170,6 @@ def test_mains_is_recognised_also_when_folded():
     assert mains_harmonic(120.0, 0.05, 1000) == "120 Hz"
     assert mains_harmonic(10.0, 0.05, 60.0) == "50 Hz, folded"
     assert mains_harmonic(23.0, 0.05, 1000) == ""
-
-
-@given(st.floats(4, 150), seeds)
-@settings(max_examples=25, deadline=None)
-def test_periods_of_stick_slip_are_counted(periods, seed):
-    values = sawtooth(3000, 3000 / periods, 1.0, seed)
-    assert stick_slip_periods(values) == pytest.approx(periods, rel=0.05)
-
-
-def test_noise_and_weak_waves_have_no_periods():
-    assert all(np.isnan(stick_slip_periods(noise(seed, 1000))) for seed in range(50))
-    assert np.isnan(stick_slip_periods(sawtooth(1000, 50, 0.1), least=0.05))
-    assert np.isnan(stick_slip_periods(np.zeros(0)))
 
 
 def test_values_beyond_belief_and_beyond_physics_are_told_apart():

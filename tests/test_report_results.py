@@ -291,12 +291,15 @@ def test_every_check_of_every_run_stands_in_a_table():
 
 
 def test_a_run_without_speeds_counts_segments_and_one_too_short_is_not_evaluated():
-    slip = made_slip(["smooth sliding", "irregular", "irregular", "not evaluated"], [np.nan] * 4)
-    assert stick_slip_of(slip) == {"class": "irregular", "detail": "in 2 of 3 segments"}
+    saw = "sawtooth stick-slip"
+    slip = made_slip(["smooth sliding", saw, saw, "not evaluated"], [np.nan] * 4)
+    assert stick_slip_of(slip) == {"class": saw, "detail": "in 2 of 3 segments"}
     still = made_slip(["smooth sliding"] * 3, [np.nan] * 3)
     assert stick_slip_of(still)["detail"] == "if it slides: speed not known"
-    slip = made_slip(["irregular"] * 3, [1e-6, 2e-6, 4e-6])
-    assert stick_slip_of(slip) == {"class": "irregular", "detail": "at 3 of 3 speeds"}
+    slip = made_slip([saw] * 3, [1e-6, 2e-6, 4e-6])
+    assert stick_slip_of(slip) == {"class": saw, "detail": "at 3 of 3 speeds"}
+    slip = made_slip(["not decided"] * 2 + ["smooth sliding"], [1e-6, 2e-6, 4e-6])
+    assert stick_slip_of(slip) == {"class": "not decided", "detail": "at 2 of 3 speeds"}
     slip = made_slip(["not evaluated"], [1e-6])
     assert stick_slip_of(slip) == {"class": "not evaluated", "detail": ""}
 

@@ -16,7 +16,7 @@ CLASS = {
     "none": "smooth sliding",
     "sawtooth": "sawtooth stick-slip",
     "rounded": "sinus-like oscillation",
-    "irregular": "irregular",
+    "irregular": "sawtooth stick-slip",
 }
 
 
@@ -106,12 +106,13 @@ def test_the_wavelength_of_an_irregular_wave_is_that_of_its_mean_frequency():
         stroke = {"form": "irregular", "periods": 125, "samples": 8000, "seed": 400 + seed}
         clean, noisy = (simulate_trace(noise=n, **stroke) for n in (0.0, 0.2 / 6))
         found = looked_at(noisy)
-        assert found["waveform"].item() == "irregular"
+        assert found["waveform"].item() == "sawtooth stick-slip"
+        assert found["regularity"].item() == "irregular"
         inside = slice(found["trimmed_start"].item(), found["trimmed_stop"].item())
         wave = clean.sel(time=inside)["friction_coefficient"]
         power = np.abs(np.fft.rfft((wave - wave.mean()).values * np.hanning(wave.size))) ** 2
         wavelength = 125 * 0.8 * 22e-6 / np.arange(power.size).clip(1)
-        near = np.exp(-0.5 * (np.log(wavelength / found["dominant_wavelength"].item()) / 0.6) ** 2)
+        near = np.exp(-0.5 * (np.log(wavelength / found["dominant_wavelength"].item()) / 0.4) ** 2)
         weight = (power * near)[2:]
         error.append(
             found["dominant_wavelength"].item() * (weight / wavelength[2:]).sum() / weight.sum() - 1
@@ -128,9 +129,14 @@ def test_a_saw_of_few_samples_in_noise_is_no_irregular_wave():
 
 
 def test_irregular_stick_slip_is_seen_however_densely_it_is_sampled():
+    regularity = []
     for seed in range(3):
         run = simulate_trace("irregular", noise=0.01, periods=12, samples=300_000, seed=500 + seed)
-        assert looked_at(run)["waveform"].item() == "irregular"
+        found = looked_at(run)
+        assert found["waveform"].item() == "sawtooth stick-slip"
+        regularity.append(found["regularity"].item())
+    # three periods of the one stroke are alike within 17 % by chance
+    assert regularity.count("irregular") >= 2
 
 
 def test_a_sensor_whose_sign_is_turned_does_not_turn_sticks_into_slips():
@@ -366,23 +372,127 @@ def test_paper_on_paper_near_a_sine_above_the_sliders_own_frequency(shared_data)
 
 def test_paper_on_paper_irregular_stick_slip_and_the_mains(shared_data):
     found = looked_at(paper(shared_data, 168, 1100))
-    assert found["waveform"].item() == "irregular"
+    assert found["waveform"].item() == "sawtooth stick-slip"
+    assert found["regularity"].item() == "irregular"
     assert "mains at 50 Hz" in found["instrument"].item()
     assert 0.1 < found["fall_share"].item() < 0.4
 
 
-def test_paper_on_paper_where_noise_and_spikes_rule_claims_no_stick_slip(shared_data):
+def test_paper_on_paper_a_vibration_upon_the_mains_is_not_decided(shared_data):
     # A person sees short trains of swings near 50 Hz in it, and would speak of a vibration that
     # comes and goes. The stiff slider's own would be at 1.2 times 43 Hz, as the others' are above
     # theirs: upon the mains. Record and spectrum cannot tell them apart, and the noise is as large;
-    # so none is claimed, and the probabilities of the classes keep the doubt.
+    # so none is claimed, and the remark says why.
     found = looked_at(paper(shared_data, 2254, 1100))
-    assert found["waveform"].item() == "smooth sliding"
+    assert found["waveform"].item() == "not decided"
     assert found["oscillation_share"].item() < 0.5
-    probable = found["class_probability"].squeeze().to_series().sort_values(ascending=False)
-    assert set(probable.index[:2]) == {"smooth sliding", "sinus-like oscillation"}
-    assert probable.iloc[1] > 0.2
-    assert "sinus-like oscillation is not excluded" in found["remark"].item()
-    assert "noise and spikes" in found["remark"].item()
+    assert np.isnan(found["dominant_frequency"].item())
+    assert "stands where the mains hums (50 Hz)" in found["remark"].item()
     assert "mains at 50 Hz" in found["instrument"].item()
     assert found["spike_share"].item() > 0.001
+
+
+def saw(turns, fall=0.06):
+    phase = turns % 1.0
+    return np.where(phase < 1 - fall, phase / (1 - fall), (1 - phase) / fall)
+
+
+def noisy(values, seed=0, size=0.01):
+    return 1 + values + size * np.random.default_rng(seed).standard_normal(values.size)
+
+
+def seen(values, spacing=0.02):
+    run = a_run(values, spacing)
+    return stick_slip(run, whole(run)).isel(segment=0)
+
+
+@pytest.mark.parametrize("periods", [2.5, 2.7, 3.0, 3.2, 3.6, 4.1, 4.2, 4.6, 5.3])
+@pytest.mark.parametrize("turned", [1, -1])
+def test_few_periods_are_right_or_withheld(periods, turned):
+    for seed in range(2):
+        turns = np.linspace(0, periods, 2000) + 0.37 * (seed + 1)
+        found = seen(noisy(turned * 0.2 * saw(turns), seed))
+        if periods < 4:
+            assert found["waveform"].item() == "not decided"
+            assert np.isnan(found["dominant_wavelength"].item())
+            assert "not decided" in found["remark"].item()
+        elif found["waveform"].item() != "not decided":
+            wanted = 40e-6 / periods
+            assert found["dominant_wavelength"].item() == pytest.approx(wanted, rel=0.06)
+            assert found["recurrence_distance"].item() == pytest.approx(wanted, rel=0.06)
+
+
+def test_slow_falls_and_sharp_rises_ask_for_the_sensors_sign():
+    found = seen(noisy(-0.2 * saw(np.linspace(0, 25, 4000))))
+    assert found["waveform"].item() == "reversed sawtooth"
+    assert found["regularity"].item() == "regular"
+    assert "sign = -1" in found["remark"].item()
+    assert found["drop"].item() == pytest.approx(0.2, rel=0.06)
+
+
+@pytest.mark.parametrize("scatter", [0.3, 0.45, 0.6])
+def test_of_scattered_periods_both_distances_are_stated(scatter):
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        periods = rng.gamma(scatter**-2, scatter**2, 60)
+        turns = np.interp(np.linspace(0, periods[:50].sum(), 6000), np.cumsum(periods), range(60))
+        found = seen(noisy(0.2 * saw(turns), seed))
+        assert found["waveform"].item() == "sawtooth stick-slip"
+        assert found["regularity"].item() == "irregular"
+        mean = 120e-6 / np.interp(periods[:50].sum(), np.cumsum(periods), range(1, 61))
+        assert found["recurrence_distance"].item() == pytest.approx(mean, rel=0.06)
+        assert "drops are" in found["remark"].item()
+        assert "the spectrum tells" in found["remark"].item()
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6])
+def test_of_trains_the_share_of_time_and_the_period_within_them_are_told(share):
+    train = np.append(np.linspace(0, 10, 500), np.zeros(int(500 / share - 500)))
+    found = seen(noisy(0.2 * saw(np.concatenate([train] * 5))))
+    assert found["waveform"].item() == "sawtooth stick-slip"
+    assert found["regularity"].item() == "intermittent"
+    assert found["oscillating_time_share"].item() == pytest.approx(share, abs=0.06)
+    assert found["recurrence_distance"].item() == pytest.approx(1e-6, rel=0.03)
+
+
+def test_of_two_frequencies_both_are_listed_the_strongest_first():
+    t = 0.02 * np.arange(5000)
+    for first, second in ((0.41, 0.66), (0.66, 0.41), (0.41, 1.5)):
+        wave = 0.1 * np.sin(2 * np.pi * first * t) + 0.05 * np.sin(2 * np.pi * second * t + 1)
+        found = seen(noisy(wave))
+        lines = found["line_frequency"].dropna("line").values
+        assert lines == pytest.approx([first, second], rel=0.02)
+        assert found["line_swing"].values[:2] == pytest.approx([0.2, 0.1], rel=0.15)
+        assert found["dominant_frequency"].item() == pytest.approx(first, rel=0.02)
+
+
+def test_strong_saws_are_found_in_red_noise_and_nothing_in_the_noise_alone():
+    rng = np.random.default_rng(3)
+    decay = np.exp(-0.02 / 5.0)
+    for _ in range(4):
+        white = 0.03 * rng.standard_normal(6000)
+        red = np.zeros(6000)
+        for k, push in enumerate(np.sqrt(1 - decay**2) * rng.standard_normal(5999)):
+            red[k + 1] = decay * red[k] + push
+        noise = white + 0.09 * red
+        assert seen(1 + noise)["waveform"].item() == "smooth sliding"
+        found = seen(1 + noise + 0.2 * saw(np.linspace(0, 80, 6000)))
+        assert found["waveform"].item() == "sawtooth stick-slip"
+        assert found["dominant_wavelength"].item() == pytest.approx(1.5e-6, rel=0.05)
+
+
+@pytest.mark.parametrize("bend", ["line", "run-in", "parabola", "half a wave"])
+def test_a_slow_drift_of_the_load_is_no_period(bend):
+    place = np.linspace(0, 1, 20_000)
+    drift = {
+        "line": place,
+        "run-in": np.exp(-5 * place),
+        "parabola": (place - 0.3) ** 2,
+        "half a wave": np.sin(4 * place),
+    }[bend]
+    assert seen(noisy(0.3 * drift))["waveform"].item() == "smooth sliding"
+    quick = 0.1 * saw(60 * place) + 0.3 * drift
+    found = seen(noisy(quick))
+    assert found["waveform"].item() == "sawtooth stick-slip"
+    assert found["periods"].item() == pytest.approx(60, rel=0.02)
+    assert found["drop"].item() == pytest.approx(0.1, rel=0.08)

@@ -12,12 +12,14 @@ import argparse
 
 import numpy as np
 from scipy import optimize
+from slip_traces import in_red_noise, intermittent, plain, quiet, scattered
 
 from tribolab.friction.examine import examine
 from tribolab.friction.waveform import CLASSES, LIMITS, features
 from tribolab.rig.traces import simulate_trace
 
-_FORMS = {"none": 0, "sawtooth": 1, "rounded": 2, "irregular": 3}
+_FORMS = {"none": 0, "sawtooth": 1, "rounded": 2, "irregular": 1}
+_TURNED = {"asymmetry", "skewness"}  # have the other sign in a trace that is turned round
 _SEED = 1_000_000
 _PENALTY = 0.02
 
@@ -25,8 +27,16 @@ _PENALTY = 0.02
 def draw(seed: int) -> tuple[int, list[float]] | None:
     """Class and features of one random trace."""
     rng = np.random.default_rng(seed)
+    form, time, values = _of_rig(rng) if rng.uniform() < 0.6 else _tricky(rng)
+    found = examine(time, values)
+    if isinstance(found, str):
+        return None
+    return _FORMS[form], list(features(found.waveform, found.oscillation).values())
+
+
+def _of_rig(rng: np.random.Generator) -> tuple[str, np.ndarray, np.ndarray]:
     form = str(rng.choice(list(_FORMS)))
-    periods = float(np.exp(rng.uniform(np.log(6), np.log(120))))
+    periods = float(np.exp(rng.uniform(np.log(5), np.log(120))))
     samples = int(np.exp(rng.uniform(np.log(12 * periods), np.log(max(400 * periods, 8000)))))
     strength = 10 ** rng.uniform(np.log10(2.0), 2)
     run = simulate_trace(
@@ -40,10 +50,31 @@ def draw(seed: int) -> tuple[int, list[float]] | None:
         jitter=rng.choice([0.0, 0.02]),
         seed=rng,
     )
-    found = examine(run["time"].values, run["friction_coefficient"].values)
-    if isinstance(found, str):
-        return None
-    return _FORMS[form], list(features(found.waveform, found.oscillation).values())
+    return form, run["time"].values, run["friction_coefficient"].values
+
+
+def _tricky(rng: np.random.Generator) -> tuple[str, np.ndarray, np.ndarray]:
+    form = str(rng.choice(["none", "sawtooth", "rounded"]))
+    if form == "none":
+        kinds = ("white", "red", "red, 5 s", "1/f", "1/f2", "drift")
+        trace = quiet(rng, str(rng.choice(kinds)))
+    else:
+        make = rng.choice(["plain", "scattered", "intermittent", "red"])
+        if make == "plain":
+            trace = plain(rng, form)
+        elif make == "scattered":
+            trace = scattered(rng, rng.uniform(0.15, 0.6), form)
+        elif make == "intermittent":
+            trace = intermittent(rng, rng.uniform(0.25, 0.8), form)
+        else:
+            trace = in_red_noise(rng, form)
+    return form, np.arange(trace.values.size) / trace.rate, trace.values
+
+
+def turned(kind: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Classes and features of the same traces turned round: a saw becomes a reversed one."""
+    sign = np.array([-1.0 if name in _TURNED else 1.0 for name in LIMITS])
+    return np.array([0, 3, 2, 1])[kind], x * sign
 
 
 def fit(kind: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -80,7 +111,11 @@ def main() -> None:
     kind = np.array([one[0] for one in drawn])
     x = np.array([one[1] for one in drawn])
     part = len(kind) * 4 // 5
-    intercept, coefficients = fit(kind[:part], x[:part])
+    both = [
+        np.concatenate(pair)
+        for pair in zip((kind[:part], x[:part]), turned(kind[:part], x[:part]), strict=True)
+    ]
+    intercept, coefficients = fit(*both)
     score = intercept + x[part:] @ coefficients
     p = np.exp(score - score.max(axis=1, keepdims=True))
     p /= p.sum(axis=1, keepdims=True)

@@ -224,7 +224,7 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     friction = friction_coefficient(signals, segments, **run.friction)
     friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
-    found = check_run(signals, segments, friction, **run.quality)
+    found = check_run(signals, segments, friction, slip, **run.quality)
     signals = found.flagged
     signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
     for data in (signals, segments, friction, slip):

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.compare.mode_words import SAW, SINE, friction_text, percent_text, speed_text
+from tribolab.compare.mode_words import REVERSED, SAW, SINE, friction_text, percent_text, speed_text
 from tribolab.friction.slip_curve import FIXED_FREQUENCY, STEADY
+from tribolab.friction.waveform import UNDECIDED, oscillating
 from tribolab.qc.register import Count
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class Evidence(NamedTuple):
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:
-    return slip.isel(sliding_speed=np.flatnonzero(slip["waveform"].values != STEADY))
+    return slip.isel(sliding_speed=np.flatnonzero(oscillating(slip["waveform"].values)))
 
 
 def traces(slip: xr.Dataset | None) -> Evidence | None:
@@ -41,6 +42,11 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
         return Evidence(NEUTRAL, "stick-slip was not looked for in the traces", "traces")
     moving = _moving(slip)
     count = moving.sizes["sliding_speed"]
+    open_ = int((slip["waveform"].values == UNDECIDED).sum())
+    if count == 0 and open_:
+        text = f"at {open_} of {Count(slip.sizes['sliding_speed']):speed|speeds} it is not decided "
+        text += "whether friction oscillates, at the others it does not"
+        return Evidence(NEUTRAL, text, "traces")
     if count == 0:
         text = "no stick-slip is seen at any speed"
         if "oscillation_swing" in slip and np.isfinite(slip["oscillation_swing"]).any():
@@ -56,13 +62,30 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     drop = float(moving["drop"].values[first])
     if np.isfinite(drop):  # an oscillation need not show whole cycles
         text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
-    if np.isfinite(drop) and "dominant_wavelength" in moving:
-        text += f" every {float(moving['dominant_wavelength'].values[first]) * 1e6:.3g} µm"
+    if np.isfinite(drop):
+        text += _apart(moving.isel(sliding_speed=first))
     if SAW in names and SINE not in names:
         text += ", slow rises and abrupt drops"
     elif SINE in names and SAW not in names:
         text += ", rounded rather than abrupt"
+    if REVERSED in names:
+        text += "; slow falls and sharp rises are what a sensor of turned sign shows: look at it"
     return Evidence(FOR, text, "traces")
+
+
+def _apart(row: xr.Dataset) -> str:
+    """Say how far drops are apart, and what the spectrum says if periods scatter."""
+    spectral = 1e6 * float(row["dominant_wavelength"]) if "dominant_wavelength" in row else np.nan
+    apart = 1e6 * float(row["recurrence_distance"]) if "recurrence_distance" in row else np.nan
+    kind = str(row["regularity"].item()) if "regularity" in row else ""
+    if np.isnan(apart) or kind == "regular":
+        apart = spectral
+    text = f" every {apart:.3g} µm" if np.isfinite(apart) else ""
+    if kind == "irregular" and np.isfinite(spectral):
+        text += f" in the mean, irregularly (by the spectrum: {spectral:.3g} µm)"
+    if kind == "intermittent" and "oscillating_time_share" in row:
+        text += f", {percent_text(float(row['oscillating_time_share']))} of the time"
+    return text
 
 
 def adhesion(known: Mode) -> Evidence | None:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.waveform import CLASSES, UNDECIDED, oscillating
+from tribolab.qc.register import Count
 
 if TYPE_CHECKING:
     from tribolab.compare.mode_evidence import Evidence
     from tribolab.compare.sliding_mode import Mode
 
-STEADY, SAW, SINE, IRREGULAR = CLASSES
+STEADY, SAW, SINE, REVERSED = CLASSES
 
 
 def speed_text(speed: float) -> str:
@@ -45,7 +46,7 @@ def verdict_text(
     """Return the verdict as one sentence."""
     speeds = np.zeros(0)
     if slip is not None and "waveform" in slip:
-        speeds = slip["sliding_speed"].values[slip["waveform"].values != STEADY]
+        speeds = slip["sliding_speed"].values[oscillating(slip["waveform"].values)]
     where = ""
     if speeds.size == 1:
         where = f" at {speed_text(speeds[0])}"
@@ -54,6 +55,9 @@ def verdict_text(
     if verdict == "no stick-slip":
         off = numbers["model_misfit"]
         steady = "steady sliding, no stick-slip at any speed"
+        if slip is not None and (count := int((slip["waveform"].values == UNDECIDED).sum())):
+            steady = f"steady sliding where it is decided; {count} of "
+            steady += f"{Count(slip.sizes['sliding_speed']):speed|speeds} not decided"
         if not modelled or np.isnan(off):
             return steady
         if off < 0.10:
@@ -67,7 +71,9 @@ def verdict_text(
     if np.isfinite(high):
         end = f"; forced wetting would set in between {speed_text(low)} and {speed_text(high)}"
     if verdict == "not known":
-        return "not known: no trace was looked at"
+        looked = slip is not None and slip.sizes.get("sliding_speed", 0)
+        what = "most traces do not decide it" if looked else "no trace was looked at"
+        return f"not known: {what}"
     return f"{verdict}{where}{end}"
 
 
@@ -105,6 +111,8 @@ def suggestions(
             "measure the pull-off force: it has to vanish where γ_eff(1) = 0",
         )
     if verdict == "not known":
+        if slip is not None and slip.sizes.get("sliding_speed", 0):
+            return ("slide further at each speed: few periods are not told from a wander",)
         return ("record the friction force itself, not only its mean",)
     if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
         return ("slide more slowly: adhesion would allow an instability at lower speeds",)

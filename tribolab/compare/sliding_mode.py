@@ -11,7 +11,9 @@ from tribolab.compare import mode_evidence as evidence
 from tribolab.compare.mode_evidence import Evidence
 from tribolab.compare.mode_words import paragraph, suggestions, verdict_text
 from tribolab.compare.regimes import end_of_boundary, measured_regimes, model_regimes
-from tribolab.friction.slip_curve import FIXED_FREQUENCY, STEADY
+from tribolab.friction.slip_curve import FIXED_FREQUENCY
+from tribolab.friction.waveform import UNDECIDED
+from tribolab.friction.waveform import oscillating as oscillates
 from tribolab.quantities import stamp
 
 NO_STICK_SLIP = "no stick-slip"
@@ -66,8 +68,9 @@ class SlidingMode:
     paragraph
         All of it in words.
     curve
-        Per sliding speed: ``regime`` and ``model_regime`` (text), ``waveform`` (text), ``drop``,
-        ``dominant_wavelength`` [m], measured and computed ``friction_coefficient``.
+        Per sliding speed: ``regime`` and ``model_regime`` (text), ``waveform`` and
+        ``regularity`` (text), ``drop``, ``dominant_wavelength`` and ``recurrence_distance`` [m],
+        measured and computed ``friction_coefficient``.
     numbers
         ``boundary_end_m_s``, ``model_boundary_end_m_s``, ``uniform_friction``,
         ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit``,
@@ -181,14 +184,15 @@ def oscillating(slip: xr.Dataset | None) -> np.ndarray:
     """Speeds at which stick-slip is claimed [m/s]."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
-    return slip["sliding_speed"].values[slip["waveform"].values != STEADY]
+    return slip["sliding_speed"].values[oscillates(slip["waveform"].values)]
 
 
 def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
     if slip is None or slip.sizes.get("sliding_speed", 0) == 0:
         return UNKNOWN
     if not oscillating(slip).size:
-        return NO_STICK_SLIP
+        undecided = slip["waveform"].values == UNDECIDED
+        return UNKNOWN if undecided.mean() > 0.5 else NO_STICK_SLIP
     if known.work_of_adhesion is None or slip.attrs.get("scaling") == FIXED_FREQUENCY:
         return UNEXPLAINED
     return SUSPECTED if known.work_of_adhesion > 0 else LOCAL
@@ -215,7 +219,11 @@ def _curve(
         waveform = slip["waveform"].values[at].astype(object)
         waveform[apart > 0.1] = ""
         data["waveform"] = "sliding_speed", waveform
-        for name in ("drop", "dominant_wavelength", "dominant_frequency"):
+        if "regularity" in slip:
+            regular = slip["regularity"].values[at].astype(object)
+            regular[apart > 0.1] = ""
+            data["regularity"] = "sliding_speed", regular
+        for name in ("drop", "dominant_wavelength", "recurrence_distance", "dominant_frequency"):
             if name in slip:
                 values = np.where(apart > 0.1, np.nan, slip[name].values[at])
                 data[name] = "sliding_speed", values

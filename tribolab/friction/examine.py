@@ -6,11 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.components import Component, components
 from tribolab.friction.events import Events, find_events, without_spikes
-from tribolab.friction.mean_cycle import abrupt_drop, smooth_drop
+from tribolab.friction.few_periods import slow_wave
+from tribolab.friction.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation import Oscillation, oscillation
+from tribolab.friction.periods import ALIKE, Verdict, at_odds, verdict
+from tribolab.friction.regularity import KINDS, Regularity, regularity, scatter
 from tribolab.friction.spectra import Record, coarse, make_record
+from tribolab.friction.survey import CHANCE, Survey, survey
 from tribolab.friction.waveform import (
     Waveform,
     class_probabilities,
@@ -19,11 +24,16 @@ from tribolab.friction.waveform import (
 )
 
 PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
+COARSE = 12  # the same, where noise splits drops
 QUIET = 50.0  # ... until the noise is so many times smaller than the swing
 MOST = 1 << 17  # samples that events are sought in: thousands of periods
 DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
-ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
+WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
+WANDERS = 6  # periods in a record, at least, that a wander can be told beside
+PER_DEGREE, DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
+CALMER = 0.8  # of the scatter of the periods, that is left without the wander
 STEPS = 1.5  # quantisation steps
+SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
 _AGAIN = 200  # cycles that tell how much noise adds to them
 _ROUNDS = 2
 
@@ -45,10 +55,24 @@ class Examined(NamedTuple):
     oscillation: Oscillation
     events: Events
     waveform: Waveform
+    regularity: Regularity
+    probability: np.ndarray
+    verdict: Verdict
+    lines: tuple[Component, ...]
     hysteresis: float
     sample_noise: float
     spike_share: float
     force: bool = False
+
+
+class View(NamedTuple):
+    """An oscillation with its cycles, and the record they were sought in."""
+
+    oscillation: Oscillation
+    record: Record
+    events: Events
+    hysteresis: float
+    regularity: Regularity
 
 
 def examine(
@@ -76,55 +100,136 @@ def examine(
     if n <= DESPIKED:
         kept, spikes = without_spikes(record.values, noise)
         record = record._replace(values=kept)
-    found = oscillation(record)
-    if found is None:
+    surveyed = survey(record)
+    if surveyed is None:
         return "too short for a spectrum"
-    most = int(1 / (found.frequency * PER_PERIOD * record.spacing))
+    view = _settled(record, surveyed, noise, limits)
+    found, part, events = view.oscillation, view.record, view.events
+    lag = max(1, int(round(1 / (found.frequency * 16 * part.spacing))))
+    form = describe_waveform(part.values, lag, events, view.regularity.periods)
+    probability = class_probabilities(features(form, found))
+    if events.drop.size:
+        excess = _excess(record, view, form, probability)
+        events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
+    lines = components(surveyed)
+    slow = slow_wave(record)
+    seen = verdict(probability, found, view.regularity, slow, lines, surveyed.duration)
+    return Examined(
+        found, events, form, view.regularity, probability, seen, lines,
+        view.hysteresis, noise, spikes / n, force,
+    )  # fmt: skip
+
+
+def _settled(record: Record, surveyed: Survey, noise: float, limits: Limits) -> View:
+    """Look at the scale of the strongest line; another view counts where it is regular.
+
+    Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
+    drops repeat at another period, and the spectrum is looked at there. Slow wander may hide or
+    split drops, and so may noise: then they are looked for in means, and beside the wander.
+    """
+    view = _view(record, oscillation(surveyed), noise, limits)
+    if at_odds(view.oscillation, view.regularity):
+        own = 1 / float(view.regularity.periods.mean())
+        again = _view(record, oscillation(surveyed, near=own), noise, limits)
+        if not at_odds(again.oscillation, again.regularity):
+            view = again
+    # of a wander, too, what is left beside its mean over a while goes to and fro in that while
+    sure = view.oscillation.false_alarm < CHANCE
+    if sure and view.regularity.kind not in KINDS[::2]:
+        for part in (record, _beside_wander(record, view.oscillation)):
+            if part is None:
+                continue
+            again = _view(part, view.oscillation, noise, limits, COARSE)
+            less = scatter(again.regularity.periods) < CALMER * scatter(view.regularity.periods)
+            if less and not at_odds(again.oscillation, again.regularity):
+                view = again
+    return view
+
+
+def _without_drift(record: Record, frequency: float) -> Record:
+    """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
+    periods = frequency * record.values.size * record.spacing
+    degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
+    place = np.linspace(-1, 1, record.values.size)
+    if not record.even:
+        place = 2 * (record.time - record.time[0]) / np.ptp(record.time) - 1
+    series = np.polynomial.legendre
+    drift = series.legval(place, series.legfit(place, record.values, degree))
+    return record._replace(values=record.values - drift)
+
+
+def _beside_wander(record: Record, found: Oscillation) -> Record | None:
+    """Take the mean over one period off; None where there is hardly a wander.
+
+    A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
+    period is lost at either end.
+    """
+    size = int(round(1 / (found.frequency * record.spacing)))
+    n = record.values.size
+    if not 2 <= size <= n / WANDERS or not record.even:
+        return None
+    sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
+    mean = (sums[size:] - sums[:-size]) / size
+    if np.std(mean) < WANDER * found.swing:
+        return None
+    first = size // 2
+    part = slice(first, first + mean.size)
+    return Record(record.time[part], record.values[part] - mean, *record[2:])
+
+
+def _view(
+    record: Record, found: Oscillation, noise: float, limits: Limits, fewest: int = PER_PERIOD
+) -> View:
+    """Seek the cycles of an oscillation at the scale of its period."""
+    most = int(1 / (found.frequency * fewest * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
     wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
-    part = Record(record.time[: MOST * size], record.values[: MOST * size], *record[2:])
-    view = coarse(part, size)
+    first = slice(MOST * size)
+    part = coarse(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = _without_drift(part, found.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
         limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
     )
-    events = find_events(view.time, view.values, hysteresis)
+    events = find_events(part.time, part.values, hysteresis)
     if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
         typical = limits.hysteresis * float(np.mean(events.drop))
         if typical > hysteresis:
             hysteresis = typical
-            events = find_events(view.time, view.values, hysteresis)
-    lag = max(1, int(round(1 / (found.frequency * 16 * view.spacing))))
-    form = describe_waveform(view.values, lag, events)
-    if events.drop.size:
-        excess = _excess(part, view, found, events, form, hysteresis)
-        events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
-    return Examined(found, events, form, hysteresis, noise, spikes / n, force)
+            events = find_events(part.time, part.values, hysteresis)
+    fall, whole = events.stop - events.peak, events.stop - events.start
+    if events.drop.size and np.median(fall / whole) > SLOW_FALL:  # what is sharp tells the periods
+        turned = part._replace(values=-part.values)
+        seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
+    else:
+        seen = regularity(part, events)
+    return View(found, part, events, hysteresis, seen)
 
 
-def _excess(
-    part: Record,
-    view: Record,
-    found: Oscillation,
-    events: Events,
-    form: Waveform,
-    hysteresis: float,
-) -> float:
+def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray) -> float:
     """By how much the mean of the drops, as picked from valley to peak, is too large."""
-    kind = class_probabilities(features(form, found))
-    if kind[0] >= 0.5:
+    if probability[0] >= 0.5:
         return 0.0
+    found, events = view.oscillation, view.events
     mean = float(np.mean(events.drop))
-    if form.period_scatter < ALIKE:  # the cycles lie on one another
-        means = {1: abrupt_drop, 2: smooth_drop}.get(int(np.argmax(kind)))
-        finer = max(1, round(view.spacing / part.spacing) // 2)  # means round off what is abrupt
+    # the cycles lie on one another, and none is a pause
+    if form.period_scatter < ALIKE and view.regularity.periods.size == events.drop.size - 1:
+        means = {1: abrupt_drop, 2: smooth_drop, 3: abrupt_rise}.get(int(np.argmax(probability)))
+        # means round off what is abrupt
+        finer = max(1, round(view.record.spacing / record.spacing) // 2)
+        last = int(view.record.values.size * round(view.record.spacing / record.spacing))
+        part = Record(record.time[:last], record.values[:last], *record[2:])
         drop = means(coarse(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off
     sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
-    excess = min(noise_excess(view, found, events, hysteresis), 0.5 * mean) if sine < 1 else 0.0
+    if view.regularity.kind == KINDS[2]:  # power is that of the trains and of the quiet between
+        sine = 0.0
+    excess = 0.0
+    if sine < 1:
+        excess = min(noise_excess(view.record, found, events, view.hysteresis), 0.5 * mean)
     return sine * (mean - found.swing) + (1 - sine) * excess
 
 

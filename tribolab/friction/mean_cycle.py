@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.events import Events
+from tribolab.friction.events import Events, find_events
 from tribolab.friction.spectra import Record
 
 _REACH = 0.38  # of a period to either side of the fall
@@ -72,6 +72,26 @@ def abrupt_drop(record: Record, events: Events) -> float:
         part = (level - low)[np.abs(place) <= edge + _STRETCH] / (high - low)
         fall = float(np.clip(6 * spacing * (part * (1 - part)).sum(), spacing, _LONGEST))
     return float(high - low - slope * fall)
+
+
+def abrupt_rise(record: Record, events: Events) -> float:
+    """Mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    events
+        At least three, their periods alike.
+
+    Returns
+    -------
+    float
+        In the signal's unit; NaN where there are too few samples or events.
+    """
+    turned = record._replace(values=-record.values)
+    swing = float(np.min(events.drop)) if events.drop.size else 0.0
+    return abrupt_drop(turned, find_events(turned.time, turned.values, 0.6 * swing))
 
 
 def smooth_drop(record: Record, events: Events) -> float:

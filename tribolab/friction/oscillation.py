@@ -5,34 +5,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage, stats
+from scipy import ndimage
 
-from tribolab.friction.background import false_alarm, red_noise, significant_power
-from tribolab.friction.lines import LONGEST, amplitude_spectrum
-from tribolab.friction.spectra import Record, Spectrum, bands, spectrum
+from tribolab.friction.background import significant_power
+from tribolab.friction.mains import Mains
+from tribolab.friction.spectra import Spectrum
+from tribolab.friction.survey import CHANCE, Survey
 
-PER_DECADE = 24  # bands of the spectrum: a tenth wide, as stick-slip lines are
 HARMONICS = 6
 _REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
-_SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
-_GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
-_FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
-_MAINS_CHANCE = 3e-3  # that noise passes for a line of the mains
 CYCLES = 4.0  # in a record: slower oscillations cannot be told from a wander
 _HUMP = 7  # bands that a hump in the spectrum covers
-_RISE = 1e-2  # chance of a spectrum without a peak to stand so far above its slower part
-_TALLER = 1.5  # a peak is so many times its background: the model of that is no better
-_BREADTH = 0.6  # of an irregular wave's spectrum, in the natural log of frequency
+_BREADTH = 0.4  # of an irregular wave's spectrum, in the natural log of frequency
 _ROUNDS = 15  # in which its mean settles
-_CHANCE = 1e-3  # of the significance level that comes with a spectrum
-
-
-class Mains(NamedTuple):
-    """A line of the mains: frequency [Hz], amplitude (signal's unit), name."""
-
-    frequency: float
-    amplitude: float
-    name: str
+_NEAR = 0.2  # of a frequency that is sought near another
 
 
 class Oscillation(NamedTuple):
@@ -84,83 +70,16 @@ class Oscillation(NamedTuple):
     method: str
 
 
-def find_mains(record: Record) -> tuple[Mains, ...]:
-    """Lines of the mains in a record that is sampled fast and evenly enough.
-
-    Notes
-    -----
-    Where to look is known, so that a line needs not stand out among all bins, as one of unknown
-    frequency must (`tribolab.friction.lines.find_lines`), but among those within the grid's own
-    0.1 Hz only.
-    """
-    n = record.values.size
-    rate = 1 / record.spacing
-    if not record.even or rate < _SAMPLED or n < 256:
-        return ()
-    frequency, amplitude = amplitude_spectrum(record.time[:LONGEST], record.values[:LONGEST])
-    found = []
-    for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
-        reach = _GRID * true / 50 + frequency[1]
-        near = np.flatnonzero(np.abs(frequency - true) <= reach)
-        around = np.abs(frequency - true) <= max(40 * frequency[1], 5 * reach)
-        if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
-            continue
-        at = near[np.argmax(amplitude[near])]
-        usual = np.median(amplitude[around] ** 2) / np.log(2)
-        if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
-            found.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
-    # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
-    names = {line.name for line in found}
-    return tuple(line for line in found if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)
-
-
-def above_lower(
-    fine: Spectrum, middle: np.ndarray, power: np.ndarray, freedom: np.ndarray
-) -> np.ndarray:
-    """Probability that a spectrum that does not rise anywhere shows so high a band.
+def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
+    """Find the strongest oscillation of a record.
 
     Parameters
     ----------
-    fine
-        The spectrum in its own bins.
-    middle, power, freedom
-        The same in bands.
-
-    Returns
-    -------
-    ndarray
-        Tail of the F distribution of each band's power over the mean of that from a quarter to two
-        thirds of its frequency (band). However red a noise is, its spectrum falls: what stands
-        above everything slower is no slow wander.
-    """
-    sums = np.concatenate([[0.0], np.cumsum(fine.power * fine.freedom)])
-    count = np.concatenate([[0.0], np.cumsum(fine.freedom)])
-    first = np.maximum(np.searchsorted(fine.frequency, middle / 4), 2)
-    last = np.searchsorted(fine.frequency, middle / 1.5)
-    below = count[np.maximum(last, first)] - count[first]
-    usual = (sums[np.maximum(last, first)] - sums[first]) / np.maximum(below, 1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        chance = stats.f.sf(power / usual, freedom, below / 1.5)
-    return np.where((below > 0) & (usual > 0), np.nan_to_num(chance, nan=1.0), 1.0)
-
-
-def _without(found: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
-    """Put the median of the surroundings where a line of the mains stands."""
-    power = found.power.copy()
-    for line in mains:
-        at = int(np.argmin(np.abs(found.frequency - line.frequency)))
-        near = power[max(at - 30, 0) : at + 31]
-        power[max(at - 3, 0) : at + 4] = np.median(near) / np.log(2)
-    return found._replace(power=power)
-
-
-def oscillation(record: Record) -> Oscillation | None:
-    """Find the strongest oscillation of a record; None if it is too short to show one.
-
-    Parameters
-    ----------
-    record
-        From `tribolab.friction.spectra.make_record`.
+    seen
+        From `tribolab.friction.survey.survey`.
+    near
+        Frequency that the drops tell [Hz]: the oscillation is sought near it, be its line lower
+        than its harmonics' or not.
 
     Notes
     -----
@@ -168,30 +87,20 @@ def oscillation(record: Record) -> Oscillation | None:
     as much; significance is that of a band over red and white noise, corrected for the number of
     bands. Of the significant bands that with the most power above the background counts.
     """
-    if record.values.size < 16:
-        return None
-    mains = find_mains(record)
-    fine = _without(spectrum(record), mains)
-    middle, power, width, freedom, starts = bands(fine, PER_DECADE)
-    if middle.size < 4 or not power.max() > 0:
-        return None
-    background = red_noise(middle, power, freedom)
-    chances = false_alarm(power, background, freedom)
-    excess = np.maximum(power - background, 0) * width
-    cycles = middle * record.values.size * record.spacing
-    rise = above_lower(fine, middle, power, freedom)
-    # where many bins are averaged, less than the background's own shape is significant
-    above = (chances < _CHANCE) & (rise < _RISE) & (power > _TALLER * background)
-    strong = np.where(above & (cycles >= CYCLES), excess, 0.0)
+    fine, middle, power, width = seen.fine, seen.middle, seen.power, seen.width
+    strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
     # without a significant band: where most of the power above the slow wander lies
     energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _HUMP)
-    energy = np.where(cycles >= 2 * CYCLES, energy, -np.inf)
+    energy = np.where(seen.cycles >= 2 * CYCLES, energy, -np.inf)
     hump = int(np.argmax(energy))
     top = int(np.argmax(strong)) if strong.any() else hump
-    at = _summit(fine, starts, top)
-    level = np.interp(fine.frequency, middle, background)
-    frequency, error, powers = _gather(fine, level, at)
-    mean, mean_error = mean_frequency(fine, float(middle[hump]), float(level[-1]))
+    chance = float(max(seen.chance[top], seen.rise[top]))
+    prominence = power[top] / seen.background[top]
+    at = _summit(fine, seen.first, top) if near is None else _nearest_summit(fine, near)
+    level = np.interp(fine.frequency, middle, seen.background)
+    frequency, error, powers = gather(fine, level, at)
+    start = float(middle[hump]) if near is None else near
+    mean, mean_error = mean_frequency(fine, start, float(level[-1]))
     variance = powers.sum()
     above = fine.frequency >= 0.5 * frequency
     total = float((fine.power * fine.width)[above].sum())
@@ -201,19 +110,26 @@ def oscillation(record: Record) -> Oscillation | None:
         frequency_error=float(max(error, 0.3 * fine.width[at])),
         mean_frequency=mean,
         mean_frequency_error=mean_error,
-        false_alarm=float(max(chances[top], rise[top])),
-        prominence=float(power[top] / background[top]),
+        false_alarm=chance,
+        prominence=float(prominence),
         swing=float(_swing(powers)),
-        noise=float(np.sqrt((background * width)[below].sum())),
+        noise=float(np.sqrt((seen.background * width)[below].sum())),
         share=float(min(variance / max(total, 1e-300), 1.0)),
         harmonic_content=float(np.sqrt(powers[1:].sum() / max(powers[0], 1e-9 * variance, 1e-300))),
         bands=middle,
         power=power,
-        background=background,
-        level=significant_power(background, freedom, _CHANCE),
-        mains=mains,
+        background=seen.background,
+        level=significant_power(seen.background, seen.freedom, CHANCE),
+        mains=seen.mains,
         method=fine.method,
     )
+
+
+def _nearest_summit(fine: Spectrum, near: float) -> int:
+    """Strongest bin near a frequency."""
+    part = np.abs(fine.frequency - near) <= max(_NEAR * near, 1.01 * fine.width[0])
+    part[:1] = False
+    return int(np.argmax(np.where(part, fine.power, -1.0)))
 
 
 def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
@@ -222,8 +138,8 @@ def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
     return int(starts[top] + np.argmax(fine.power[starts[top] : stop]))
 
 
-def _gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np.ndarray]:
-    """Frequency of a line as the centre of its power, its error, the variance of the harmonics."""
+def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np.ndarray]:
+    """Return a line's frequency as the centre of its power, its error, its harmonics' variances."""
     f0, error = float(fine.frequency[at]), 0.0
     excess = np.maximum(fine.power - level, 0) * fine.width
     for _ in range(3):

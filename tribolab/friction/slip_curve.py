@@ -10,8 +10,8 @@ import xarray as xr
 from scipy import stats
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.slip_table import NOT_EVALUATED, ringing
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.slip_table import ringing
+from tribolab.friction.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.quantities import stamp
 
 STEADY = CLASSES[0]
@@ -20,10 +20,12 @@ FIXED_FREQUENCY = "frequency does not go with the speed: it is fixed"
 _MEANS = (
     "drop",
     "dominant_wavelength",
+    "recurrence_distance",
     "dominant_frequency",
     "fall_share",
     "harmonic_content",
     "period_scatter",
+    "oscillating_time_share",
 )
 _FEWEST = 3  # speeds that a fit of the exponent needs
 _LEAST_ERROR = 0.01  # relative; a frequency is not known better than the speed
@@ -62,12 +64,14 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     -------
     xarray.Dataset
         On dim ``sliding_speed``: ``segments`` that were evaluated, ``segments_oscillating`` among
-        them, ``waveform`` (the most frequent of those where more than half of the segments
-        oscillate, else smooth sliding), there means over those and ``_std`` of ``drop``,
-        ``dominant_wavelength`` [m], ``dominant_frequency`` [Hz], ``fall_share``,
-        ``harmonic_content``, ``period_scatter``, and of all ``oscillation_swing``: a bound of what
-        could be hidden where nothing oscillates. Segments whose oscillation is a resonance of the
-        rig, seen in one run or over all, count as smooth. Attributes ``scaling_exponent``,
+        them, ``waveform`` and ``regularity`` (the most frequent of those where more than half of
+        the segments that were decided oscillate, else smooth sliding, or "not decided" where most
+        are not), there means over those and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of
+        the spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
+        ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
+        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates.
+        Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
+        smooth. Attributes ``scaling_exponent``,
         ``scaling_error``, ``scaling`` and, of a resonance, ``resonance_frequency_Hz``.
 
     Raises
@@ -98,12 +102,14 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
     edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
     groups = [group for group in np.split(order, edges) if group.size]
+    regular = np.concatenate([_regularity(s) for s in slips]).astype(object)
     columns = {name: _column(slips, name) for name in (*_MEANS, "oscillation_swing")}
-    rows = [_row(group, kind, columns) for group in groups]
+    rows = [_row(group, kind, regular, columns) for group in groups]
     names = list(rows[0]) if rows else [*_EMPTY]
     data = {n: ("sliding_speed", np.array([row[n] for row in rows])) for n in names}
-    if "waveform" in data:
-        data["waveform"] = "sliding_speed", np.array([r["waveform"] for r in rows], dtype=object)
+    for name in ("waveform", "regularity"):
+        texts = np.array([row[name] for row in rows], dtype=object)
+        data[name] = "sliding_speed", texts
     middle = np.array([np.exp(np.mean(np.log(speed[g]))) for g in groups])
     result = stamp(xr.Dataset(data, {"sliding_speed": middle}))
     found = frequency_scaling(result)
@@ -115,7 +121,7 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     return result
 
 
-_EMPTY = ("segments", "segments_oscillating", "waveform", "oscillation_swing")
+_EMPTY = ("segments", "segments_oscillating", "waveform", "regularity", "oscillation_swing")
 
 
 def _column(slips: Sequence[xr.Dataset], name: str) -> np.ndarray:
@@ -129,15 +135,27 @@ def _column(slips: Sequence[xr.Dataset], name: str) -> np.ndarray:
     )
 
 
-def _row(group: np.ndarray, kind: np.ndarray, columns: dict[str, np.ndarray]) -> dict:
-    moving = group[kind[group] != STEADY]
-    waveform, count = STEADY, moving.size
-    if moving.size > 0.5 * group.size:
-        names, counts = np.unique(kind[moving].astype(str), return_counts=True)
-        waveform = str(names[np.argmax(counts)])
+def _regularity(slip: xr.Dataset) -> np.ndarray:
+    return slip["regularity"].values if "regularity" in slip else np.full(slip.sizes["segment"], "")
+
+
+def _row(
+    group: np.ndarray, kind: np.ndarray, regular: np.ndarray, columns: dict[str, np.ndarray]
+) -> dict:
+    moving = group[oscillating(kind[group])]
+    waveform, regularity, count = STEADY, "", moving.size
+    decided = int((kind[group] != UNDECIDED).sum())
+    if moving.size > 0.5 * decided:
+        waveform, regularity = _commonest(kind[moving]), _commonest(regular[moving])
     else:  # what few segments show is not what the contact does
         moving = moving[:0]
-    row = {"segments": group.size, "segments_oscillating": count, "waveform": waveform}
+        waveform = STEADY if decided >= 0.5 * group.size else UNDECIDED
+    row = {
+        "segments": group.size,
+        "segments_oscillating": count,
+        "waveform": waveform,
+        "regularity": regularity,
+    }
     for name in _MEANS:
         values = columns[name][moving]
         values = values[np.isfinite(values)]
@@ -146,6 +164,12 @@ def _row(group: np.ndarray, kind: np.ndarray, columns: dict[str, np.ndarray]) ->
     swing = columns["oscillation_swing"][group]
     row["oscillation_swing"] = np.nanmean(swing) if np.isfinite(swing).any() else np.nan
     return row
+
+
+def _commonest(words: np.ndarray) -> str:
+    """Return the most frequent word; of equally frequent ones that which comes first."""
+    known = words.astype(str).tolist()
+    return max(dict.fromkeys(known), key=known.count)
 
 
 def frequency_scaling(curve: xr.Dataset) -> Scaling:
@@ -167,7 +191,7 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
     if "dominant_frequency" not in curve:
         return nothing
     f, v = curve["dominant_frequency"].values, curve["sliding_speed"].values
-    good = np.isfinite(f) & (curve["waveform"].values != STEADY)
+    good = np.isfinite(f) & (oscillating(curve["waveform"].values))
     count = int(good.sum())
     if count < _FEWEST:
         return nothing._replace(speeds=count)

@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.examine import ALIKE, Examined
-from tribolab.friction.oscillation import PER_DECADE
-from tribolab.friction.waveform import CLASSES, class_probabilities, features
+from tribolab.friction.components import MOST
+from tribolab.friction.examine import Examined
+from tribolab.friction.regularity import scatter
+from tribolab.friction.survey import PER_DECADE
+from tribolab.friction.waveform import CLASSES, NOT_EVALUATED, UNDECIDED
 
-NOT_EVALUATED = "not evaluated"
 # what is said of a segment in which nothing oscillates
 _OF_NOISE = (
     "false_alarm_probability",
@@ -24,11 +25,8 @@ _OF_NOISE = (
     "spike_share",
     "mains_frequency",
     "mains_amplitude",
+    "periods",
 )
-DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
-_AGREE = 0.15  # drops and spectrum agree on the period to this
-
-
 SAME = 0.03  # a resonance keeps its frequency this well
 SPEEDS = 2.0  # over speeds that differ by this factor at least
 
@@ -98,6 +96,8 @@ class Row(NamedTuple):
     asymmetry_p_value: float
     derivative_skewness: float
     period_scatter: float
+    periods: float
+    oscillating_time_share: float
     drop_scatter: float
     spike_share: float
     mains_frequency: float
@@ -105,29 +105,20 @@ class Row(NamedTuple):
 
 
 def class_of(found: Examined | str) -> str:
-    """Return the class of waveform: smooth sliding unless that is improbable."""
-    if isinstance(found, str):
-        return NOT_EVALUATED
-    probability = _probability(found)
-    if probability[0] > DOUBT:
-        return CLASSES[0]
-    return CLASSES[1 + int(np.argmax(probability[1:]))]
+    """Return the class of waveform, "not decided" or "not evaluated"."""
+    return NOT_EVALUATED if isinstance(found, str) else found.verdict.kind
 
 
 def ranked(found: Examined) -> list[tuple[str, float]]:
     """Return the classes with their probabilities, the most probable first, claimed or not."""
-    probability = _probability(found)
+    probability = found.probability
     return [(CLASSES[k], float(probability[k])) for k in np.argsort(-probability)]
-
-
-def _probability(found: Examined) -> np.ndarray:
-    return class_probabilities(features(found.waveform, found.oscillation))
 
 
 def class_table(found: list[Examined | str]) -> np.ndarray:
     """Probability of each class (segment, class)."""
     nothing = np.full(len(CLASSES), np.nan)
-    rows = [nothing if isinstance(e, str) else _probability(e) for e in found]
+    rows = [nothing if isinstance(e, str) else e.probability for e in found]
     return np.array(rows).reshape(len(found), len(CLASSES))
 
 
@@ -142,15 +133,8 @@ def _std(values: np.ndarray) -> float:
 def _row(e: Examined, speed: float, load: float) -> Row:
     o, w, events = e.oscillation, e.waveform, e.events
     stick, slip = events.peak - events.start, events.stop - events.peak
-    period = np.diff(events.middle)
-    frequency, error = o.frequency, o.frequency_error
-    # drops tell the period better than the spectrum does, where periods are alike and the two agree
-    alike = period.size > 1 and w.period_scatter < ALIKE
-    if class_of(e) == CLASSES[3]:  # no line in the spectrum to speak of
-        frequency, error = o.mean_frequency, o.mean_frequency_error
-    elif alike and abs(1 / (period.mean() * frequency) - 1) < _AGREE:
-        frequency = 1 / float(period.mean())
-        error = frequency * w.period_scatter / np.sqrt(period.size)
+    period = e.regularity.periods
+    frequency, error = e.verdict.frequency, e.verdict.frequency_error
     slope = np.nan
     if speed > 0 and stick.size:
         slope = float(np.median(events.rise / np.maximum(stick, 1e-300))) / speed
@@ -183,7 +167,9 @@ def _row(e: Examined, speed: float, load: float) -> Row:
         fall_share=w.fall_share,
         asymmetry_p_value=w.asymmetry_p_value if w.events else np.nan,
         derivative_skewness=w.derivative_skewness,
-        period_scatter=w.period_scatter,
+        period_scatter=scatter(period),
+        periods=e.verdict.periods,
+        oscillating_time_share=e.regularity.share,
         drop_scatter=w.drop_scatter,
         spike_share=e.spike_share,
         mains_frequency=mains.frequency if mains else np.nan,
@@ -192,8 +178,8 @@ def _row(e: Examined, speed: float, load: float) -> Row:
 
 
 def oscillates(found: Examined | str) -> bool:
-    """Whether a segment's class is any but smooth sliding."""
-    return class_of(found) not in (NOT_EVALUATED, CLASSES[0])
+    """Whether an oscillation is claimed of a segment."""
+    return class_of(found) in CLASSES[1:]
 
 
 def _count(found: Examined | str) -> int:
@@ -213,16 +199,40 @@ def table(
     # where nothing oscillates, the turns of the noise are neither drops nor periods
     rows = [
         nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
-        if kind == CLASSES[0]
+        if kind in (CLASSES[0], UNDECIDED)
         else row
         for row, kind in zip(rows, kinds, strict=True)
     ]
     data = {name: np.array([getattr(row, name) for row in rows], float) for name in Row._fields}
     data["events"] = np.array([_count(e) for e in found], int)
     data["waveform"] = np.array(kinds, dtype=object)
+    regular = [e.regularity.kind if oscillates(e) else "" for e in found]
+    data["regularity"] = np.array(regular, dtype=object)
     method = ["" if isinstance(e, str) else e.oscillation.method for e in found]
     data["method"] = np.array(method, dtype=object)
     return data
+
+
+def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+    """All significant oscillations of the segments, on (segment, line), the strongest first.
+
+    Parameters
+    ----------
+    found, speed
+        What was seen, and the sliding speed [m/s] (segment).
+    """
+    lines = [e.lines if not isinstance(e, str) and oscillates(e) else () for e in found]
+    columns = {name: np.full((len(found), MOST), np.nan) for name in _LINE}
+    for k, mine in enumerate(lines):
+        for n, line in enumerate(mine):
+            columns["line_frequency"][k, n] = line.frequency
+            columns["line_wavelength"][k, n] = speed[k] / line.frequency
+            columns["line_swing"][k, n] = line.swing
+            columns["line_false_alarm_probability"][k, n] = line.false_alarm
+    return xr.Dataset({name: (("segment", "line"), values) for name, values in columns.items()})
+
+
+_LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_probability")
 
 
 def spectra(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:

@@ -11,12 +11,13 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import belong, trimmed_slices
 from tribolab.friction.examine import Examined, Limits, examine
+from tribolab.friction.regularity import KINDS
 from tribolab.friction.rests import unloaded_rests
 from tribolab.friction.slip_table import (
-    DOUBT,
     class_of,
     class_table,
     event_list,
+    line_table,
     oscillates,
     ranked,
     ringing,
@@ -24,7 +25,7 @@ from tribolab.friction.slip_table import (
     table,
 )
 from tribolab.friction.stretches import name_of
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.quantities import stamp
 
 _SOME = 100_000  # samples of a segment that tell its sign
@@ -41,10 +42,18 @@ _IN_SIGNAL_UNIT = (
     "mains_amplitude",
     "loading_slope",
     "event_drop",
+    "line_swing",
     "psd",
     "psd_background",
     "psd_significant",
     "distance_psd",
+)
+
+
+REVERSED = (
+    "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
+    "turned: look at the sensor's sense, and set `sign = -1` for the friction force in the dialect "
+    "if it is so"
 )
 
 
@@ -85,9 +94,11 @@ def stick_slip(
     -------
     xarray.Dataset
         On dim ``segment``, beside ``sliding_speed``, ``direction`` and ``sliding_distance``:
-        ``waveform`` (text: one of ``waveform.CLASSES``, or "not evaluated") and
-        ``class_probability`` (segment, waveform_class); ``dominant_frequency`` [Hz] and
-        ``dominant_wavelength`` [m] (with ``_sem``), ``false_alarm_probability``,
+        ``waveform`` (text: one of ``waveform.CLASSES``, "not decided" or "not evaluated") and
+        ``class_probability`` (segment, waveform_class); ``regularity`` (text: "regular",
+        "irregular" or "intermittent") and ``oscillating_time_share``; ``periods`` in the segment;
+        ``dominant_frequency`` [Hz] and ``dominant_wavelength`` [m] of the spectrum (with ``_sem``;
+        of the drops where these are alike and agree), ``false_alarm_probability``,
         ``peak_prominence``, ``oscillation_swing``, ``oscillation_share``, ``background_noise``,
         ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
@@ -95,8 +106,10 @@ def stick_slip(
         ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
         ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``spike_share``;
         ``instrument`` (text: mains and resonances), ``method``, ``remark`` (text).
-        Where the class is smooth sliding, only what describes the noise is a number; its
-        ``oscillation_swing`` bounds what could be hidden.
+        Where the class is smooth sliding or not decided, only what describes the noise is a number;
+        its ``oscillation_swing`` bounds what could be hidden.
+        On (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
+        ``line_swing``, ``line_false_alarm_probability`` of all oscillations that are significant.
         On (segment, frequency): ``psd``, ``psd_background``, ``psd_significant`` [1/Hz]; on
         (segment, inverse_wavelength): ``distance_psd`` [m]. On dim ``event``: ``event_segment``,
         ``event_time`` [s], ``event_drop``, ``event_stick``, ``event_slip`` [s].
@@ -111,13 +124,17 @@ def stick_slip(
     -----
     The spectrum, its background and significance: `tribolab.friction.oscillation`; events:
     `tribolab.friction.events`; the class and its limits: `tribolab.friction.waveform`. Distance is
-    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. An
-    oscillation with fewer than four periods in a segment is not told from a slow wander. Periods
-    are counted from the middle of one fall to that of the next. Of ten cycles at an amplitude three
-    times the noise, a mean drop is known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
+    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods
+    are counted from the middle of one sharp fall to that of the next (of a reversed sawtooth, of
+    its rises), pauses left out. Of ten cycles at an amplitude three times the noise, a mean drop is
+    known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
     Irregular stick-slip has no period: its dominant wavelength is that of the mean frequency of its
-    spectrum (`tribolab.friction.oscillation.mean_frequency`), good to 4 % of 25 such cycles; the
-    mean distance between drops, which depends on what counts as one, is ``recurrence_distance``.
+    spectrum (`tribolab.friction.oscillation.mean_frequency`), or of its line where there is a sharp
+    one; the mean distance between drops is another number, ``recurrence_distance``.
+    Spectrum and drops have to agree on the period within 15 % or three errors (where periods
+    scatter, within a factor of 1.8), and the segment has to hold four periods: else the class is
+    "not decided", and the remark says why. An oscillation with fewer than four periods is not told
+    from a slow wander.
     A line of the mains is taken out before anything else is sought; an oscillation that keeps its
     frequency within 3 % over speeds that differ by a factor of two or more is named as a resonance.
 
@@ -158,6 +175,7 @@ def stick_slip(
         segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
     )
     result = result.merge(spectra(found, speed)).merge(event_list(found))
+    result = result.merge(line_table(found, speed))
     if force:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
         result = result.rename(names)
@@ -242,19 +260,39 @@ def _remark(found: Examined | str, cut: bool, speed: float) -> str:
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
     if not np.isfinite(speed):
         words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
-    if oscillates(found) and found.waveform.events < 3:
-        words.append("fewer than three whole cycles")
-    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
-        words.append("noise and spikes hold more of the fluctuation than the oscillation")
-    likely, second = ranked(found)[:2]
-    if likely[0] != class_of(found):
-        text = f"not decided: {likely[0]} is more probable, but smooth sliding not improbable"
-        words.append(text)
-    elif likely[0] == CLASSES[0] and second[1] > DOUBT:
+    if found.verdict.kind == UNDECIDED:
+        return "; ".join([*words, f"not decided: {found.verdict.doubt}"])
+    words += _form_words(found, speed)
+    second = ranked(found)[1]
+    if class_of(found) == CLASSES[0] and second[1] > DOUBT:
         words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
         if found.oscillation.share < 0.5:
             words.append("noise and spikes hold more of the fluctuation")
     return "; ".join(words)
+
+
+def _form_words(found: Examined, speed: float) -> list[str]:
+    """Say what is special of an oscillation that is claimed."""
+    if not oscillates(found):
+        return []
+    words, seen = [], found.regularity
+    if class_of(found) == CLASSES[3]:
+        words.append(REVERSED)
+    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
+        words.append("noise and spikes hold more of the fluctuation than the oscillation")
+    if seen.kind == KINDS[2]:
+        words.append(f"oscillates {seen.share:.0%} of the time")
+    if seen.kind == KINDS[1] and speed > 0:
+        spectral = 1e6 * speed / found.verdict.frequency
+        apart = 1e6 * speed * float(seen.periods.mean())
+        words.append(
+            f"periods scatter by {found.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
+            f"apart in the mean, the spectrum tells a wavelength of {spectral:.3g} µm"
+        )
+    if len(found.lines) > 1:
+        listed = ", ".join(f"{line.frequency:.4g} Hz" for line in found.lines)
+        words.append(f"{len(found.lines)} frequencies, the strongest first: {listed}")
+    return words
 
 
 def _instrument(found: list[Examined | str], speed: np.ndarray) -> list[str]:

@@ -1,7 +1,7 @@
 """The form of an oscillation: how steeply it rises and falls, how alike its periods are.
 
-The class follows from nine features by a multinomial logistic model. Its coefficients stand below;
-they were fitted to traces of the virtual rig (``tests/benchmarks/calibrate_stick_slip.py``, whose
+The class follows from eleven features by a multinomial logistic model. Its coefficients stand
+below; they were fitted to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, whose
 seeds no test and no table uses) and looked at on real records.
 """
 
@@ -14,6 +14,7 @@ from scipy import stats
 
 from tribolab.friction.events import Events
 from tribolab.friction.oscillation import Oscillation
+from tribolab.friction.regularity import scatter
 
 
 class Waveform(NamedTuple):
@@ -42,7 +43,7 @@ class Waveform(NamedTuple):
     events: int
 
 
-def describe_waveform(values: np.ndarray, lag: int, events: Events) -> Waveform:
+def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.ndarray) -> Waveform:
     """Features of the form of a record.
 
     Parameters
@@ -53,6 +54,8 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events) -> Waveform:
         Samples over which the derivative is taken.
     events
         Cycles found in it.
+    period
+        Times from drop to drop, pauses left out [s].
     """
     rise, fall = events.peak - events.start, events.stop - events.peak
     n = events.drop.size
@@ -66,18 +69,25 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events) -> Waveform:
     p_value = 1.0
     if longer + shorter:
         p_value = float(stats.binomtest(longer, longer + shorter).pvalue)
-    period = np.diff(events.middle)
     return Waveform(
         fall_share=float(np.median(fall / (rise + fall))),
         asymmetry_p_value=p_value,
         derivative_skewness=skewness,
-        period_scatter=float(np.std(period, ddof=1) / period.mean()) if n > 2 else np.nan,
+        period_scatter=scatter(period),
         drop_scatter=float(np.std(events.drop, ddof=1) / events.drop.mean()) if n > 1 else np.nan,
         events=n,
     )
 
 
-CLASSES = ("smooth sliding", "sawtooth stick-slip", "sinus-like oscillation", "irregular")
+CLASSES = (
+    "smooth sliding",
+    "sawtooth stick-slip",
+    "sinus-like oscillation",
+    "reversed sawtooth",
+)
+NOT_EVALUATED = "not evaluated"
+UNDECIDED = "not decided"
+DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
 
 # feature: (value where unknown, lowest, highest); what lies beyond counts as the limit
 LIMITS = {
@@ -86,24 +96,28 @@ LIMITS = {
     "strength": (-0.3, -0.5, 1.5),  # log10 of the swing over the noise
     "share": (0.0, 0.0, 1.0),
     "harmonics": (0.5, 0.0, 1.2),
-    "asymmetry": (0.0, -0.1, 0.5),  # one half less the part of a cycle that falls
+    "asymmetry": (0.0, -0.5, 0.5),  # one half less the part of a cycle that falls
+    "lean": (0.0, 0.0, 0.5),  # its size
     "reversal": (0.0, 0.0, 6.0),  # -log10 of the probability that rises and falls are alike
-    "skewness": (0.0, -4.0, 1.0),
+    "skewness": (0.0, -4.0, 4.0),
+    "sharpness": (0.0, 0.0, 4.0),  # its size
     "scatter": (0.5, 0.0, 0.8),  # of the periods
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([4.13, -4.71, 0.97, -0.38])
+INTERCEPT = np.array([3.52, -2.46, 1.40, -2.46])
 COEFFICIENTS = {
-    "prominence": np.array([-0.30, -0.38, 0.60, 0.08]),
-    "significance": np.array([-0.20, 0.64, 0.24, -0.69]),
-    "strength": np.array([-0.94, -1.46, 1.37, 1.03]),
-    "share": np.array([-2.71, 0.39, 1.61, 0.70]),
-    "harmonics": np.array([0.13, 1.93, -3.18, 1.13]),
-    "asymmetry": np.array([-10.74, 17.30, -7.01, 0.45]),
-    "reversal": np.array([-0.53, -0.02, 0.01, 0.54]),
-    "skewness": np.array([1.08, -1.20, 0.80, -0.67]),
-    "scatter": np.array([4.95, -2.93, -3.92, 1.90]),
+    "prominence": np.array([-0.57, -0.06, 0.69, -0.06]),
+    "significance": np.array([-0.15, -0.07, 0.29, -0.07]),
+    "strength": np.array([-0.01, -0.53, 1.08, -0.53]),
+    "share": np.array([-2.46, 1.19, 0.08, 1.19]),
+    "harmonics": np.array([0.25, 0.15, -0.55, 0.15]),
+    "asymmetry": np.array([0.00, 6.85, 0.00, -6.85]),
+    "lean": np.array([-1.47, 5.72, -9.97, 5.72]),
+    "reversal": np.array([-0.92, 0.38, 0.15, 0.38]),
+    "skewness": np.array([0.00, -0.82, 0.00, 0.82]),
+    "sharpness": np.array([-0.57, 0.76, -0.95, 0.76]),
+    "scatter": np.array([2.75, 0.93, -4.60, 0.93]),
 }
 
 
@@ -116,8 +130,10 @@ def features(form: Waveform, found: Oscillation) -> dict[str, float]:
         "share": found.share,
         "harmonics": found.harmonic_content,
         "asymmetry": 0.5 - form.fall_share,
+        "lean": abs(0.5 - form.fall_share),
         "reversal": -np.log10(max(form.asymmetry_p_value, 1e-99)),
         "skewness": form.derivative_skewness,
+        "sharpness": abs(form.derivative_skewness),
         "scatter": form.period_scatter,
     }
     return {
@@ -137,3 +153,30 @@ def class_probabilities(values: dict[str, float]) -> np.ndarray:
     score = INTERCEPT + sum(COEFFICIENTS[name] * value for name, value in values.items())
     weight = np.exp(score - score.max())
     return weight / weight.sum()
+
+
+def oscillating(kind: np.ndarray) -> np.ndarray:
+    """Return where a class of waveform claims an oscillation.
+
+    Examples
+    --------
+    >>> oscillating(np.array(["smooth sliding", "sawtooth stick-slip", "not decided"])).tolist()
+    [False, True, False]
+    """
+    return np.isin(kind.astype(str), CLASSES[1:])
+
+
+def most_probable(probability: np.ndarray) -> str:
+    """Return the class, "not decided" where smooth sliding is neither likely nor improbable.
+
+    Examples
+    --------
+    >>> most_probable(np.array([0.1, 0.3, 0.6, 0.0]))
+    'sinus-like oscillation'
+    >>> most_probable(np.array([0.3, 0.7, 0.0, 0.0]))
+    'not decided'
+    """
+    likely = int(np.argmax(probability))
+    if probability[0] > DOUBT:
+        return CLASSES[0] if likely == 0 else UNDECIDED
+    return CLASSES[1 + int(np.argmax(probability[1:]))]

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.waveform import CLASSES, UNDECIDED
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.reduce import envelope
@@ -37,7 +37,8 @@ _LOOK = {
     CLASSES[0]: ("o", GREY),
     CLASSES[1]: ("^", BLACK),
     CLASSES[2]: ("o", SKY),
-    CLASSES[3]: ("D", PURPLE),
+    CLASSES[3]: ("v", PURPLE),
+    UNDECIDED: ("s", GREY),
 }
 
 
@@ -244,7 +245,10 @@ def _spectrum(figure: PaperFigure, axes: Axes, label: str, slip: xr.Dataset, num
     axes.set_xlabel("frequency $f$ (Hz)")
     unit = "N$^2$/Hz" if name == "force_psd" else "Hz$^{-1}$"
     axes.set_ylabel(f"power $S$ ({unit})")
-    axes.set_title(f"{plain(label)}\n{row['waveform'].item()}", fontsize=7, loc="left", pad=3)
+    words = row["waveform"].item()
+    if row["regularity"].item():
+        words += f", {row['regularity'].item()}"
+    axes.set_title(f"{plain(label)}\n{words}", fontsize=7, loc="left", pad=3)
 
 
 def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -> PaperFigure:
@@ -352,17 +356,17 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
         for place, (label, curve) in enumerate(curves.items()):
             kinds, v = curve["waveform"].values.astype(str), curve["sliding_speed"].values
             for kind in dict.fromkeys(kinds):
-                marker, colour = _LOOK.get(kind, ("x", GREY))
+                marker, colour = _LOOK.get(kind, ("s", GREY))
                 part = kinds == kind
                 size = 14 + 90 * np.nan_to_num(_drops(curve)[part] / largest)
-                filled = colour if kind != CLASSES[0] else "none"
+                filled = colour if kind in CLASSES[1:] else "none"
                 axes.scatter(
                     v[part], np.full(part.sum(), place), size, marker=marker,
                     facecolors=filled, edgecolors=colour, linewidths=0.7,
                 )  # fmt: skip
             figure.keep("map", label, sliding_speed_m_s=v, drop=_drops(curve))
         for kind, (marker, colour) in _LOOK.items():
-            filled = colour if kind != CLASSES[0] else "none"
+            filled = colour if kind in CLASSES[1:] else "none"
             axes.scatter(
                 [], [], 22, marker=marker, facecolors=filled, edgecolors=colour, label=kind,
                 linewidths=0.7,
@@ -375,7 +379,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
         axes.set_ylim(-0.7, len(curves) - 0.3)
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("sliding speed $v$ (m/s)")
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=4, fontsize=7)
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, fontsize=7)
     return figure
 
 

@@ -34,6 +34,7 @@ def check_run(
     run: xr.Dataset,
     segments: xr.Dataset | None = None,
     friction: xr.Dataset | None = None,
+    slip: xr.Dataset | None = None,
     *,
     limits: Mapping[str, Mapping[str, str | float]] | None = None,
     skip: Sequence[str] = (),
@@ -47,8 +48,9 @@ def check_run(
     ----------
     run
         The run dataset (dim ``time``).
-    segments, friction
-        What `find_segments` and `friction_coefficient` gave for it; computed if not given.
+    segments, friction, slip
+        What `find_segments`, `friction_coefficient` and `stick_slip` gave for it; computed if not
+        given.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
@@ -91,6 +93,7 @@ def check_run(
         run,
         segments,
         friction,
+        slip,
         set_normal_force=unknown
         if normal_force is None
         else to_si(normal_force, "N", name="normal_force"),
@@ -134,7 +137,8 @@ def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -
     run, segments
         The run dataset (time); its segments, found if not given.
     **options
-        As for `check_run`: ``friction``, ``limits``, ``skip``, ``normal_force``, ``contact_width``.
+        As for `check_run`: ``friction``, ``slip``, ``limits``, ``skip``, ``normal_force``,
+        ``contact_width``.
 
     Returns
     -------

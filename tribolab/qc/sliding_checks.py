@@ -9,7 +9,9 @@ import numpy as np
 
 from tribolab.friction import steadiness
 from tribolab.friction.lines import Line
+from tribolab.friction.regularity import KINDS
 from tribolab.friction.steadiness import relative_change, undecided
+from tribolab.friction.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Count, Limit, Result, Skip
@@ -53,7 +55,36 @@ def _strongest(
     return [Result(status_of(share, limits), name, text, share, "1", where, noted=True)]
 
 
+def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Friction that falls slowly and rises sharply belongs to a sensor whose sign is turned."""
+    kind = subject.slip["waveform"].values
+    # what varies along a track may fall slowly, too, but not again and again alike
+    reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == KINDS[0])
+    if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
+        return []
+    first = int(np.flatnonzero(reversed_)[0])
+    where, count = subject.segment_label(first), int(reversed_.sum())
+    text = (
+        f"friction falls slowly and rises sharply in {Count(count):segment|segments}, as "
+        "stick-slip does behind a sensor whose sign is turned"
+    )
+    return [Result("suspect", _signal(subject), text, where=where, count=count)]
+
+
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    try:
+        sense = _sense(subject, limits)
+    except Skip:  # a run without friction: the other part says why
+        sense = []
+    try:
+        return [*_opposes(subject, limits), *sense]
+    except Skip:
+        if sense:
+            return sense
+        raise
+
+
+def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if subject.segments.attrs.get("velocity_source") not in ("recorded", "position"):
         raise Skip("the direction of sliding was not recorded")
     friction, signal = subject.friction, _signal(subject)

@@ -12,6 +12,7 @@ from tribolab.friction.coefficient import friction_coefficient
 from tribolab.friction.lines import Line, segment_lines
 from tribolab.friction.noise import noise_level
 from tribolab.friction.segments import find_segments, why_no_segment
+from tribolab.friction.stick_slip import stick_slip
 from tribolab.qc.register import Skip
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
@@ -25,7 +26,7 @@ class RunSubject:
     ----------
     run
         The run dataset.
-    segments, friction
+    segments, friction, slip
         Found if not given.
     set_normal_force
         [N] set-point of the normal force, NaN if unknown.
@@ -38,12 +39,13 @@ class RunSubject:
         run: xr.Dataset,
         segments: xr.Dataset | None = None,
         friction: xr.Dataset | None = None,
+        slip: xr.Dataset | None = None,
         *,
         set_normal_force: float = float("nan"),
         contact_width: float = float("nan"),
     ) -> None:
         self.run = run
-        self._segments, self._friction = segments, friction
+        self._segments, self._friction, self._slip = segments, friction, slip
         self.set_normal_force = set_normal_force
         self.contact_width = contact_width
 
@@ -211,8 +213,26 @@ class RunSubject:
         how = f"{speed:.3g} m/s {arrow}".strip() if np.isfinite(speed) else "speed unknown"
         return f"segment {number + 1} ({how}, from t = {start:.6g} s)"
 
+    @cached_property
+    def _found_slip(self) -> xr.Dataset | Skip:
+        if self._slip is not None:
+            return self._slip
+        try:
+            return stick_slip(self.run, self.segments)
+        except AnalysisError as why:
+            return Skip(f"no oscillation was looked for: {why}")
+
+    @property
+    def slip(self) -> xr.Dataset:
+        """Stick-slip of each segment, the same that the results state."""
+        if isinstance(self._found_slip, Skip):
+            raise self._found_slip
+        return self._found_slip
+
     def strong_periods(self, least: float) -> np.ndarray:
         """How many stick-slip periods each segment holds; NaN where there is none to speak of.
+
+        A wave that has too few periods to be claimed counts, too: it has that many all the same.
 
         Parameters
         ----------
@@ -222,8 +242,9 @@ class RunSubject:
         name = self.friction_signal
         if name is None:
             raise Skip("no friction was recorded")
-        values, floor = self.signals[name], least * self.typical_friction
-        return np.array([stick_slip_periods(values[part], floor) for part in self.slices])
+        periods = self.slip["periods"].values
+        strong = self.segment_stds(name) > least * self.typical_friction
+        return np.where(strong, periods, np.nan)
 
     @cached_property
     def lines(self) -> list[Line]:
@@ -257,56 +278,3 @@ def _mean(values: np.ndarray) -> float:
 def _std(values: np.ndarray) -> float:
     known = values[np.isfinite(values)]
     return float(known.std()) if known.size else float("nan")
-
-
-def stick_slip_periods(values: np.ndarray, least: float = 0.0, correlation: float = 0.4) -> float:
-    """Count the periods of an oscillation that dominates a signal; NaN if none does.
-
-    Parameters
-    ----------
-    values
-        (time), evenly sampled.
-    least
-        Least standard deviation that counts as an oscillation, in the unit of the values.
-    correlation
-        Least autocorrelation at the lag of one period.
-
-    Notes
-    -----
-    The lag of the first high summit of the autocorrelation behind its first zero. Of the
-    straightened signal: means over stretches for slow waves, the first samples for fast ones.
-    """
-    best, count = correlation, float("nan")
-    if values.size < 32:
-        return count
-    size = values.size // 4096
-    views = [values[:4096]]
-    if size > 1:
-        views.append(values[: 4096 * size].reshape(4096, size).mean(axis=1))
-    for view, share in zip(views, (4096 / values.size, 1.0), strict=False):
-        n = view.size
-        if n < 32 or not np.isfinite(view).all() or not view.std() > least:
-            continue
-        place = np.linspace(-1, 1, n)
-        part = view - np.polynomial.polynomial.polyval(
-            place, np.polynomial.polynomial.polyfit(place, view, 1)
-        )
-        power = np.abs(np.fft.rfft(part, 2 * n)) ** 2
-        auto = np.fft.irfft(power)[: n // 2] / np.arange(n, n - n // 2, -1)
-        if not auto[0] > 0:
-            continue
-        auto /= auto[0]
-        below = np.flatnonzero(auto < 0)
-        if below.size == 0:
-            continue
-        tail = auto[below[0] :]
-        if not tail.max() > 0:
-            continue
-        # periods that scatter agree again by chance at long lags: the first high summit counts
-        high = tail > 0.6 * tail.max()
-        start = int(np.argmax(high))
-        stop = start + int(np.argmin(np.append(high[start:], False)))
-        lag = below[0] + start + int(np.argmax(tail[start:stop]))
-        if auto[lag] > best and lag < n // 2 - 1:
-            best, count = float(auto[lag]), n / lag / min(share, 1.0)
-    return count

@@ -170,7 +170,7 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
         From `tribolab.friction.stick_slip.stick_slip`.
     """
     from tribolab.friction.slip_curve import STEADY, stick_slip_curve
-    from tribolab.friction.slip_table import NOT_EVALUATED
+    from tribolab.friction.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 
     curve = stick_slip_curve([slip])
     over_speed = bool(curve.sizes["sliding_speed"])
@@ -178,7 +178,14 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
     kind = kind[kind != NOT_EVALUATED]
     if not kind.size:
         return {"class": NOT_EVALUATED, "detail": ""}
-    moving = kind != STEADY
+    moving = oscillating(kind)
+    if not moving.any() and (kind == UNDECIDED).any():
+        what = "speed" if over_speed else "segment"
+        return {
+            "class": UNDECIDED,
+            "detail": f"{'at' if over_speed else 'in'} {(kind == UNDECIDED).sum()} of "
+            f"{many(kind.size, what)}",
+        }
     if not moving.any():  # without a speed, standing still may be among the sliding
         return {"class": STEADY, "detail": "" if over_speed else "if it slides: speed not known"}
     names, counts = np.unique(kind[moving], return_counts=True)

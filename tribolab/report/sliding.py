@@ -25,8 +25,11 @@ _FIRST = [
     "sliding_speed",
     "direction",
     "waveform",
+    "regularity",
+    "oscillating_time_share",
     "dominant_frequency",
     "dominant_wavelength",
+    "recurrence_distance",
     "drop",
     "events",
 ]
@@ -37,8 +40,10 @@ _CURVE = (
     "regime",
     "model_regime",
     "waveform",
+    "regularity",
     "drop",
     "dominant_wavelength",
+    "recurrence_distance",
     "dominant_frequency",
 )
 
@@ -215,4 +220,4 @@ def mode_record(one: CurveSlip, mode: SlidingMode) -> dict[str, Any]:
     )
 
 
-_ENDING = {"dominant_wavelength": "_m", "dominant_frequency": "_Hz"}
+_ENDING = {"dominant_wavelength": "_m", "recurrence_distance": "_m", "dominant_frequency": "_Hz"}

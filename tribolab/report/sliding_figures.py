@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.waveform import oscillating
 from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition
@@ -144,7 +144,7 @@ def _lowest(found: Sequence[CurveSlip]) -> list[CurveSlip]:
 
 def _moves(one: CurveSlip) -> bool:
     """Whether stick-slip is claimed at any speed; a segment that stands alone is no claim."""
-    return "waveform" in one.curve and bool((one.curve["waveform"] != CLASSES[0]).any())
+    return "waveform" in one.curve and bool(oscillating(one.curve["waveform"].values).any())
 
 
 def _slow_segments(one: CurveSlip) -> tuple[str, list[int]]:
