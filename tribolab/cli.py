@@ -102,7 +102,8 @@ def demo(
 @app.command()
 def reproduce(
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the results; replaced as a whole.")
+        Path,
+        typer.Option("--output", "-o", help="Folder of the results; files of yours in it stay."),
     ] = Path("tribolab-paper"),
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -135,7 +136,7 @@ def run(
         typer.Option(
             "--output",
             "-o",
-            help="Folder of the results; replaced as a whole.",
+            help="Folder of the results; files of yours in it stay.",
             show_default="as the campaign file says, else results/ beside it",
         ),
     ] = None,
@@ -375,6 +376,8 @@ def _show(outcome: Outcome, debug: bool) -> int:
         terminal.console().print(table)
     for line in terminal.outcome_lines(outcome):
         typer.echo(line)
+    for line in terminal.foreign_lines(outcome):
+        typer.echo(line)
     for line in terminal.failure_lines(outcome):
         typer.echo(f"tribolab: {line}", err=True)
     crashes = [curve.crash for curve in outcome.curves if curve.crash]
@@ -383,7 +386,7 @@ def _show(outcome: Outcome, debug: bool) -> int:
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
-    if spoilt or crashes or not outcome.segments:
+    if spoilt or outcome.kept or crashes or not outcome.segments:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))

@@ -130,6 +130,16 @@ def _computed(outcome: Outcome) -> str:
     return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
 
 
+def foreign_lines(outcome: Outcome) -> list[str]:
+    """Name the files in the results folder that are not ours."""
+    if not outcome.foreign:
+        return []
+    names = ", ".join(outcome.foreign[:_HANDFUL])
+    more = len(outcome.foreign) - _HANDFUL
+    names += f" and {more} more" if more > 0 else ""
+    return [f"not written by tribolab and left where they are: {names}"]
+
+
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     from tribolab.report.sliding import condition
@@ -142,6 +152,9 @@ def failure_lines(outcome: Outcome) -> list[str]:
             f"surface {surface.name}: {as_in_campaign(finding.message, '[[surface]]')}"
             for finding in surface.unreadable
         ]
+    failed += [
+        f"{run.name}: {as_in_campaign(run.kept, '[[run]]')}" for run in outcome.runs if run.kept
+    ]
     failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
