@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.report.progress import progress_bars
+from tribolab.report.streams import Terminated, prepared
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -347,8 +348,9 @@ def _reported(debug: bool) -> Iterator[None]:
         _fail(str(error), USAGE, debug)
     except TribolabError as error:
         _fail(str(error), UNREADABLE, debug)
-    except KeyboardInterrupt:
-        _fail("interrupted; results of before are as they were", INTERRUPTED, debug)
+    except KeyboardInterrupt as stop:
+        code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
+        _fail("interrupted; results of before are as they were", code, debug)
     except (typer.Exit, BrokenPipeError):
         raise
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
@@ -397,4 +399,5 @@ def _show(outcome: Outcome, debug: bool) -> int:
 
 def main() -> None:
     """Run the command line."""
-    app()
+    with prepared():
+        app()
