@@ -30,7 +30,7 @@ def test_a_reader_that_leaves_changes_nothing_but_what_is_shown():
 )
 def test_every_text_can_be_shown_in_every_terminal(settings, wanted):
     code = "from tribolab.report.streams import prepared\n"
-    code += "with prepared(): print('0.8 ± 0.1 µm \\udcff')"
+    code += "with prepared(): print('0.8 \\xb1 0.1 \\xb5m \\udcff')"
     env = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))} | settings
     done = subprocess.run([*SAY, code], capture_output=True, env=env, check=True)
     assert done.stdout == wanted

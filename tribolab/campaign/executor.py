@@ -118,7 +118,8 @@ def _gone(why: str, done: int, of: int) -> str:
     said = f"; {done} of {of} pieces of work were done" if of else ""
     return (
         f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
-        "they were; start scheduler and workers again and repeat the command, or leave --scheduler out"
+        "they were; start scheduler and workers again and repeat the command, or leave "
+        "--scheduler out"
     )
 
 
