@@ -44,6 +44,7 @@ BITS = {
     "distance": 22,
     "sampling": 23,
     "segment_speed": 24,
+    "rows_left_out": 25,
 }
 
 

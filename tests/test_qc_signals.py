@@ -1,12 +1,14 @@
 """Plain checks on arrays: each finds its own defect, where it is, and leaves sound signals be."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab.friction.lines import find_lines, mains_harmonic
 from tribolab.friction.noise import noise_level
+from tribolab.io.table_schema import validate
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
 from tribolab.qc.subject import stick_slip_periods
@@ -185,15 +187,24 @@ def test_noise_and_weak_waves_have_no_periods():
 
 
 def test_values_beyond_belief_and_beyond_physics_are_told_apart():
-    kelvin = schema.RANGES["temperature"]
+    kelvin = schema.ranges()["temperature"]
     assert schema.in_range(np.array([293.0, 20.0, -3.0, np.nan]), kelvin).tolist() == [
         GOOD,
         SUSPECT,
         FAIL,
         NOT_EVALUATED,
     ]
-    for span in schema.RANGES.values():
+    for span in schema.ranges().values():
         assert span.lowest <= span.low < span.high <= span.highest and span.reason
+
+
+def test_the_check_and_the_schema_believe_the_same():
+    for name, span in schema.ranges().items():
+        for value, wrong in ((span.low, False), (span.high, False), (1.01 * span.high, True)):
+            table = pd.DataFrame({"time": [0.0], name: [value]})
+            assert bool(validate(table)) == wrong, (name, value)
+            flag = schema.in_range(np.array([value]), span)[0]
+            assert (flag != GOOD) == wrong, (name, value)
 
 
 def test_a_load_of_the_wrong_sign_is_seen_and_a_short_pull_is_not():

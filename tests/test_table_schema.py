@@ -83,7 +83,8 @@ def good(rows=50):
     for field in fields("run"):
         limits = field.get("constraints", {})
         low, high = limits.get("minimum", -1.0), limits.get("maximum", 1.0)
-        table[field["name"]] = np.linspace(max(low, -1), min(high, 1), rows)
+        bottom = max(low, -1)
+        table[field["name"]] = np.linspace(bottom, max(bottom, min(high, 1)), rows)
         if field["type"] == "integer":
             table[field["name"]] = np.arange(rows)
     return pd.DataFrame(table)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,16 +10,22 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError, TribolabError, UnitError, nearest
-from tribolab.units import to_si
+from tribolab.turns import Counted, reciprocal
+from tribolab.units import conversion, to_si
 
 
 class Quantity(NamedTuple):
-    """Name, symbol (as on paper), SI unit (as in netCDF attributes) and long name."""
+    """Name, symbol (as on paper), SI unit (as in netCDF attributes) and long name.
+
+    `bare` is wanted of what is counted per time or per length: what a unit counts that does not
+    say it, like "1/min"; "ask" where cycles and radians are both usual (see `tribolab.turns`).
+    """
 
     name: str
     symbol: str
     unit: str
     long_name: str
+    bare: Counted | None = None
 
 
 _ROWS = [
@@ -35,14 +42,14 @@ _ROWS = [
     ("set_speed", "v_set", "m/s", "set-point of the sliding speed"),
     ("set_normal_force", "F_set", "N", "set-point of the normal force"),
     ("rolling_speed", "u", "m/s", "rolling (entrainment) speed"),
-    ("rotation_speed", "\\omega", "rad/s", "rotation speed"),
+    ("rotation_speed", "\\omega", "rad/s", "rotation speed", "cycles"),
     ("slide_roll_ratio", "SRR", "1", "slide-to-roll ratio"),
     ("film_thickness", "h", "m", "film thickness"),
     ("height_displacement", "z", "m", "displacement normal to the contact"),
     ("electrical_contact_resistance", "ECR", "1", "electrical contact resistance, relative"),
     ("voltage", "U", "V", "raw sensor voltage"),
     ("viscosity", "\\eta", "Pa s", "viscosity"),
-    ("shear_rate", "\\dot\\gamma", "1/s", "shear rate"),
+    ("shear_rate", "\\dot\\gamma", "1/s", "shear rate", "nothing"),
     ("step", "", "1", "number of the instrument's step"),
     ("cycle", "", "1", "number of the cycle"),
     # segments
@@ -63,7 +70,7 @@ _ROWS = [
     ("friction_coefficient", "\\mu", "1", "friction coefficient"),
     ("effective_samples", "n_eff", "1", "effective number of independent samples"),
     ("autocorrelation_time", "\\tau_int", "s", "integrated autocorrelation time"),
-    ("trend", "d\\mu/dt", "1/s", "linear trend of the friction coefficient"),
+    ("trend", "d\\mu/dt", "1/s", "linear trend of the friction coefficient", "nothing"),
     ("force_trend", "dF/dt", "N/s", "linear trend of the friction force"),
     ("trend_change", "\\Delta\\mu", "1", "change along the linear trend over the trimmed segment"),
     ("trend_p_value", "p", "1", "probability of such a trend in a steady signal"),
@@ -80,18 +87,18 @@ _ROWS = [
     ("x", "x", "m", "coordinate along the profile"),
     ("y", "y", "m", "coordinate across the profile"),
     ("height", "h", "m", "surface height"),
-    ("wavenumber", "q", "1/m", "wavenumber"),
+    ("wavenumber", "q", "1/m", "wavenumber", "radians"),
     ("psd_1d", "C_{1D}", "m3", "one-dimensional power spectrum"),
     ("psd_2d", "C", "m4", "two-dimensional power spectrum"),
     ("scans", "", "1", "number of scans"),
     ("rms_roughness", "h_rms", "m", "root-mean-square roughness"),
     ("rms_slope", "\\xi", "1", "root-mean-square slope"),
-    ("rms_curvature", "\\kappa", "1/m", "root-mean-square curvature"),
+    ("rms_curvature", "\\kappa", "1/m", "root-mean-square curvature", "nothing"),
     # surfaces, measured (surface room)
     ("scan", "", "1", "number of the scan"),
     ("dropout", "", "1", "1 where the height was filled"),
     ("form_tilt", "", "1", "tilt that was removed"),
-    ("form_curvature", "", "1/m", "curvature that was removed, positive where hollow"),
+    ("form_curvature", "", "1/m", "curvature that was removed, positive where hollow", "nothing"),
     ("independent_values", "", "1", "effective number of independent values"),
     ("mean_square_height", "<h^2>", "m2", "mean square height held by the bin"),
     ("trusted", "", "1", "1 where the spectrum can be trusted, else 0"),
@@ -120,17 +127,17 @@ _ROWS = [
     ("contact_area_ratio_no_adhesion", "A/A_0", "1", "relative contact area without adhesion"),
     ("area_enhancement", "A/A(\\gamma=0)", "1", "contact area relative to that without adhesion"),
     ("pull_off", "", "1", "1 where there is a pull-off force, else 0"),
-    ("iterations", "", "1", "steps of the root search"),
-    ("residual", "", "1", "relative misfit of the equation solved"),
+    ("root_search_steps", "", "1", "steps of the root search"),
+    ("balance_residual", "", "1", "relative misfit of the adhesive balance"),
     # contact: gaps and line contacts
     ("gap", "u", "m", "local interfacial gap"),
-    ("gap_density", "P(u)", "1/m", "probability density of the gap"),
+    ("gap_density", "P(u)", "1/m", "probability density of the gap", "nothing"),
     ("gap_weight", "P(u) du", "1", "quadrature weight of the gap"),
     ("gap_scale", "", "1", "factor that makes the mean gap the mean separation"),
     ("max_pressure", "p_max", "Pa", "maximum contact pressure"),
     ("contact_width", "2a", "m", "width of the nominal contact"),
     # surfaces of a campaign
-    ("angular_frequency", "\\omega", "rad/s", "angular frequency"),
+    ("angular_frequency", "\\omega", "rad/s", "angular frequency", "ask"),
     ("storage_modulus", "E'", "Pa", "storage modulus"),
     ("loss_modulus", "E''", "Pa", "loss modulus"),
     ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
@@ -158,9 +165,9 @@ _ROWS = [
     ("friction_coefficient_residual", "\\Delta\\mu", "1", "measured less computed friction"),
     ("used", "", "1", "1 where the point was fitted, else 0"),
     # stick-slip
-    ("frequency", "f", "Hz", "frequency"),
-    ("inverse_wavelength", "1/\\lambda", "1/m", "inverse wavelength"),
-    ("dominant_frequency", "f_0", "Hz", "frequency of the strongest oscillation"),
+    ("frequency", "f", "Hz", "frequency", "cycles"),
+    ("inverse_wavelength", "1/\\lambda", "1/m", "inverse wavelength", "cycles"),
+    ("dominant_frequency", "f_0", "Hz", "frequency of the strongest oscillation", "cycles"),
     ("dominant_wavelength", "\\lambda_0", "m", "sliding distance of one oscillation"),
     ("false_alarm_probability", "p", "1", "probability that noise shows such a peak"),
     ("peak_prominence", "", "1", "power of the peak over its background"),
@@ -183,7 +190,7 @@ _ROWS = [
     ("recurrence_time", "T", "s", "time from drop to drop"),
     ("recurrence_distance", "\\lambda", "m", "sliding distance from drop to drop"),
     ("loading_stiffness", "k", "N/m", "friction force over distance during a stick"),
-    ("mains_frequency", "f", "Hz", "frequency of the strongest line of the mains"),
+    ("mains_frequency", "f", "Hz", "frequency of the strongest line of the mains", "cycles"),
     ("class_probability", "p", "1", "probability of the class of waveform"),
     ("spike_share", "", "1", "part of the samples that are single spikes"),
     ("event_segment", "", "1", "segment of the event"),
@@ -196,7 +203,13 @@ _ROWS = [
     ("sample_noise", "", "1", "noise of the friction coefficient from sample to sample"),
     ("hysteresis", "", "1", "smallest swing of the friction coefficient that counts"),
     ("mains_amplitude", "", "1", "amplitude of the mains in the friction coefficient"),
-    ("loading_slope", "d\\mu/dx", "1/m", "friction coefficient over distance in a stick"),
+    (
+        "loading_slope",
+        "d\\mu/dx",
+        "1/m",
+        "friction coefficient over distance in a stick",
+        "nothing",
+    ),
     ("event_drop", "\\Delta\\mu", "1", "drop of the friction coefficient"),
     ("psd", "S", "1/Hz", "power spectrum of the friction coefficient"),
     ("psd_background", "S_0", "1/Hz", "red and white noise beneath the power spectrum"),
@@ -232,7 +245,38 @@ _ROWS = [
     ("shear_stress_change", "", "1", "relative change of the fitted shear stress"),
 ]
 
-QUANTITIES: dict[str, Quantity] = {row[0]: Quantity(*row) for row in _ROWS}
+
+def dictionary(rows: Iterable[tuple[str | None, ...]]) -> dict[str, Quantity]:
+    """Return quantities by name; two meanings have two names.
+
+    Raises
+    ------
+    TribolabError
+        If a name stands there twice, or a quantity per time or length does not say what it counts.
+
+    Examples
+    --------
+    >>> dictionary([("gap", "u", "m", "local interfacial gap")])["gap"].unit
+    'm'
+    """
+    found: dict[str, Quantity] = {}
+    for row in rows:
+        one = Quantity(*row)
+        if one.name in found:
+            raise TribolabError(
+                f"the quantity '{one.name}' stands twice in the dictionary: as "
+                f"'{found[one.name].long_name}' and as '{one.long_name}'; give one another name"
+            )
+        if one.bare is None and reciprocal(one.unit):
+            raise TribolabError(
+                f"the quantity '{one.name}' [{one.unit}] does not say what it counts: add "
+                '"cycles", "radians", "nothing" or "ask"'
+            )
+        found[one.name] = one
+    return found
+
+
+QUANTITIES: dict[str, Quantity] = dictionary(_ROWS)
 
 _DERIVED = {
     "_std": "standard deviation of the {}",
@@ -264,8 +308,25 @@ def quantity(name: str) -> Quantity:
     for ending, text in _DERIVED.items():
         base = QUANTITIES.get(name.removesuffix(ending))
         if name.endswith(ending) and base:
-            return Quantity(name, base.symbol, base.unit, text.format(base.long_name))
+            return Quantity(name, base.symbol, base.unit, text.format(base.long_name), base.bare)
     raise TribolabError(f"no quantity is called '{name}'{nearest(name, QUANTITIES)}")
+
+
+def unit_conversion(unit: str, name: str) -> tuple[float, float]:
+    """Scale and offset that turn a number in `unit` into the quantity's SI unit.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown, of another dimension, or may be read in two ways.
+
+    Examples
+    --------
+    >>> round(60 * unit_conversion("U/min", "rotation_speed")[0], 6)
+    6.283185
+    """
+    known = quantity(name)
+    return conversion(unit, known.unit, known.bare)
 
 
 def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
@@ -318,14 +379,14 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
     >>> si_values(["42 kPa", "0.1 MPa"], "pressure")
     array([ 42000., 100000.])
     """
-    unit = quantity(name).unit
+    unit, bare = quantity(name).unit, quantity(name).bare
     try:
         if np.asarray(value).dtype.kind in "fiub":
             return np.asarray(value, dtype=float)
         # as objects: an array of text would turn the numbers beside it into text without a unit
         entries = np.asarray(value, dtype=object)
         numbers = [
-            to_si(str(one), unit, name=name) if isinstance(one, str) else float(one)
+            to_si(str(one), unit, name=name, bare=bare) if isinstance(one, str) else float(one)
             for one in entries.ravel()
         ]
     except (TypeError, ValueError) as error:

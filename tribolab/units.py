@@ -8,6 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from tribolab.errors import AnalysisError, UnitError
+from tribolab.turns import Counted, holds_an_angle, reciprocal, scale_of_reciprocal, usual_reading
 
 if TYPE_CHECKING:
     import pint
@@ -62,7 +63,6 @@ _USUAL = {
     ("°C", "K"): (1.0, 273.15),
     ("degC", "K"): (1.0, 273.15),
     ("deg", "rad"): (math.pi / 180, 0.0),
-    ("rpm", "rad/s"): (math.pi / 30, 0.0),
 }
 
 
@@ -74,11 +74,17 @@ def registry() -> pint.UnitRegistry:
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 
 
+# exponents and signs of multiplication as typesetters write them
+_SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
+_PRODUCT = re.compile(r"\s*[·⋅]\s*")
+
+
 def _clean(unit: str) -> str:
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
+    unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
     unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"**\1", unit)  # netCDF writes m2 and s-1
-    return unit.replace("^", "**").replace("²", "**2").replace("³", "**3")
+    return unit.replace("^", "**")
 
 
 def _prefix(unit: str, si_unit: str) -> float | None:
@@ -92,7 +98,7 @@ def _prefix(unit: str, si_unit: str) -> float | None:
 
 
 @functools.lru_cache(maxsize=512)
-def conversion(unit: str, si_unit: str) -> tuple[float, float]:
+def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[float, float]:
     """Scale and offset that turn a number in `unit` into `si_unit`: ``si = scale * x + offset``.
 
     Parameters
@@ -101,21 +107,35 @@ def conversion(unit: str, si_unit: str) -> tuple[float, float]:
         Unit as an instrument or a person writes it: ``"mm/s"``, ``"µm"``, ``"gf"``, ``"degC"``.
     si_unit
         The unit wanted: ``"m/s"``, ``"K"``.
+    bare
+        What a unit per time or length counts that names neither cycles nor radians, like
+        ``"1/min"``; by default as `tribolab.turns.usual_reading` says.
 
     Raises
     ------
     UnitError
-        If the unit is unknown or of another dimension.
+        If the unit is unknown or of another dimension, or may be read in two ways.
 
     Examples
     --------
     >>> conversion("mm/s", "m/s")
     (0.001, 0.0)
+    >>> conversion("1/s", "rad/s", "cycles")
+    (6.28318530717959, 0.0)
     """
     if (prefix := _prefix(unit, si_unit)) is not None:
         return prefix, 0.0
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
+    turning = scale_of_reciprocal(unit, si_unit, bare or usual_reading(si_unit))
+    if turning is not None:
+        return float(f"{turning:.15g}"), 0.0
+    counted = reciprocal(si_unit)
+    if (si_unit in ("", "1") or counted) and holds_an_angle(unit):
+        raise UnitError(f"unit '{unit}' counts an angle or cycles, and cannot become '{si_unit}'")
+    if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
+        scale = conversion(unit, plain, "nothing")[0]
+        return scale * conversion(plain, si_unit, bare)[0], 0.0
     import pint
 
     ureg = registry()
@@ -148,7 +168,9 @@ def base_unit(unit: str) -> str:
         return "m"
 
 
-def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
+def to_si(
+    value: str | float | int, si_unit: str, name: str = "value", bare: Counted | None = None
+) -> float:
     """Turn ``"31 N"``, or a number that already is SI, into an SI float.
 
     Parameters
@@ -159,6 +181,8 @@ def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
         The SI unit wanted.
     name
         What the value is called where the user wrote it; the error names it.
+    bare
+        As for `conversion`.
 
     Raises
     ------
@@ -188,7 +212,7 @@ def to_si(value: str | float | int, si_unit: str, name: str = "value") -> float:
     if not unit and si_unit not in ("", "1"):
         raise UnitError(f"{name}: '{value}' has no unit; write e.g. '{value} {si_unit}'")
     try:
-        scale, offset = conversion(unit, si_unit)
+        scale, offset = conversion(unit, si_unit, bare)
     except UnitError as error:
         raise UnitError(f"{name}: {error}; a value in {si_unit} is wanted") from error
     return float(f"{number * scale + offset:.15g}")

@@ -8,7 +8,8 @@ from typing import Any
 
 from tribolab.campaign.config import campaign_schema
 from tribolab.friction.segments import find_segments
-from tribolab.quantities import QUANTITIES
+from tribolab.quantities import QUANTITIES, Quantity
+from tribolab.turns import reciprocal
 
 PAGE_FILE = "CAMPAIGN.md"
 _HEAD = """# The campaign file
@@ -154,8 +155,19 @@ def _default(default: Any) -> str:
 
 
 def _quantities(names: Iterable[str]) -> list[str]:
-    rows = [(f"`{name}`", QUANTITIES[name].unit, QUANTITIES[name].long_name) for name in names]
+    rows = [(f"`{name}`", QUANTITIES[name].unit, _meaning(QUANTITIES[name])) for name in names]
     return _table(("quantity", "SI unit", "meaning"), rows)
+
+
+def _meaning(known: Quantity) -> str:
+    """Meaning of a quantity, and what a unit that does not say so counts."""
+    if known.bare is None:
+        return known.long_name
+    if known.bare == "ask":
+        return f"{known.long_name}; the unit has to say whether it counts cycles or radians"
+    found = reciprocal(known.unit)
+    bare = f"1/{found.per if found else 's'}"
+    return f"{known.long_name}; a bare {bare} counts {known.bare}"
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:

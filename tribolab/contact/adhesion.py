@@ -51,8 +51,9 @@ def adhesion(
     -------
     xarray.Dataset
         ``contact_area_ratio`` A/A0 [1] at the largest wavenumber, the same without adhesion as
-        ``contact_area_ratio_no_adhesion``, ``area_enhancement`` their ratio, ``iterations`` and
-        ``residual`` (dims of pressure); ``apparent_contact_area_ratio`` P(q) [1] and
+        ``contact_area_ratio_no_adhesion``, ``area_enhancement`` their ratio,
+        ``root_search_steps`` and ``balance_residual`` (dims of pressure);
+        ``apparent_contact_area_ratio`` P(q) [1] and
         ``effective_work_of_adhesion`` gamma_eff(q) [J/m2] (dims of pressure, wavenumber), with
         the coordinate ``magnification``.
 
@@ -70,10 +71,10 @@ def adhesion(
     ``-c_a sqrt(gamma_eff(q) E* q)`` [2]_; without adhesion that is Eqs. (6) and (7). Doubling
     `nodes` from 200 changes areas by less than 0.1 %.
 
-    The residual is the misfit of Eq. (11) at the largest wavenumber, relative to its terms; at the
-    other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa for a
-    smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant if
-    gamma_eff(1) > 0.
+    ``balance_residual`` is the misfit of Eq. (11) at the largest wavenumber, relative to its terms;
+    at the other nodes the equations hold as discretised. A pressure below 1e-4 of E* xi/2 (15 Pa
+    for a smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant
+    if gamma_eff(1) > 0.
 
     References
     ----------
@@ -118,8 +119,8 @@ def adhesion(
         "area_enhancement": (dims, ratio.reshape(shape)),
         "apparent_contact_area_ratio": over_both(area),
         "effective_work_of_adhesion": over_both(solved.binding),
-        "iterations": (dims, solved.iterations.reshape(shape)),
-        "residual": (dims, solved.residual.reshape(shape)),
+        "root_search_steps": (dims, solved.iterations.reshape(shape)),
+        "balance_residual": (dims, solved.residual.reshape(shape)),
     }
     return stamp(
         xr.Dataset(data, coords=pressure_coords(over))

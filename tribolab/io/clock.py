@@ -1,22 +1,36 @@
-"""One clock for a run: steps that start anew are joined, and time strictly increases.
+"""One clock for a run: parts that start anew are joined, and time strictly increases.
 
-Rules, stated once. Time has to increase from row to row; a run in which it stands still or goes
-back is refused, with the row, unless the dialect says what to do: ``[time] on_repeat = "drop"``
-leaves out rows that are not later than all rows before them, ``[time] restart = "continue"`` joins
-steps (or files) whose clock starts anew: by the moments at which they started where the file says
-so, else each begins where the one before it ended.
+Rules, stated once. Time has to increase from row to row; a run in which it does not is refused,
+with the row, unless the dialect says what to do. ``[time] restart = "continue"`` joins steps, files
+and parts of one table whose clock starts anew: by the moments at which they started where the file
+says so, else each begins where the one before it ended, one interval later. A fall by what a
+counter holds (65.536 s, ``wrap``) is a wrap: exactly that much is added. ``on_repeat = "drop"``
+leaves out rows that are not later than all rows before them, ``"interpolate"`` keeps them and
+gives them times evenly between their neighbours'. What is left out is counted, with the reason.
 """
 
 from __future__ import annotations
 
+import datetime as dt
+from collections.abc import Mapping
+from typing import NamedTuple
+
 import numpy as np
 
 from tribolab.errors import ReadError
+from tribolab.io.clock_faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.dialect_model import Dialect
-from tribolab.io.pieces import Content, last_match
+from tribolab.io.pieces import Content, Piece, last_match
 from tribolab.units import to_si
 
-_BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
+
+class Mended(NamedTuple):
+    """A strictly increasing time, the rows that are kept (None: all), and what was done."""
+
+    time: np.ndarray
+    keep: np.ndarray | None = None
+    left_out: Mapping[str, int] = {}
+    interpolated: int = 0
 
 
 def set_time(content: Content, dialect: Dialect) -> None:
@@ -42,42 +56,102 @@ def set_time(content: Content, dialect: Dialect) -> None:
             start += rows
 
 
-def join_clocks(contents: list[Content], dialect: Dialect) -> None:
-    """Shift the pieces' times so that they follow one another, where the dialect says so."""
+def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray | str]:
+    """Shift times so that parts and pieces follow one another, where the dialect says so.
+
+    Returns
+    -------
+    dict
+        ``part``: number of the part, from 1, of each row of the run, where a clock starts anew
+        inside a table; ``joined``: in words, where it did or wrapped. Empty where neither is so.
+    """
+    wrap = _wrap(dialect)
     pieces = [piece for content in contents for piece in content.pieces]
-    if dialect.time.restart != "continue" or len(pieces) < 2:
-        return
-    stamps = [piece.started for piece in pieces]
-    first = stamps[0]
-    end = None
-    for piece, stamp in zip(pieces, stamps, strict=True):
+    if dialect.time.restart != "continue" and not wrap:
+        return {}
+    parts, said = [], []
+    for piece in pieces:
         time = piece.columns["time"]
+        part = np.zeros(len(time), dtype=np.int32)
+        if first_fault(time) is not None:
+            starts = find_faults(time, wrap)
+            if dialect.time.restart != "continue":
+                kept = tuple(start for start in starts.starts if start.period)
+                starts = starts._replace(starts=kept)
+            time += starts.offsets()
+            part[[start.row for start in starts.starts if not start.period]] = 1
+            said += _in_words(starts, time)
+        parts.append(np.cumsum(part, dtype=np.int32))
+    if dialect.time.restart == "continue" and len(pieces) > 1:
+        _join_pieces(pieces, dialect)
+    anew = any(part[-1] for part in parts if part.size)
+    told: dict[str, np.ndarray | str] = {"joined": "; ".join(said)} if said else {}
+    if anew:
+        before = np.cumsum([0, *(part[-1] + 1 if part.size else 0 for part in parts[:-1])])
+        numbers = [part + first + 1 for part, first in zip(parts, before, strict=True)]
+        told["part"] = np.concatenate(numbers).astype(np.int32)
+    return told
+
+
+def _wrap(dialect: Dialect) -> float:
+    return to_si(dialect.time.wrap, "s", "time.wrap") if dialect.time.wrap else 0.0
+
+
+def _in_words(faults: Faults, time: np.ndarray) -> list[str]:
+    said = []
+    anew = [start.row + 1 for start in faults.starts if not start.period]
+    if anew:
+        rows = ", ".join(str(row) for row in anew[:5]) + (" ..." if len(anew) > 5 else "")
+        said.append(f"the clock starts anew within the table, {_times(len(anew))}, at row {rows}")
+    periods = [start.period for start in faults.starts if start.period]
+    if periods:
+        said.append(f"the clock wraps after {periods[0]:.9g} s, {_times(len(periods))}")
+    return said
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
+    """Let tables follow one another: by their stamps, else one begins where another ended."""
+    stamps = [piece.started for piece in pieces]
+    times = [piece.columns["time"] for piece in pieces]
+    ends = zip(times, times[1:], strict=False)
+    if None in stamps and all(later[0] > earlier[-1] for earlier, later in ends):
+        return  # the clock went on
+    first, end = stamps[0], None
+    for time, stamp in zip(times, stamps, strict=True):
         if first is not None and None not in stamps:
             time += (stamp - first).total_seconds()
+            if end is not None and 0 <= end - time[0] <= _resolution(stamp, dialect):
+                time += end - time[0] + _interval(time)
         elif end is not None:
             time += end if time[0] > 0 else end - time[0] + _interval(time)
         end = time[-1]
+
+
+def _resolution(stamp: dt.datetime, dialect: Dialect) -> float:
+    """How coarse the moments are at which steps start [s]: they are often cut to the second."""
+    form = dialect.time.start_format or ""
+    return 1.0 if any(code in form for code in ("%S", "%T", "%X", "%c")) else 60.0
 
 
 def _interval(time: np.ndarray) -> float:
     return float(np.median(np.diff(time))) if len(time) > 1 else 1.0
 
 
-def first_fault(time: np.ndarray) -> int | None:
-    """Row (from 0) of the first time that is missing or not later than the one before it."""
-    for start in range(0, len(time), _BLOCK):
-        part = time[max(start - 1, 0) : start + _BLOCK]
-        if start == 0 and not np.isfinite(part[0]):
-            return 0
-        with np.errstate(invalid="ignore"):  # from one infinite time to the next
-            bad = ~(np.diff(part) > 0) | ~np.isfinite(part[1:])
-        if bad.any():
-            return max(start - 1, 0) + int(np.argmax(bad)) + 1
-    return None
+def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
+    """Make time strictly increase as the dialect says.
 
-
-def kept_rows(time: np.ndarray, where: str, dialect: Dialect) -> np.ndarray | None:
-    """Rows to keep for a strictly increasing time; None means all of them.
+    Parameters
+    ----------
+    time
+        [s] (time), its parts joined.
+    where
+        The file, for messages.
+    dialect
+        The dialect.
 
     Raises
     ------
@@ -86,15 +160,54 @@ def kept_rows(time: np.ndarray, where: str, dialect: Dialect) -> np.ndarray | No
     """
     row = first_fault(time)
     if row is None:
-        return None
-    if dialect.time.on_repeat == "drop":
-        highest = np.fmax.accumulate(np.where(np.isfinite(time), time, np.nan))
-        keep = np.ones(len(time), dtype=bool)
-        keep[1:] = time[1:] > highest[:-1]
-        keep &= np.isfinite(time)
-        if not keep.any():
-            raise ReadError(f"{where}: not one time is a finite number")
-        return keep
+        return Mended(time)
+    faults = find_faults(time, _wrap(dialect))
+    if dialect.time.on_repeat == "error" or (
+        dialect.time.on_repeat == "interpolate" and faults.starts
+    ):
+        raise ReadError(_refusal(time, row, faults, where, dialect))
+    good = ~rows_at_fault(time, faults)
+    if not good.any():
+        raise ReadError(f"{where}: not one time is a finite number")
+    if dialect.time.on_repeat == "interpolate":
+        return Mended(_interpolated(time, good), interpolated=int((~good).sum()))
+    return Mended(time, good, _reasons(time, good, faults))
+
+
+def _interpolated(time: np.ndarray, good: np.ndarray) -> np.ndarray:
+    """Give the other rows times evenly between those of the good ones."""
+    rows = np.flatnonzero(good)
+    if rows.size < 2:
+        return time[rows[0]] + np.arange(len(time)) - rows[0]
+    result = np.interp(np.arange(len(time)), rows, time[rows])
+    step = float(np.median(np.diff(time[rows]) / np.diff(rows)))
+    first, last = rows[0], rows[-1]
+    result[:first] = time[first] - step * np.arange(first, 0, -1)
+    result[last + 1 :] = time[last] + step * np.arange(1, len(time) - last)
+    return result
+
+
+def _reasons(time: np.ndarray, good: np.ndarray, faults: Faults) -> dict[str, int]:
+    """How many rows are left out for which reason."""
+    lost = ~good
+    counts = {"without a time": int(np.count_nonzero(lost & faults.missing))}
+    lost &= ~faults.missing
+    if faults.starts:
+        anew = lost & (np.arange(len(time)) >= faults.starts[0].row)
+        counts["after the clock started anew (restart = 'continue' would keep them)"] = int(
+            np.count_nonzero(anew)
+        )
+        lost &= ~anew
+    counts["whose time is not later than before (on_repeat = 'interpolate' would keep them)"] = int(
+        np.count_nonzero(lost)
+    )
+    return {reason: count for reason, count in counts.items() if count}
+
+
+def _refusal(time: np.ndarray, row: int, faults: Faults, where: str, dialect: Dialect) -> str:
+    """Say at which row time does not increase, and what the dialect can say about it."""
+    if faults.starts:
+        row = min(row, faults.starts[0].row)
     if np.isinf(time[row]):
         what = f"time is infinite in row {row + 1}"
     elif np.isnan(time[row]):
@@ -105,8 +218,12 @@ def kept_rows(time: np.ndarray, where: str, dialect: Dialect) -> np.ndarray | No
         what = (
             f"time goes backwards at row {row + 1}: from {time[row - 1]:.9g} s to {time[row]:.9g} s"
         )
-    raise ReadError(
-        f"{where}: {what}; the dialect '{dialect.name}' can say what to do: [time] "
-        "on_repeat = 'drop' leaves such rows out, restart = 'continue' joins steps whose clock "
-        "starts anew"
+    if faults.starts and faults.starts[0].row == row:
+        period = faults.starts[0].period
+        what += ", as of a counter that wraps" if period else ", and goes on from there"
+        what += f" every {period:.9g} s" if period else ""
+    return (
+        f"{where}: {what}; the dialect '{dialect.name}' can say what to do: [time] restart = "
+        "'continue' joins parts whose clock starts anew or wraps; for single rows, on_repeat = "
+        "'interpolate' gives them times between their neighbours', 'drop' leaves them out"
     )

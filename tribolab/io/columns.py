@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError, UnitError, nearest
 from tribolab.io.dialect_model import Column, Dialect
-from tribolab.quantities import quantity
-from tribolab.units import conversion
+from tribolab.quantities import quantity, unit_conversion
 
 
 class Signal(NamedTuple):
@@ -122,7 +121,7 @@ def _signal(
             f"'{label} [{wanted}]', or in the dialect '{dialect.name}': unit = \"{wanted}\""
         )
     try:
-        scale, offset = conversion(unit or "", wanted)
+        scale, offset = unit_conversion(unit or "", column.quantity)
     except UnitError as error:
         raise ReadError(
             f"{where}: column '{label}' ({column.quantity}): {error}; the right unit can be "

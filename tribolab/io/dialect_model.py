@@ -23,7 +23,8 @@ from pydantic import (
 
 from tribolab.errors import TribolabError, nearest
 from tribolab.quantities import QUANTITIES, quantity
-from tribolab.units import base_unit, conversion, to_si
+from tribolab.turns import Counted, reciprocal
+from tribolab.units import base_unit, conversion, positive, to_si
 
 
 def _is_pattern(text: str) -> str:
@@ -82,6 +83,9 @@ class Text(_Strict):
     decimal: Literal[".", ","] = Field(".", description="decimal mark")
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
     end: Pattern | None = Field(None, description="a line matching this ends the table")
+    skip_lines: Pattern | None = Field(
+        None, description="lines below the header matching this are passed over: comments, marks"
+    )
 
     @model_validator(mode="after")
     def _delimiter_is_usable(self) -> Self:
@@ -125,10 +129,17 @@ class Time(_Strict):
     rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
     rate_unit: str = "Hz"
     restart: Literal["error", "continue"] = Field(
-        "error", description="'continue': the clock starts anew at each step or file"
+        "error",
+        description="'continue': where the clock starts anew (in a table, at a step, in a file), "
+        "time goes on",
     )
-    on_repeat: Literal["error", "drop"] = Field(
-        "error", description="'drop': rows whose time is not later than all before are left out"
+    wrap: str | None = Field(
+        None, description="the clock's counter begins anew after this time, e.g. '65.536 s'"
+    )
+    on_repeat: Literal["error", "drop", "interpolate"] = Field(
+        "error",
+        description="rows whose time is not later than all before: 'drop' leaves them out, "
+        "'interpolate' gives them times evenly between their neighbours'",
     )
     start_pattern: Pattern | None = Field(
         None, description="group 1 is the date and time at which a step (or the file) starts"
@@ -141,9 +152,23 @@ class Time(_Strict):
             raise ValueError("source = 'rate' and rate (or rate_pattern) belong together")
         if self.rate:
             to_si(self.rate, "Hz", "time.rate")
+        if self.wrap:
+            positive(self.wrap, "s", "time.wrap")
         if bool(self.start_pattern) != bool(self.start_format):
             raise ValueError("start_pattern and start_format belong together")
         return self
+
+
+class Rows(_Strict):
+    """What may be lost of a table's rows."""
+
+    left_out: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="share of the rows that may be left out because it is meant; beyond it, and "
+        "beyond the limits of the check `rows_left_out`, the run is suspect or fails",
+    )
 
 
 class Column(_Strict):
@@ -165,7 +190,8 @@ class Column(_Strict):
         if (self.name is None) == (self.position is None):
             raise ValueError(f"column '{self.quantity}': give either name or position")
         if self.unit is not None:
-            _check_unit(self.unit, quantity(self.quantity).unit)
+            known = quantity(self.quantity)
+            _check_unit(self.unit, known.unit, known.bare)
         return self
 
 
@@ -188,8 +214,13 @@ class Value(_Strict):
         if re.compile(self.pattern).groups < 1:
             raise ValueError(f"value '{self.name}': the pattern needs a group ( ) for the value")
         if self.unit is not None:
-            _check_unit(self.unit, self.si_unit)
+            _check_unit(self.unit, self.si_unit, self.bare)
         return self
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it, if the name is a quantity."""
+        return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
 
     @property
     def si_unit(self) -> str:
@@ -208,7 +239,10 @@ class Value(_Strict):
 
     def _own_unit(self) -> str:
         """SI unit of the unit given: of a quantity of its kind, else of base units."""
-        for unit in dict.fromkeys(known.unit for known in QUANTITIES.values()):
+        units = dict.fromkeys(known.unit for known in QUANTITIES.values())
+        if reciprocal(str(self.unit)):  # cycles stay cycles
+            units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
+        for unit in units:
             with contextlib.suppress(TribolabError):
                 conversion(str(self.unit), unit)
                 return unit
@@ -265,6 +299,7 @@ class Dialect(_Strict):
     text: Text = Text()
     header: Header = Header()
     time: Time = Time()
+    rows: Rows = Rows()
     speed: Speed = Speed()
     pair: Pair | None = None
     marks: Marks | None = None
@@ -292,8 +327,8 @@ class Dialect(_Strict):
         return self
 
 
-def _check_unit(unit: str, si_unit: str) -> None:
+def _check_unit(unit: str, si_unit: str, bare: Counted | None = None) -> None:
     try:
-        conversion(unit, si_unit)
+        conversion(unit, si_unit, bare)
     except TribolabError as error:
         raise ValueError(str(error)) from error

@@ -20,8 +20,7 @@ from tribolab.io.draft_layout import Layout, examine
 from tribolab.io.draft_toml import FILL_IN, dialect_toml
 from tribolab.io.scan_results import is_results
 from tribolab.io.signature import File, peek
-from tribolab.quantities import quantity
-from tribolab.units import conversion
+from tribolab.quantities import unit_conversion
 
 PathLike = str | Path
 _SHOWN = 5  # rows shown as understood
@@ -96,8 +95,7 @@ class Draft(NamedTuple):
         rows = {}
         for column in self.understood.columns:
             if column.used and column.quantity:
-                si_unit = quantity(column.quantity).unit
-                scale, offset = conversion(column.read_unit or "", si_unit)
+                scale, offset = unit_conversion(column.read_unit or "", column.quantity)
                 values = self.understood.numbers[:number, column.place - 1]
                 rows[column.quantity] = column.sign * scale * values + offset
         return rows

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.io.clock_faults import find_faults, rows_at_fault
+
 if TYPE_CHECKING:
     from tribolab.io.draft_columns import DraftColumn, Kind
 
@@ -41,6 +43,8 @@ def by_behaviour(
     if width == 2 and rising[:1] == [0] and _is_even(part[:, 0]):
         return "scan", *_profile(columns, part)
     if not rising:
+        rising = [i for i in range(width) if _is_clock(part[:, i])]
+    if not rising:
         return "table", columns, []
     return "run", *_run(columns, part, rising[0])
 
@@ -55,6 +59,21 @@ def _is_grid(part: np.ndarray) -> bool:
 def _is_even(x: np.ndarray) -> bool:
     steps = np.diff(x)
     return bool(np.ptp(steps) <= 0.05 * np.median(steps))
+
+
+def _is_clock(x: np.ndarray) -> bool:
+    """Whether numbers rise by even steps, start anew now and then, and never go astray."""
+    if len(x) < 2 * _EVERY or not np.isfinite(x).all():
+        return False
+    steps = np.diff(x)
+    falls = int((steps <= 0).sum())
+    usual = np.median(steps)
+    even = np.mean(np.abs(steps - usual) < 0.5 * usual) if usual > 0 else 0.0
+    if not 0 < falls <= len(x) / _EVERY or even < 0.9:
+        return False
+    faults = find_faults(x)
+    anew = x + faults.offsets()
+    return bool(faults.starts) and not rows_at_fault(anew, faults).any()
 
 
 def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
@@ -87,7 +106,10 @@ def _run(
     from tribolab.io.draft_columns import _time_unit
 
     unit = _time_unit(part[:, time])
-    why = f"it is time in {unit}: it rises in every row"
+    rises = "it rises in every row"
+    if (np.diff(part[:, time]) <= 0).any():
+        rises = "it rises by even steps, and starts anew now and then"
+    why = f"it is time in {unit}: {rises}"
     result = list(columns)
     result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
     others = [i for i in range(part.shape[1]) if i != time]

@@ -61,7 +61,7 @@ class Understood(NamedTuple):
     columns: tuple[DraftColumn, ...]
     numbers: np.ndarray
     missing: tuple[str, ...]
-    on_repeat: bool
+    on_repeat: Literal["", "drop", "interpolate"]
     restart: bool
     guesses: tuple[str, ...]
 
@@ -91,13 +91,17 @@ def understand(layout: Layout) -> Understood:
         else column
         for column in columns
     ]
-    drop, restart, columns = _clock(layout, columns, numbers)
+    from tribolab.io.draft_clock import find_clock
+
+    on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
-    words = dict.fromkeys(word for index in used for word in missing[index])
+    words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in
         kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
-    return Understood(kind, tuple(columns), numbers, tuple(words), drop, restart, tuple(guesses))
+    return Understood(
+        kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses)
+    )
 
 
 def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
@@ -299,28 +303,6 @@ def _time_unit(values: np.ndarray) -> str:
     steps = np.diff(values[np.isfinite(values)])
     whole = steps.size and (values == np.round(values)).all()
     return "ms" if whole and np.median(steps) >= 5 else "s"
-
-
-def _clock(
-    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
-) -> tuple[bool, bool, list[DraftColumn]]:
-    """Whether rows have to be left out for time to increase, and whether it starts anew."""
-    place = next((c.place for c in columns if c.used and c.quantity == "time"), None)
-    if place is None:
-        return False, False, columns
-    time = numbers[:, place - 1]
-    edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
-    bad = ~(np.diff(time) > 0)
-    inner = np.ones(len(bad), dtype=bool)
-    inner[edges[1:-1] - 1] = False
-    restart = bool((bad & ~inner).any())
-    drop = int((bad & inner).sum())
-    if drop:
-        note = f"{drop} rows whose time is not later than before are left out"
-        columns = [
-            c._replace(guessed=(*c.guessed, note)) if c.place == place else c for c in columns
-        ]
-    return drop > 0, restart, columns
 
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.errors import TribolabError
+from tribolab.turns import Counted
 from tribolab.units import conversion
 
 if TYPE_CHECKING:
@@ -17,9 +18,9 @@ _ABOVE = 8  # lines above the first row that are looked at
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
-DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Pa s", "N/m", "m/s**2", "N m")
-# weights for forces, and turns as Germans write them: what they mean depends on the quantity
-_UNITS = {"g", "kg", "U/min", "rev/min", "r/min"}
+DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m")
+DIMENSIONS += ("m/s**2", "N m")
+_UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
 
 
 class Heading(NamedTuple):
@@ -91,12 +92,12 @@ def is_unit(text: str) -> bool:
 
 
 @functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
-def converts(text: str, si_unit: str) -> bool:
-    """Whether a text is a unit that can be turned into an SI unit."""
+def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
+    """Whether a text is a unit that can be turned into an SI unit (`bare`: see `conversion`)."""
     if not text or re.fullmatch(r"[\d.,+]+", text):
         return False
     try:
-        conversion(text, si_unit)
+        conversion(text, si_unit, bare)
     except TribolabError:
         return False
     return True

@@ -11,20 +11,12 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io.draft_header import Heading, escaped, find_heading, first_cells
+from tribolab.io.draft_marks import Block, without_marks
 from tribolab.io.draft_text import DELIMITERS, Grammar, find_encoding, find_grammar, find_line_ends
+from tribolab.io.headers import split_row
 from tribolab.io.signature import HEAD, File
 
 _TAIL = 1 << 14
-
-
-class Block(NamedTuple):
-    """Lines of numbers that follow one another; indices of lines count from 0."""
-
-    start: int
-    stop: int
-    rows: tuple[int, ...]
-    width: int
-    heading: Heading | None
 
 
 class Layout(NamedTuple):
@@ -46,6 +38,7 @@ class Layout(NamedTuple):
     repeats: bool
     step: str | None
     end: str | None
+    skip_lines: str | None
     whole: bool
     guesses: tuple[str, ...]
 
@@ -55,8 +48,24 @@ class Layout(NamedTuple):
         return DELIMITERS[self.delimiter]
 
     def rows(self) -> list[str]:
-        """Lines of numbers of all blocks."""
-        return [self.lines[index] for block in self.blocks for index in block.rows]
+        """Lines of numbers of all blocks, their cells in the order of the first."""
+        return [line for block in self.blocks for line in self._in_order(block)]
+
+    def _in_order(self, block: Block) -> list[str]:
+        lines = [self.lines[index] for index in block.rows]
+        if self.heading is None or block.heading is None:
+            return lines
+        if block.heading.cells == self.heading.cells:
+            return lines
+        left = list(enumerate(block.heading.cells))
+        places = []
+        for name in self.heading.cells:  # of a name used twice, the first stays the first
+            place = next(place for place, cell in left if cell == name)
+            left.remove((place, name))
+            places.append(place)
+        rows = (split_row(line, self.delimiter) for line in lines)
+        mark = " " if self.delimiter == "whitespace" else self.delimiter
+        return [mark.join(row[p] if p < len(row) else "" for p in places) for row in rows]
 
 
 def examine(file: File) -> Layout:
@@ -87,7 +96,7 @@ def examine(file: File) -> Layout:
             f"{file.path}: numbers with a decimal comma stand in quotes, and commas part them too; "
             "that cannot be read: export with another delimiter, e.g. a semicolon"
         )
-    blocks = _blocks(lines, grammar)
+    blocks, skip_lines = without_marks(lines, _blocks(lines, grammar), grammar)
     main, others = _main(blocks)
     first = main[0]
     heading = first.heading
@@ -122,6 +131,7 @@ def examine(file: File) -> Layout:
         repeats=repeats,
         step=_step(lines, main) if repeats else None,
         end=end,
+        skip_lines=skip_lines,
         whole=file.size <= HEAD,
         guesses=tuple(guesses),
     )
@@ -168,7 +178,12 @@ def _main(blocks: list[Block]) -> tuple[list[Block], int]:
 
 
 def _key(block: Block) -> tuple:
-    return (block.heading.cells if block.heading else None, block.width)
+    heading = block.heading
+    if heading is None:
+        return None, block.width
+    # the order of columns may change from step to step, where names tell which is which
+    cells = tuple(sorted(heading.cells)) if heading.aligned else heading.cells
+    return cells, block.width
 
 
 def _pattern(
@@ -176,12 +191,17 @@ def _pattern(
 ) -> tuple[str | None, bool]:
     """Return a pattern that finds the headers and nothing else; whether there are several."""
     wanted = [block.heading.names for block in blocks if block.heading]
-    header = lines[wanted[0]]
+    headers = list(dict.fromkeys(lines[index] for index in wanted))
     repeats = len(wanted) > 1
     if wanted == [0]:
         return None, False
-    for text in (first_cells(header, grammar.delimiter), header.strip() if header else header):
-        pattern = "^" + escaped(text)
+    for short in (True, False):
+        texts = [
+            escaped(first_cells(line, grammar.delimiter) if short else line.strip() or line)
+            for line in headers
+        ]
+        texts = list(dict.fromkeys(texts))
+        pattern = "^" + (texts[0] if len(texts) == 1 else f"(?:{'|'.join(texts)})")
         found = [i for i, line in enumerate(lines) if re.match(pattern, line)]
         if found == wanted or (not repeats and found[:1] == wanted):
             return pattern, repeats

@@ -68,6 +68,8 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.append("missing = [" + ", ".join(map(_text, understood.missing)) + "]")
     if layout.end:
         lines.append(f"end = {_pattern(layout.end)}")
+    if layout.skip_lines:
+        lines.append(f"skip_lines = {_pattern(layout.skip_lines)}    # guessed: the table goes on")
     return "\n".join(lines) + "\n"
 
 
@@ -97,10 +99,14 @@ def _time_table(understood: Understood) -> str:
             lines[1] += "    # guessed: rows are counted as seconds"
             lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
             lines.append('# source = "rate"\n# rate = "? Hz"')
-    if understood.on_repeat:
-        lines.append('on_repeat = "drop"    # guessed: leave out rows that are not later')
+    if understood.on_repeat == "drop":
+        lines.append('on_repeat = "drop"    # guessed: leave out rows that repeat the one before')
+    elif understood.on_repeat:
+        lines.append(
+            'on_repeat = "interpolate"    # guessed: rows that are not later get times between'
+        )
     if understood.restart:
-        lines.append('restart = "continue"    # the clock starts anew at each step')
+        lines.append('restart = "continue"    # the clock starts anew, or wraps')
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
@@ -113,6 +119,11 @@ def _speed_table(kind: str, columns: list[DraftColumn]) -> str:
     waiting = {column.quantity for column in columns if column.fill_in}
     if source == "none" and kind == "run" and waiting & {"position", "sliding_velocity"}:
         lines.append('# "position" or "column", once that column (below) has its unit')
+    elif source == "none" and kind == "run" and "rotation_speed" in names:
+        lines.append(
+            f"# {FILL_IN}: the radius of the track, if the disc's rotation tells the speed"
+        )
+        lines.append('# source = "rotation"\n# radius = "? mm"')
     return "\n".join(lines) + "\n"
 
 

@@ -125,12 +125,8 @@ SCAN_WORDS = (
 )
 
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "µ": "mu", "μ": "mu"})
-# what a unit means for a quantity in this SI unit: weights for forces, turns for radians
-_MEANT = {
-    "N": {"g": "gf", "kg": "kgf"},
-    "rad/s": {"Hz": "turn/s", "1/s": "turn/s", "s-1": "turn/s"}
-    | dict.fromkeys(("1/min", "/min", "min-1", "min^-1", "U/min", "rev/min", "r/min"), "rpm"),
-}
+# what a unit means for a quantity in this SI unit: weights for forces
+_MEANT = {"N": {"g": "gf", "kg": "kgf"}}
 
 
 class Match(NamedTuple):
@@ -192,9 +188,9 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     found = []
     for word in SCAN_WORDS if scan else RUN_WORDS:
         score = _score(text, word)
-        si_unit = quantity(word.quantity).unit
-        read_as = _MEANT.get(si_unit, {}).get(unit or "")
-        if score and (unit is None or converts(read_as or unit, si_unit)):
+        known = quantity(word.quantity)
+        read_as = _MEANT.get(known.unit, {}).get(unit or "")
+        if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
             found.append(Match(word.quantity, score, read_as))
     return sorted(found, key=lambda match: -match.score)
 

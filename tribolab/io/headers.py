@@ -78,7 +78,7 @@ def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
         If there is no header where the dialect expects it, or nothing stands below it.
     """
     file = path if isinstance(path, File) else peek(path)
-    memory = _mended(file, dialect)
+    memory = _without_lines(file, _mended(file, dialect), dialect)
     if memory is not None:
         return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
     if not dialect.header.repeats:
@@ -112,6 +112,28 @@ def _mended(file: File, dialect: Dialect) -> bytes | None:
         content = re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", content)
         content = re.sub(rb"[ \t]+", b"\t", content)
     return content
+
+
+def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
+    """Whole content without the lines below the first header that are to be passed over."""
+    if dialect.text.skip_lines is None:
+        return content
+    try:
+        content = file.path.read_bytes() if content is None else content
+    except OSError as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    header = dialect.header
+    starts = _header_starts(file, content, dialect)
+    first = content.count(b"\n", 0, starts[0])
+    deep = header.skip + (header.units == "row")
+    whole = header.line is not None or header.pattern is not None
+    kept = {content.count(b"\n", 0, start) + k for start in starts for k in range(deep + whole)}
+    pattern = compiled(dialect.text.skip_lines, dialect)
+    return b"\n".join(
+        line
+        for number, line in enumerate(content.split(b"\n"))
+        if number < first or number in kept or not pattern.search(line)
+    )
 
 
 def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[Table]:

@@ -34,7 +34,7 @@ class Content(NamedTuple):
     pieces: list[Piece]
     labels: Mapping[str, str]
     not_used: tuple[str, ...]
-    rows_left_out: int = 0
+    left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
     notes: Mapping[str, str] = {}
 
 
@@ -79,6 +79,7 @@ def read_content(path: Path, dialect: Dialect) -> Content:
 
 def _read_text(file: File, dialect: Dialect) -> Content:
     from tribolab.io.headers import find_tables
+    from tribolab.io.rows_outside import rows_outside
     from tribolab.io.text import Hasher, read_table
 
     raw = find_tables(file, dialect)
@@ -87,12 +88,12 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     pieces: list[Piece] = []
     labels: dict[str, str] = {}
     unused: dict[str, None] = {}
-    left_out = 0
+    cut = 0
     for table in raw.tables:
         where = f"{file.path}" if len(raw.tables) == 1 else f"{file.path}: line {table.line}"
         signals, not_used = resolve(where, table.names, table.units, table.width, dialect)
         columns, incomplete = read_table(raw, table, signals, dialect, hasher)
-        left_out += incomplete
+        cut += incomplete
         labels.update({s.quantity: f"{s.label} [{s.unit}]" for s in signals})
         unused.update(dict.fromkeys(not_used))
         step = last_match(dialect.header.step, table.before) if dialect.header.step else None
@@ -107,6 +108,9 @@ def _read_text(file: File, dialect: Dialect) -> Content:
             )
         )
     sha256 = hasher.hexdigest() if hasher else sha256_of_file(file.path)
+    outside = rows_outside(raw, dialect.text.delimiter)
+    left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
+    left_out = {reason: count for reason, count in left_out.items() if count}
     return Content(file.path, sha256, pieces, labels, tuple(unused), left_out)
 
 

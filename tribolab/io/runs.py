@@ -12,9 +12,15 @@ import xarray as xr
 from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError
-from tribolab.io.clock import join_clocks, kept_rows, set_time
+from tribolab.io.clock import join_clocks, mended_time, set_time
 from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.pieces import Content, read_content
+from tribolab.io.row_counts import (
+    ROW_ATTRIBUTES,
+    row_attributes,
+    rows_in_words,
+    with_companion_rows,
+)
 from tribolab.io.signature import peek
 from tribolab.io.values import single_values, step_values
 from tribolab.provenance import CONVENTIONS, history_line
@@ -97,7 +103,8 @@ def read(
     if companions:
         from tribolab.io.merge import merge
 
-        return merge(run, _run(companions), shift)
+        motion = _run(companions)
+        return with_companion_rows(merge(run, motion, shift), run, motion)
     dialect = main[0][1]
     if pair and dialect.pair is not None:
         wanted = _companion_path(main[0][0], dialect)
@@ -161,7 +168,8 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
     dict
         ``file``, ``instrument``, ``title``, ``columns`` (quantity -> label, unit, minimum and
         maximum in SI), ``not_used``, ``rows``, ``duration_s``, ``interval_s`` (median),
-        ``longest_interval_s``, ``steps`` and ``metadata``.
+        ``longest_interval_s``, ``steps``, ``left_out`` (rows of the file that are not in the run,
+        and why; empty if all are) and ``metadata``.
 
     Raises
     ------
@@ -186,7 +194,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
     known = known_dialects()
     title = load_dialect(instrument or name).title if instrument or name in known else ""
     known_attrs = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
-    known_attrs |= {"columns_not_used", "columns_used", "instrument"}
+    known_attrs |= {"columns_not_used", "columns_used", "instrument", *ROW_ATTRIBUTES}
     unused = str(run.attrs.get("columns_not_used", ""))
     return {
         "file": str(path),
@@ -199,6 +207,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
         "interval_s": float(np.median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,
         "steps": int(np.unique(run["step"]).size) if "step" in run else None,
+        "left_out": rows_in_words(run.attrs),
         "metadata": {k: v for k, v in run.attrs.items() if k not in known_attrs},
     }
 
@@ -266,23 +275,27 @@ def _run(logs: Logs) -> xr.Dataset:
         set_time(content, dialect)
     if all(content.pieces[0].started for content in contents):
         contents.sort(key=lambda content: content.pieces[0].started)
-    join_clocks(contents, dialect)
+    joined = join_clocks(contents, dialect)
     columns = _columns(contents, dialect)
+    if "part" in joined and "step" not in columns:
+        columns["step"] = np.asarray(joined["part"])
     more, step_attrs = step_values(contents, dialect)
     columns |= more
     attrs = single_values(contents[0], dialect) | step_attrs
     where = "; ".join(str(content.path) for content in contents)
-    keep = kept_rows(columns["time"], where, dialect)
-    left_out = sum(content.rows_left_out for content in contents)
-    if keep is not None:
-        left_out += int((~keep).sum())
-        columns = {name: values[keep] for name, values in columns.items()}
-    time = columns.pop("time")
+    mended = mended_time(columns.pop("time"), where, dialect)
+    time = mended.time
+    if mended.keep is not None:
+        time = time[mended.keep]
+        columns = {name: values[mended.keep] for name, values in columns.items()}
     origin = float(time[0])
     time -= origin
     _add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
-    attrs |= _attributes(contents, dialect, origin, left_out)
+    attrs |= _attributes(contents, dialect, origin)
+    attrs |= row_attributes(len(time), contents, mended, dialect)
+    if "joined" in joined:
+        attrs["clock_joined"] = joined["joined"]
     data = xr.Dataset(
         {name: ("time", values) for name, values in columns.items()},
         coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),
@@ -352,9 +365,7 @@ def _check_normal_force(
     )
 
 
-def _attributes(
-    contents: list[Content], dialect: Dialect, origin: float, left_out: int
-) -> dict[str, Any]:
+def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> dict[str, Any]:
     """Provenance, and what else the run should know of its files."""
     from tribolab import __version__
 
@@ -378,8 +389,6 @@ def _attributes(
     moment = contents[0].pieces[0].started
     if moment is not None:
         attrs["recorded_at"] = moment.isoformat()
-    if left_out:
-        attrs["rows_left_out"] = left_out
     for content in contents:
         attrs.update(content.notes)
     return attrs

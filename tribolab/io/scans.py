@@ -172,6 +172,8 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
     attrs = {"instrument": dialect.name, **single_values(content, dialect)}
     if content.not_used:
         attrs["columns_not_used"] = "; ".join(content.not_used)
+    if content.left_out:
+        attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in content.left_out.items())
     if "y" in columns:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
         return scan.assign_attrs(attrs), content.sha256

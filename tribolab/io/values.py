@@ -72,5 +72,5 @@ def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> s
             f"{content.path}: '{text}' ({value.name}) is not a number; see the value's pattern in "
             f"the dialect '{dialect.name}'"
         ) from error
-    scale, offset = conversion(value.unit, value.si_unit)
+    scale, offset = conversion(value.unit, value.si_unit, value.bare)
     return float(f"{value.sign * value.scale * number * scale + offset:.15g}")

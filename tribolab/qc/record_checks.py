@@ -19,7 +19,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
     for name, unit in schema.wrong_units(run).items():
         results.append(Result("fail", name, f"{name} is in '{unit}', not in SI"))
-    for name, span in schema.RANGES.items():
+    for name, span in schema.ranges().items():
         if name not in run:
             continue
         flags = schema.in_range(run[name].values, span)
@@ -89,15 +89,19 @@ def _step_changes(subject: RunSubject) -> np.ndarray:
 
 
 def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    joined = str(subject.run.attrs.get("clock_joined", ""))
+    told = [Result("pass", "time", joined, noted=True)] if joined else []
     if not {"step", "cycle"} & set(subject.run):
+        if joined:
+            return told
         raise Skip("the instrument numbers no steps or cycles")
     changes = _step_changes(subject)
     if not changes.size:
-        return [Result("pass", "step", "one step", 1.0)]
+        return told or [Result("pass", "step", "one step", 1.0)]
     text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
     text += f"; they begin at {where}" + (" ..." if changes.size > 5 else "")
-    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True)]
+    return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *told]
 
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -11,6 +11,7 @@ import xarray as xr
 from tribolab.errors import ConfigError, nearest
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
+from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
 from tribolab.qc.register import Check, examine, resolve_limits
 from tribolab.qc.rig_checks import RIG_CHECKS
@@ -18,7 +19,9 @@ from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
 from tribolab.units import to_si
 
-RUN_CHECKS: dict[str, Check] = {c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS)}
+RUN_CHECKS: dict[str, Check] = {
+    c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS)
+}
 
 
 def check_run(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from tribolab.io.table_schema import load_schema
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.quantities import QUANTITIES
 
@@ -24,21 +27,31 @@ class Range(NamedTuple):
     reason: str
 
 
-_BIG = float("inf")
+@functools.cache
+def ranges() -> Mapping[str, Range]:
+    """Return what is believed of each signal of a run, as ``run.schema.json`` states it.
 
-# Wide on purpose: they catch a wrong unit or an error code that passes for a number, not a bad day.
-RANGES: dict[str, Range] = {
-    "friction_force": Range(-1e5, 1e5, -1e8, 1e8, "10 t is a big tribometer, 10 kt is none"),
-    "normal_force": Range(-1e5, 1e5, -1e8, 1e8, "10 t is a big tribometer, 10 kt is none"),
-    "friction_coefficient": Range(-50, 50, -1e4, 1e4, "soft adhesive contacts reach some tens"),
-    "sliding_velocity": Range(-100, 100, -3e8, 3e8, "discs reach 100 m/s, nothing passes light"),
-    "position": Range(-100, 100, -1e6, 1e6, "100 m is a long track for a position"),
-    "temperature": Range(70, 2000, 0, 1e5, "below liquid nitrogen: degrees Celsius taken as K?"),
-    "normal_stress": Range(-1e11, 1e11, -1e13, 1e13, "no solid bears 100 GPa"),
-    "shear_stress": Range(-1e11, 1e11, -1e13, 1e13, "no solid bears 100 GPa"),
-    "film_thickness": Range(-1e-3, 1e-2, -1, 1, "films are thinner than a centimetre"),
-    "set_speed": Range(-100, 100, -3e8, 3e8, "discs reach 100 m/s, nothing passes light"),
-}
+    Wide on purpose: they catch a wrong unit or an error code that passes for a number, not a bad
+    day. There they are stated once, for this check and for `tribolab.io.table_schema.validate`.
+
+    Examples
+    --------
+    >>> ranges()["temperature"].low
+    70.0
+    """
+    found = {}
+    for field in load_schema("run")["fields"]:
+        if "reason" not in field:  # time and the numbers of steps have checks of their own
+            continue
+        believed, possible = field["constraints"], field.get("possible", {})
+        found[field["name"]] = Range(
+            float(believed["minimum"]),
+            float(believed["maximum"]),
+            float(possible.get("minimum", "-inf")),
+            float(possible.get("maximum", "inf")),
+            field["reason"],
+        )
+    return found
 
 
 def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
@@ -46,7 +59,7 @@ def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
 
     Examples
     --------
-    >>> in_range(np.array([293.0, 20.0, -1.0, np.nan]), RANGES["temperature"])
+    >>> in_range(np.array([293.0, 20.0, -1.0, np.nan]), ranges()["temperature"])
     array([1, 3, 4, 2], dtype=int8)
     """
     flags = np.full(values.shape, GOOD, np.int8)

@@ -119,6 +119,8 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
     if d["interval_s"] is not None:
         sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
     lines.append(sampling + (f", {Count(d['steps']):step|steps}" if d["steps"] else ""))
+    if d.get("left_out"):
+        lines.append(f"  left out: {d['left_out']}")
     width = max((len(name) for name in d["columns"]), default=0)
     for name, column in d["columns"].items():
         span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")

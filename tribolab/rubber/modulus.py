@@ -12,6 +12,8 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError, ReadError, UnitError
+from tribolab.quantities import unit_conversion
+from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
 
 
@@ -179,23 +181,34 @@ def read_modulus(
     for role, pattern in _COLUMNS.items():
         name = next(n for n in table.columns if pattern.fullmatch(n))
         unit = str(table[name].iloc[0]).strip()
-        if role == "frequency" and "rad" in unit:
-            target, factor = "rad/s", 1.0
-        else:
-            target, factor = ("Hz", 2 * np.pi) if role == "frequency" else ("Pa", 1.0)
         try:
-            scale, _ = conversion(unit, target)
+            scale = _to_angular(name, unit) if role == "frequency" else conversion(unit, "Pa")[0]
         except UnitError as error:
             raise ReadError(
                 f"{path.name}: column '{name}': {error}; a row of units must follow the names"
             ) from error
         numbers = pd.to_numeric(table[name].iloc[1:], errors="coerce").to_numpy(dtype=float)
-        columns[role] = numbers * scale * factor
+        columns[role] = numbers * scale
     data = np.stack(list(columns.values()))
     data = data[:, np.isfinite(data).all(axis=0)]
     if np.unique(data[0]).size < data.shape[1] or sweep is not None:
         data = _one_sweep(data, sweep, path.name)
     return TabulatedModulus(*data[:, np.argsort(data[0])])
+
+
+def _to_angular(name: str, unit: str) -> float:
+    """Scale to rad/s; a name that says omega and a unit that does not say radians contradict."""
+    angular = name.lower() in ("omega", "ω", "w")
+    scale, _ = unit_conversion(unit, "angular_frequency" if angular else "frequency")
+    if not angular:
+        return 2 * np.pi * scale
+    known = reciprocal(unit)
+    if known is not None and known.counts == "cycles":
+        raise UnitError(
+            f"the name says radians, the unit '{unit}' cycles, a factor of 2 pi apart; write "
+            f"'rad/s' as the unit, or 'f' as the name"
+        )
+    return scale
 
 
 def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:

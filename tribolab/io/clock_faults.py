@@ -1,0 +1,230 @@
+"""What is wrong with a clock, row by row: it starts anew, wraps, goes astray, stands still.
+
+A clock that falls back and goes on from there starts anew (or wraps, if it fell by as much as
+counters do); one that falls by no more than its own scatter jitters; where a fall and a jump undo
+each other, the stamps between them are astray, and the clock went on. Rows that are not later than
+all before them in their part, without such a reason, stand still or jitter.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+_BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
+_MANY = 10_000  # small falls that are looked at one by one; a clock with more of them jitters
+_SMALL = 5.0  # in usual intervals: a fall below it may be jitter
+_SCATTER = 8.0  # and so may one below this many robust standard deviations of the intervals
+_ASTRAY = 50  # at most one row in so many goes astray in one go (or ten rows)
+
+_TICKS = [10.0**k for k in range(-9, 1)]
+# what counters hold: bits of ticks, and a day; a clock that falls by one of them has wrapped
+COUNTERS = tuple(
+    sorted(
+        {
+            2.0**bits * tick
+            for bits in (8, 10, 12, 14, 15, 16, 18, 20, 24, 31, 32)
+            for tick in _TICKS
+        }
+    )
+)
+COUNTERS += (43_200.0, 86_400.0)
+
+
+class Start(NamedTuple):
+    """A row at which the clock begins anew; `ahead` is what it lags behind from there on [s]."""
+
+    row: int
+    ahead: float
+    period: float  # of the counter that wrapped; 0 if none did
+
+
+class Faults(NamedTuple):
+    """Rows at which the clock begins anew, and which stamps are astray or missing (time)."""
+
+    starts: tuple[Start, ...]
+    astray: np.ndarray
+    missing: np.ndarray
+
+    def offsets(self) -> np.ndarray:
+        """Return what has to be added to each row's time for the clock to go on [s] (time)."""
+        steps = np.zeros(self.astray.size)
+        for start in self.starts:
+            steps[start.row] = start.ahead
+        return np.cumsum(steps)
+
+
+def first_fault(time: np.ndarray) -> int | None:
+    """Row (from 0) of the first time that is missing or not later than the one before it."""
+    for start in range(0, len(time), _BLOCK):
+        part = time[max(start - 1, 0) : start + _BLOCK]
+        if start == 0 and not np.isfinite(part[0]):
+            return 0
+        with np.errstate(invalid="ignore"):  # from one infinite time to the next
+            bad = ~(np.diff(part) > 0) | ~np.isfinite(part[1:])
+        if bad.any():
+            return max(start - 1, 0) + int(np.argmax(bad)) + 1
+    return None
+
+
+def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
+    """Tell a clock's new starts and wraps from stray stamps and jitter.
+
+    Parameters
+    ----------
+    time
+        [s] (time), as it stands in one table.
+    wrap
+        Period of the counter [s], if it is known: a fall by more than half of it is a wrap.
+
+    Examples
+    --------
+    >>> find_faults(np.array([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0])).starts
+    (Start(row=4, ahead=4.0, period=0.0),)
+    >>> find_faults(np.array([0.0, 1.0, 2.0, 1.9, 4.0, 5.0])).starts  # jitter
+    ()
+    """
+    missing = ~np.isfinite(time)
+    rows = np.flatnonzero(~missing)
+    found = _Search(time[rows], wrap)
+    found.run()
+    astray = np.zeros(time.size, dtype=bool)
+    astray[rows] = found.astray
+    starts = tuple(start._replace(row=int(rows[start.row])) for start in found.starts)
+    return Faults(starts, astray, missing)
+
+
+def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
+    """Which rows have no time of their own: missing, astray, or not later than all before.
+
+    Parameters
+    ----------
+    time
+        [s] (time), its parts joined.
+    faults
+        What is wrong with it.
+    """
+    good = ~(faults.missing | faults.astray)
+    highest = np.fmax.accumulate(np.where(good, time, np.nan))
+    good[1:] &= ~(time[1:] <= highest[:-1])
+    return ~good
+
+
+class _Search:
+    """Goes through the falls of a clock, which are few, in their order."""
+
+    def __init__(self, time: np.ndarray, wrap: float):
+        self.time, self.wrap = time, wrap
+        self.steps = np.diff(time)
+        rising = self.steps[self.steps > 0]
+        self.usual = float(np.median(rising)) if rising.size else 1.0
+        spread = float(np.median(np.abs(rising - self.usual))) if rising.size else 0.0
+        self.scatter = _SCATTER * 1.4826 * spread
+        self.small = _SMALL * self.usual + self.scatter
+        self.astray = np.zeros(time.size, dtype=bool)
+        self.reach = max(10, time.size // _ASTRAY)
+        self.starts: list[Start] = []
+
+    def run(self) -> None:
+        """Judge every fall."""
+        falls = np.flatnonzero(self.steps < 0) + 1
+        size = -self.steps[falls - 1]
+        if np.count_nonzero(size <= self.small) > _MANY:
+            falls = falls[size > self.small]
+        self.first, self.top = 0, -np.inf  # of the present part: its first row, its latest time
+        done = 0  # rows judged so far
+        for row in falls.tolist():
+            if row < done:
+                continue
+            good = self.time[done:row][~self.astray[done:row]]
+            self.top = max(self.top, float(good.max(initial=-np.inf)))
+            done = row
+            if self.time[row] > self.top:  # back from stamps that were astray
+                continue
+            if (stop := self._astray_below(row)) is not None:
+                self.astray[row:stop] = True
+                done = stop
+            elif (start := self._astray_above(row)) is not None:
+                self.astray[start:row] = True
+                part = slice(self.first, start)
+                self.top = float(self.time[part][~self.astray[part]].max())
+            elif self._is_start(row):
+                self._start(row)
+        self._settle_wraps()
+
+    def _fall(self, row: int) -> float:
+        return self.top - float(self.time[row])
+
+    def _astray_below(self, row: int) -> int | None:
+        """Row at which a fall is undone, the clock being where it would be had it gone on."""
+        ahead = self.time[row : row + self.reach + 1]
+        back = np.flatnonzero(ahead > self.top)
+        if not back.size:
+            return None
+        count = int(back[0])
+        jump = float(ahead[count] - ahead[count - 1])
+        lag = float(ahead[count]) - self.top - (count + 1) * self.usual
+        return row + count if self._undone(self._fall(row), jump, lag, count) else None
+
+    def _astray_above(self, row: int) -> int | None:
+        """First of the rows before a fall that had jumped ahead of the clock."""
+        begin = max(self.first, row - self.reach - 1)
+        below = (self.time[begin:row] < self.time[row]) & ~self.astray[begin:row]
+        below = np.flatnonzero(below)
+        if not below.size:
+            return None
+        last = begin + int(below[-1])
+        count = row - 1 - last
+        jump = float(self.time[last + 1] - self.time[last])
+        lag = float(self.time[row] - self.time[last]) - (count + 1) * self.usual
+        return last + 1 if self._undone(self._fall(row), jump, lag, count) else None
+
+    def _undone(self, fall: float, jump: float, lag: float, count: int) -> bool:
+        """Whether a jump undoes a fall: as large, and the clock then where it ought to be."""
+        slack = 3 + 0.1 * count if fall > self.small else 0.5 * (count + 1)
+        return jump >= max(0.5 * fall, 1.5 * self.usual) and abs(lag) <= slack * self.usual
+
+    def _is_start(self, row: int) -> bool:
+        """Whether a fall is more than jitter: a large one, or one back to where the part began."""
+        begin = float(self.time[self.first])
+        back = self.time[row] <= begin + 0.5 * self.usual and self.top - begin >= 1.5 * self.usual
+        return bool((back and self._fall(row) > self.scatter) or self._fall(row) > self.small)
+
+    def _start(self, row: int) -> None:
+        fall, interval = self._fall(row), self._interval(row)
+        period = self.wrap if self.wrap and fall > 0.5 * self.wrap else 0.0
+        if not period:
+            near = min(COUNTERS, key=lambda counter: abs(fall + interval - counter))
+            alike = abs(fall + interval - near) <= 1.5 * interval and 20 * interval < near > fall
+            if alike and np.ptp(self.time[self.first : row]) <= near + interval:
+                period = near
+        self.starts.append(Start(row, period or fall + interval, period))
+        self.first, self.top = row, float(self.time[row])
+
+    def _interval(self, row: int) -> float:
+        """Usual interval of the rows before a fall."""
+        before = self.steps[max(self.first, row - 10) : row - 1]
+        before = before[before > 0]
+        return float(np.median(before)) if before.size else self.usual
+
+    def _settle_wraps(self) -> None:
+        """Let a clock either wrap or start anew.
+
+        A clock that starts anew falls to where it began, once in a while by what a counter holds; a
+        counter always falls by that much, or, where rows are missing at its wrap, lands ahead.
+        """
+        periods = {start.period for start in self.starts} - {0.0}
+        if not periods or self.wrap:
+            return
+        others = [start for start in self.starts if not start.period]
+        period = min(periods)
+        lands_ahead = all(
+            self.time[start.row] > 3 * self.usual and 0.5 * period < start.ahead < period
+            for start in others
+        )
+        one = len(periods) == 1 and lands_ahead and np.ptp(self.time[~self.astray]) <= period
+        if one or not others and len(periods) == 1:
+            self.starts = [Start(start.row, period, period) for start in self.starts]
+        else:
+            self.starts = [start._replace(period=0.0) for start in self.starts]

@@ -1,0 +1,76 @@
+"""Checks on the reading of a file: whether every row of it was taken over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.qc.register import Check, Count, Limit, Result, Skip
+from tribolab.qc.subject import RunSubject
+
+
+def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    attrs = subject.run.attrs
+    if "rows_in_file" not in attrs:
+        raise Skip("the run does not say how many rows its file had")
+    results = []
+    for log, variable in (("", "time"), ("companion_", "companion log")):
+        rows = int(attrs.get(f"{log}rows_in_file", 0))
+        lost = int(attrs.get(f"{log}rows_left_out", 0))
+        meant = float(attrs.get(f"{log}rows_left_out_meant", 0.0))
+        share = lost / rows if rows else 0.0
+        if not lost:
+            if rows:
+                results.append(Result("pass", variable, "every row was read", 0.0))
+            continue
+        text = f"{lost} of {Count(rows):row|rows} ({share:.2%}) left out: "
+        text += str(attrs.get(f"{log}rows_left_out_why", ""))
+        if share <= meant:
+            text += f"; the dialect means up to {meant:.2%} to be left out"
+            status = "pass"
+        else:
+            status = "fail" if share > limits["fail"] else "suspect"
+            status = status if share > limits["suspect"] else "pass"
+        results.append(Result(status, variable, text, share, count=lost, noted=True))
+    return results + _not_covered(subject, limits)
+
+
+def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    alone = int(subject.run.attrs.get("rows_not_covered", 0))
+    if not alone:
+        return []
+    share = alone / (alone + subject.time.size)
+    seconds = alone * float(np.median(np.diff(subject.time)))
+    odd = share > limits["suspect"] and seconds > limits["not_covered"]
+    text = f"{Count(alone):row|rows} ({share:.2%}, some {seconds:.3g} s) at the ends are left out, "
+    text += "which the companion log does not cover"
+    cure = "See that both logs are of this run, whole, and that the shift of the clocks is right."
+    return [
+        Result(
+            "suspect" if odd else "pass",
+            "companion log",
+            text,
+            share,
+            count=alone,
+            noted=odd,
+            cure=cure,
+        )
+    ]
+
+
+READING_CHECKS = (
+    Check(
+        "rows_left_out",
+        25,
+        "Was every row of the file read?",
+        "Let the dialect say how to keep them (restart, on_repeat, end in the dialect), or, if it "
+        "is meant, how many may be lost: [rows] left_out = 0.2.",
+        {
+            "suspect": Limit(0.01, "1", "a row cut short and a few repeated stamps are no loss"),
+            "fail": Limit(0.10, "1", "a tenth of the record holds whole segments"),
+            "not_covered": Limit(5.0, "s", "people start two logs within some seconds"),
+        },
+        _rows_left_out,
+    ),
+)
