@@ -13,7 +13,7 @@ ROOT = Path(tribolab.__file__).parent
 
 # What stands in one row may not see its neighbours unless it is the same room.
 LAYERS = [
-    {"quantities", "turns", "units", "provenance", "errors"},
+    {"quantities", "turns", "unit_text", "units", "provenance", "errors"},
     {"io"},
     {"qc", "friction", "surface"},
     {"contact", "rubber"},
