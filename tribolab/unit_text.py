@@ -130,7 +130,7 @@ class _Reader:
         return Parsed(found.factor**power, {n: p * power for n, p in found.powers.items()})
 
     def power(self, of: str) -> float | None:
-        """Read a power: after a sign for it, or digits that follow a name at once, as in m2, s-1."""
+        """Read a power: after a sign for it, or digits right behind a name, as in m2 and s-1."""
         signed = self.kind == "power"
         if signed:
             self.step()
