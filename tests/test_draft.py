@@ -10,7 +10,6 @@ from drafts import drafted
 from tribolab.errors import OutputError, ReadError
 from tribolab.io.draft import draft_dialect, save_draft
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_results
 from tribolab.io.scans import read_scans
 
 ACTUATOR = "actuator_friction_CC0"

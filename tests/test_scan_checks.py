@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from tribolab import rig
 from tribolab.errors import AnalysisError, ConfigError, UnitError
-from tribolab.io.scan_results import read_results
 from tribolab.io.scans import read_scans
 from tribolab.qc import profiles
 from tribolab.qc.flags import SUSPECT

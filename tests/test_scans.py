@@ -7,7 +7,6 @@ import xarray as xr
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scan_grid import even
-from tribolab.io.scan_results import read_results
 from tribolab.io.scans import read_scans
 from tribolab.rig.files import scan_file
 

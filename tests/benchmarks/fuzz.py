@@ -38,7 +38,6 @@ from mutations import mutate
 from tribolab.errors import TribolabError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_results
 from tribolab.io.scans import read_scans
 
 SECONDS, MEMORY, LONGEST_MESSAGE = 5.0, 1 << 30, 1500

@@ -42,5 +42,5 @@ def save_figure(figure: Figure, folder: Path, file: str, caption: str, alt: str)
     if len(numbers):
         data = str(Path(file).with_suffix(".csv").as_posix())
         # nine digits: more than any eye or figure resolves
-        numbers.to_csv(folder / data, index=False, float_format="%.9g", lineterminator="\n")
+        tables.write(numbers, folder / data, digits=9)
     return {"file": file, "data": data, "caption": caption, "alt": alt}

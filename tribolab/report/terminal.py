@@ -203,14 +203,13 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
-    import pandas as pd
-
+    from tribolab.report import tables
     from tribolab.report.model_words import is_described
 
     path = results / "tables" / "shear_stress.csv"
     if not path.is_file():
         return ""
-    fits = pd.read_csv(path)
+    fits = tables.read(path)
     fits = fits[[not is_described(words) for words in fits.judgement]]
     said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
     verb = "is" if len(fits) == 1 else "are"
