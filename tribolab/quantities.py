@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -246,7 +246,7 @@ _ROWS = [
 ]
 
 
-def dictionary(rows: Iterable[tuple[str | None, ...]]) -> dict[str, Quantity]:
+def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
     """Return quantities by name; two meanings have two names.
 
     Raises

@@ -102,7 +102,8 @@ def usual_reading(si_unit: str) -> Counted:
     >>> usual_reading("Hz"), usual_reading("rad/s"), usual_reading("1/m"), usual_reading("1/s")
     ('cycles', 'ask', 'radians', 'nothing')
     """
-    return {"Hz": "cycles", "rad/s": "ask", "1/m": "radians"}.get(si_unit, "nothing")
+    usual: dict[str, Counted] = {"Hz": "cycles", "rad/s": "ask", "1/m": "radians"}
+    return usual.get(si_unit, "nothing")
 
 
 def scale_of_reciprocal(unit: str, si_unit: str, bare: Counted) -> float | None:
