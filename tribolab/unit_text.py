@@ -94,6 +94,8 @@ class _Reader:
             over = self.value == "/"
             if self.kind == "operator":
                 self.step()
+            elif self.kind == "number":  # "ch 1" is a channel
+                raise self.error(f"'{self.value}' does not belong there")
             more, names = self.factor(depth)
             if over and more == 0:
                 raise self.error("it divides by zero")

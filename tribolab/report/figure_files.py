@@ -6,6 +6,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.report import tables
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,14 +135,14 @@ _SIGN = "'"
 
 
 def harmless(cell: Any) -> Any:
-    """Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
+    r"""Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
 
     Numbers stay as they are, also those written as text.
 
     Examples
     --------
-    >>> harmless('=HYPERLINK("http://x")'), harmless("-3.5e2"), harmless(-3.5), harmless("sb-r")
-    ('\\'=HYPERLINK("http://x")', '-3.5e2', -3.5, 'sb-r')
+    >>> harmless("=1+1"), harmless("-3.5e2"), harmless(-3.5), harmless("sb-r")
+    ("'=1+1", '-3.5e2', -3.5, 'sb-r')
     """
     if not isinstance(cell, str) or not cell.startswith(_ACTIVE):
         return cell
@@ -163,12 +163,7 @@ def write(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
 
     Text that a spreadsheet would compute is made `harmless`; `read` gives it back.
     """
-    texts = {
-        name: table[name].map(harmless)
-        for name in table.columns
-        if table[name].dtype == object or pd.api.types.is_string_dtype(table[name])
-    }
-    safe = table.assign(**texts).rename(columns=harmless)
+    safe = _mapped(table, harmless)
     float_format = None if digits is None else f"%.{digits}g"
     safe.to_csv(path, index=False, encoding="utf-8", lineterminator="\n", float_format=float_format)
 
@@ -185,5 +180,14 @@ def read(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, encoding="utf-8", keep_default_na=False, na_values=[""])
     except (OSError, ValueError) as error:
         raise ReadError(f"{path}: no table ({brief(error)})") from error
-    texts = {n: table[n].map(as_it_was) for n in table.columns if table[n].dtype == object}
-    return table.assign(**texts).rename(columns=as_it_was)
+    return _mapped(table, as_it_was)
+
+
+def _mapped(table: pd.DataFrame, how: Callable[[Any], Any]) -> pd.DataFrame:
+    """Map the texts of a table and the names of its columns."""
+    done = table.copy()
+    for place, name in enumerate(table.columns):
+        values = table.iloc[:, place]
+        if values.dtype == object or pd.api.types.is_string_dtype(values):
+            done[name] = values.map(how, na_action="ignore")
+    return done.rename(columns=how)
