@@ -1,6 +1,7 @@
 """The campaign file: what is right is read in SI, what is wrong is met with line, key and cure."""
 
 import json
+import re
 
 import pytest
 
@@ -94,6 +95,30 @@ def test_quantities_become_si(folder):
     assert campaign.output == folder / "results"
 
 
+@pytest.mark.parametrize(
+    ("after", "name", "inside", "outside"),
+    [
+        ("viscosity = ", "viscosity_range", '["1.2 Pa s", "1.6 Pa s"]', '["1.5 Pa s", "2 Pa s"]'),
+        ("youngs_modulus = ", "youngs_modulus_range", '["1.4 MPa", "1.6 MPa"]', '["1 Pa", "2 Pa"]'),
+        (
+            "work_of_adhesion = ",
+            "work_of_adhesion_range",
+            '["5 mJ/m^2", "1 J/m^2"]',
+            '["1 mJ/m^2", "2 mJ/m^2"]',
+        ),
+    ],
+)
+def test_a_range_lies_about_what_it_is_the_range_of(folder, after, name, inside, outside):
+    def given(value):
+        return re.sub(rf"^({after}.*)$", rf"\1\n{name} = {value}", WHOLE, count=1, flags=re.M)
+
+    campaign = load(folder, given(inside))
+    table = campaign.contact if "modulus" in name else campaign.medium["glycerol"]
+    low, high = getattr(table, name)
+    assert low < high
+    assert f"{name}: must go from below to above" in complaint(folder, given(outside))
+
+
 def test_a_clock_shift_may_be_negative_and_wants_its_unit(folder):
     def given(shift):
         return WHOLE.replace('"31 N"\n', f'"31 N"\nclock_shift = {shift}\n')
@@ -141,7 +166,13 @@ def test_the_settings_of_a_run_and_no_others_change_its_checksum(folder):
 
 
 WRONG = {
-    "unknown key": ("viscosity =", "viscosty =", 12, "medium.glycerol.viscosty", "'viscosity'?"),
+    "unknown key": (
+        "viscosity =",
+        "viscosty =",
+        12,
+        "medium.glycerol.viscosty",
+        "mean 'viscosity' or",
+    ),
     "unknown table": ("[contact]", "[contakt]", 5, "contakt", "did you mean 'contact'?"),
     "unknown key of a run": ("cycles = true", "cycle = true", 34, "run 2, cycle", "'cycles'?"),
     "key in a run's own table": ("trim = 0.2", "trimm = 0.2", 36, "segments.trimm", "'trim'?"),

@@ -24,7 +24,7 @@ from tribolab.friction.repeatability import repeatability
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.report.demo import DemoComparison
 from tribolab.report.model_figures import draw_model, plan_model_figures
-from tribolab.report.model_records import ModelRows
+from tribolab.report.model_records import ModelRows, model_rows
 from tribolab.report.model_words import is_described, judgement, stress_interval
 from tribolab.report.page import note_of
 from tribolab.report.results import write_report
@@ -174,6 +174,32 @@ def test_what_is_the_same_is_taken_over_and_what_changed_is_not(campaign, outcom
     anew = process(other, folder, previous=outcome.folder)
     assert [(m.reused, "uncertainty" in m.parts) for m in anew.models] == [(False, False)]
     assert all(run.reused for run in anew.runs)
+
+
+@pytest.mark.slow
+def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outcome):
+    text = campaign.read_text("utf-8")
+    for line, more in (
+        ("viscosity =", 'viscosity_range = ["1.2 Pa s", "1.6 Pa s"]'),
+        ("youngs_modulus =", 'youngs_modulus_range = ["1.4 MPa", "1.6 MPa"]'),
+    ):
+        text = re.sub(rf"^({line}.*)$", rf"\1\n{more}", text, flags=re.M)
+    file, folder = campaign.with_name("ranges.toml"), campaign.parent / "ranges"
+    file.write_text(text + '\n[model]\npoints = 9\ninlet_length = "40 mm"\n', "utf-8")
+    folder.mkdir()
+    made = process(load_campaign(file), folder, previous=outcome.folder)
+    rows = [model_rows(one, one.models[0]) for one in (outcome, made)]
+    before, after = ({row["variation"]: row for row in one.sensitivity} for one in rows)
+    assert set(after) - set(before) == {"viscosity", "Young's modulus"}
+    assert set(before) - set(after) == {"inlet length"}  # it is stated
+    model = folder / made.models[0].data_file
+    for part in ("curve", "profiles"):
+        assert read_netcdf(model, part).attrs["inlet_length_m"] == 0.04
+    assert (after["viscosity"]["low"], after["viscosity"]["high"]) == ("1.2 Pa s", "1.6 Pa s")
+    assert after["viscosity"]["largest_relative_change"] > 0.1
+    assert "no viscosity_range was given" in rows[0].not_varied
+    assert "range was given" not in rows[1].not_varied
+    assert "liquid: Newtonian" in rows[1].not_varied
 
 
 def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, monkeypatch):

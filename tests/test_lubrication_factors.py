@@ -144,13 +144,37 @@ def test_patir_and_cheng_as_printed():
     factors = patir_cheng(1.0)
     # at H = 3 and 6 the mean of the open gaps is H to 4e-4: values of their formulas
     at = factors.at(np.array([3.0004, 6.0]))
-    np.testing.assert_allclose(at.phi_p, 1 - 0.9 * np.exp(-0.56 * np.array([3.0, 6.0])), rtol=2e-4)
+    np.testing.assert_allclose(at.phi_p, 1 - 0.9 * np.exp(-0.56 * np.array([3.0, 6.0])), rtol=1e-3)
     expected = [1.899 * 3**0.98 * np.exp(-2.76 + 0.45), 1.126 * np.exp(-1.5)]
     np.testing.assert_allclose(-at.phi_s, expected, rtol=2e-3)
     np.testing.assert_allclose(at.phi_fp, 1 - 1.4 * np.exp(-0.66 * np.array([3, 6])), rtol=1e-3)
     assert at.phi_fs[0] == pytest.approx(11.1 * 3**2.31 * np.exp(-7.14 + 0.99), rel=2e-3)
     assert factors.at(np.array([100.0])).phi_f[0] == pytest.approx(1.0001, abs=2e-5)
-    assert np.all(np.isfinite(factors.at(np.array([1e-3, 0.1, 0.31, 0.32]))))
+    assert np.all(np.isfinite(factors.at(np.array([1e-3, 0.1, 0.39, 0.4, 0.41]))))
+
+
+@pytest.mark.parametrize("nominal", [0.25, 0.5, 1.0, 1.5, 3.0])
+def test_patir_and_cheng_conduct_what_their_nominal_film_conducts(nominal):
+    """Theirs stand beside the distance of the mean planes, the solver's beside the mean gap.
+
+    Unconverted the conductance is 1.06 (H = 1.5) to 9.9 times (0.25) too large.
+    """
+    heights, cell = np.linspace(-10, 10, 200_001, retstep=True)
+    bell = np.exp(-(heights**2) / 2) / np.sqrt(2 * np.pi)
+    mean = float((np.maximum(nominal + heights, 0) * bell).sum() * cell)
+    at = patir_cheng(2e-6).at(np.array([2e-6 * mean]))
+    printed = 1 - 0.9 * np.exp(-0.56 * nominal)
+    assert at.phi_p[0] * mean**3 == pytest.approx(printed * nominal**3, rel=1e-4)
+    assert (mean / nominal) ** 3 > 1.05 or nominal == 3.0
+    # stresses: phi_fp h/2 dp/dx, (phi_f + phi_fs) eta v/h
+    assert at.phi_fp[0] * mean == pytest.approx(
+        max(1 - 1.4 * np.exp(-0.66 * nominal), 1e-3 * mean / nominal) * nominal, rel=1e-3
+    )
+    printed = 11.1 * nominal**2.31 * np.exp(-2.38 * nominal + 0.11 * nominal**2)
+    assert at.phi_fs[0] / mean == pytest.approx(printed / nominal, rel=1e-3)
+    # the Couette flow (u + h_rms phi_s) v/2 has the mean gap with them too
+    printed = 1.899 * nominal**0.98 * np.exp(-0.92 * nominal + 0.05 * nominal**2)
+    assert -at.phi_s[0] == pytest.approx(printed, rel=2e-3)
 
 
 @pytest.mark.parametrize("name", SURFACES)

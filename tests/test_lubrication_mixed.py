@@ -14,10 +14,11 @@ from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.mixed import _film, _linearised, _rupture, couette_number
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
-from tribolab.lubrication.sweep import dry_state, lubrication_problem
+from tribolab.lubrication.sweep import dry_state
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)
 CASES = [("Smooth", 1e-6), ("Sb-S", 1e-4), ("Sb-R", 1e-3), ("Sb-R", 1e-1)]
@@ -81,7 +82,11 @@ def test_no_fluid_pulls_and_the_cavity_opens_towards_the_outlet(name, speed):
 @pytest.mark.parametrize("friction_factors", [True, False])
 @pytest.mark.parametrize(("name", "speed"), CASES[1:])
 def test_friction_is_eq_4_integrated_over_the_printed_profile(name, speed, friction_factors):
-    """In SI, from the profile and the printed factors alone; in the cavity liquid covers u*/u."""
+    """In SI, from the profile and the printed factors alone; in the cavity liquid covers u*/u.
+
+    Before the profile's beginning at -X the gap is x^2/2R, to leading order: the integral of
+    eta v/u is 2 eta v R/X there, and that of u/2 dp/dx three times as much.
+    """
     found = profile(name, speed)
     x, u, p = (found[key].values for key in ("x", "separation", "fluid_pressure"))
     cells = np.gradient(x)
@@ -94,6 +99,8 @@ def test_friction_is_eq_4_integrated_over_the_printed_profile(name, speed, frict
     couette = (shear.values * 1.4 * speed / u * covered * cells).sum() / 310
     # the flat slides to +x: where the fluid's pressure rises along x it is held back
     pressure = np.trapezoid(dragged.values * u / 2, p) / 310
+    before = 2 * 1.4 * speed * CONTACT.radius / -(x[0] - cells[0] / 2) / 310
+    couette, pressure = couette + before, pressure + 3 * before
     solid = 0.84e6 * (found.contact_area_ratio.values * cells).sum() / 310
     curve = stribeck_curve(
         CONTACT, reference_psd(name), 1.4, 310.0, 0.84e6, speed, friction_factors=friction_factors
@@ -126,9 +133,7 @@ def test_film_and_pressure_obey_eq_9(name, speed):
 def test_the_jacobian_is_the_derivative_of_the_equations():
     psd = reference_psd("Sb-S")
     separation = separation_table(psd, E_STAR)
-    problem = lubrication_problem(
-        CONTACT, separation, flow_factors(psd), 310.0, (1e-7, 1e-5), 60, 1.0
-    )
+    problem = lubrication_problem(CONTACT, separation, flow_factors(psd), 310.0, 1e-6, 60, 1.0)
     couette = couette_number(problem, 1.4, 3e-5)
     state = dry_state(problem, CONTACT, psd, 310.0)
     film = _film(problem, couette, state)
@@ -206,44 +211,18 @@ def test_vanishing_roughness_is_smooth():
 def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
     """Between first and second order: the front of the cavity sits on a cell.
 
-    From 200, 400 and 800 cells the order is 1.3 and 1.7 for the film of Smooth and of no roughness,
-    0.8 for Sb-S, whose film changes by no more than 1e-5.
+    Where in the cell shifts the film to and fro: the order is that over two doublings, 1.5 to 2.4.
     """
     psd = reference_psd(name) if name else None
     films, frictions = [], []
-    for cells in (200, 400, 800):
+    for cells in (100, 400, 800):
         curve = stribeck_curve(CONTACT, psd, 1.4, 310.0, 0.5e6, [speed], cells=cells)
         films.append(float(curve.minimum_separation[0]))
         frictions.append(float(curve.friction_coefficient[0]))
     assert abs(films[2] / films[1] - 1) < finest
     assert abs(frictions[2] / frictions[1] - 1) < 1e-3
-    order = np.log2(abs(films[1] - films[0]) / abs(films[2] - films[1]))
-    assert order > 0.75
-
-
-def test_longer_domains_converge_and_matter_only_where_films_are_thick():
-    """Friction to first order in 1/length: the wide gap shears 2 % more at 1e-2, 6 % at 1e-1 m/s.
-
-    The film does to second order and better.
-    """
-    psd, speeds = reference_psd("Smooth"), [1e-4, 1e-2, 1e-1]
-    curves = [
-        stribeck_curve(CONTACT, psd, 1.4, 310.0, 0.5e6, speeds, domain=domain, cells=cells)
-        for domain, cells in ((1.0, 400), (2.0, 450), (4.0, 500))
-    ]
-    mu, film = (
-        np.stack([curve[name].values for curve in curves])
-        for name in ("friction_coefficient", "minimum_separation")
-    )
-    relative = np.abs(mu[1] / mu[0] - 1)
-    assert relative[0] < 1e-4
-    assert 0.01 < relative[1] < 0.03
-    assert 0.04 < relative[2] < 0.07
-    assert np.all(np.abs(film[1] / film[0] - 1) < [5e-4, 1e-3, 0.02])
-    order = np.log2(np.abs(np.diff(mu, axis=0)[0] / np.diff(mu, axis=0)[1]))[1:]
-    assert np.all((order > 0.9) & (order < 1.3))
-    order = np.log2(np.abs(np.diff(film, axis=0)[0] / np.diff(film, axis=0)[1]))[1:]
-    assert np.all(order > 1.8)
+    order = np.log2(abs(films[0] - films[2]) / abs(films[1] - films[2])) / 2
+    assert order > 1.0
 
 
 @pytest.mark.slow

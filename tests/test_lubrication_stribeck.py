@@ -149,7 +149,7 @@ def test_the_order_of_speeds_and_what_else_is_asked_change_nothing():
     alone = stribeck_curve(CONTACT, reference_psd("Sb-S"), 1.4, 310.0, "0.84 MPa", SPEEDS[20])
     assert float(alone.friction_coefficient[0]) == pytest.approx(
         float(curve.friction_coefficient[20]),
-        rel=5e-3,  # its mesh and domain fit it alone
+        rel=1e-7,
     )
 
 

@@ -1,5 +1,7 @@
 """The band on a model curve: each end is a model of its own, and the whole is what is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from contact_cases import CONTACT, reference_psd
@@ -13,6 +15,10 @@ from tribolab.surface.moments import band, rms_roughness
 
 SPEEDS = np.array([1e-9, 1e-5, 1e-4, 1e-3, 1e-1])
 GIVEN = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.84e6, "speed": SPEEDS}
+RANGES = {
+    "viscosity_range": ("0.98 Pa s", 1.82),  # 30 % off
+    "youngs_modulus_range": ("1.35 MPa", "1.65 MPa"),
+}
 WIDTH = 1.21  # of the made band
 
 
@@ -25,7 +31,9 @@ def measured_psd():
 
 @pytest.fixture(scope="module")
 def spread():
-    return model_uncertainty(CONTACT, measured_psd(), shear_stress_error="0.01 MPa", **GIVEN)
+    return model_uncertainty(
+        CONTACT, measured_psd(), shear_stress_error="0.01 MPa", **RANGES, **GIVEN
+    )
 
 
 def test_the_band_holds_the_curve_and_every_variation(spread):
@@ -52,10 +60,11 @@ def test_everything_on_the_list_is_varied(spread):
         "elastic-energy factor",
         "rough body",
         "friction factors",
-        "domain",
+        "viscosity",
+        "Young's modulus",
+        "inlet length",
         "shear stress",
     ]
-    assert spread.attrs["not_varied"] == ""
     assert spread.friction_coefficient_high.attrs["units"] == "1"
     assert spread.largest_change_speed.attrs["units"] == "m/s"
     ends = spread.variation_low.str.len() + spread.variation_high.str.len()
@@ -77,24 +86,28 @@ def test_a_spectrum_times_a_number_moves_the_plateau_by_its_root(spread):
     [
         ("rough body", "high", {"rough_body": "moving"}),
         ("friction factors", "low", {"friction_factors": False}),
-        ("domain", "high", {"domain": 2.0}),
+        ("viscosity", "low", {"viscosity": 0.98}),
+        ("viscosity", "high", {"viscosity": 1.82}),
+        ("Young's modulus", "low", {"contact": replace(CONTACT, youngs_modulus=1.35e6)}),
+        ("Young's modulus", "high", {"contact": replace(CONTACT, youngs_modulus=1.65e6)}),
+        ("inlet length", "low", {"inlet_length": CONTACT.radius}),
     ],
 )
 def test_an_end_is_the_curve_of_that_model(spread, name, end, change):
-    given = {key: GIVEN[key] for key in ("viscosity", "load", "shear_stress", "speed")}
-    direct = stribeck_curve(CONTACT, measured_psd(), **given, **change)
+    direct = stribeck_curve(**{"contact": CONTACT, "psd": measured_psd(), **GIVEN, **change})
     found = spread.friction_coefficient_varied.sel(variation=name, range_end=end)
     np.testing.assert_allclose(found, direct.friction_coefficient, rtol=3e-3)
     other = {"low": "high", "high": "low"}[end]
     missing = spread.friction_coefficient_varied.sel(variation=name, range_end=other)
-    assert bool(missing.isnull().all()) == (name != "domain")
+    assert bool(missing.isnull().all()) == (name not in ("viscosity", "Young's modulus"))
 
 
 def test_each_unknown_moves_the_curve_where_it_must(spread):
     where = spread.largest_change_speed.to_series()
     assert where["spectrum band"] == 1e-9
     assert where["shear stress"] == 1e-9
-    assert where["domain"] == 1e-1  # drag in the wide gap
+    assert where["inlet length"] == 1e-1  # drag in the wide gap
+    assert where["viscosity"] in (1e-4, 1e-3)  # where the fluid takes over
     assert 1e-5 <= where["percolation threshold"] <= 1e-3  # where the fluid takes over
     # 1.96 standard errors of 1.2 % each
     change = float(spread.largest_change.sel(variation="shear stress"))
@@ -123,20 +136,44 @@ def test_a_fitted_shear_stress_takes_up_what_scales_the_area():
     assert "shear_stress_error" in fixed.attrs["not_varied"]
 
 
-def test_smooth_surfaces_have_the_domain_alone():
-    spread = model_uncertainty(CONTACT, None, **GIVEN | {"speed": [1e-2, 1e-1]})
-    assert spread.variation.values.tolist() == ["domain"]
+def test_a_viscosity_30_percent_off_halves_or_doubles_friction_at_a_millimetre_a_second(spread):
+    """The transition shifts along the speed, where friction falls as steeply as that."""
+    one = spread.sel(variation="viscosity").friction_coefficient_varied.sel(sliding_speed=1e-3)
+    low, high = (one / spread.friction_coefficient.sel(sliding_speed=1e-3)).values
+    assert low > 1.5
+    assert high < 0.8
+    # the band holds it
+    top = float(spread.friction_coefficient_high.sel(sliding_speed=1e-3))
+    assert top >= float(one.sel(range_end="low")) * (1 - 1e-12)
+
+
+def test_all_that_is_held_fixed_is_named(spread):
+    fixed = ("geometry and load", "liquid", "cavitation", "elasticity")
+    rough = ("shear stress in the contact", "contact area", "roughness", "form of the flow factors")
+    named = [one.split(": ")[0] for one in spread.attrs["not_varied"].split("; ")]
+    assert named == [*fixed, *rough]  # nothing else: all ranges were given
+    bare = model_uncertainty(CONTACT, None, **GIVEN | {"speed": [1e-2]})
+    text = bare.attrs["not_varied"]
+    for name in (*fixed, "viscosity: no viscosity_range was given", "Young's modulus: no youngs_"):
+        assert name in text
+    assert "contact area" not in text
+
+
+def test_smooth_surfaces_have_the_inlet_alone():
     given = {**GIVEN, "speed": [1e-2, 1e-1]}
-    ratios = [
-        stribeck_curve(CONTACT, None, **given, domain=domain, cells=200).friction_coefficient
-        for domain in (0.5, 1.0, 2.0)
-    ]
-    for edge, of in (("low", ratios[0]), ("high", ratios[2])):
-        np.testing.assert_allclose(
-            spread[f"friction_coefficient_{edge}"] / spread.friction_coefficient,
-            of / ratios[1],
-            rtol=1e-9,
-        )
+    spread = model_uncertainty(CONTACT, None, **given)
+    assert spread.variation.values.tolist() == ["inlet length"]
+    cut, full = (
+        stribeck_curve(CONTACT, None, **given, **more, cells=200).friction_coefficient
+        for more in ({"inlet_length": 0.07}, {})
+    )
+    np.testing.assert_allclose(
+        spread.friction_coefficient_low / spread.friction_coefficient, cut / full, rtol=1e-9
+    )
+    np.testing.assert_array_equal(spread.friction_coefficient_high, spread.friction_coefficient)
+    stated = model_uncertainty(CONTACT, None, **given, inlet_length="20 mm")
+    assert stated.variation.size == 0
+    assert "inlet length: it is stated" in stated.attrs["not_varied"]
 
 
 def test_the_result_survives_a_file(spread, tmp_path):
@@ -154,6 +191,8 @@ def test_the_result_survives_a_file(spread, tmp_path):
         ({"load": 0.0}, "load"),
         ({"shear_stress_error": "-1 Pa"}, "shear_stress_error"),
         ({"shear_stress": -1.0}, "shear_stress"),
+        ({"viscosity_range": (1.5, 1.6)}, "viscosity_range: 1.5 to 1.6 Pa s must go from below"),
+        ({"youngs_modulus_range": ("1 MPa", "0 MPa")}, "youngs_modulus_range"),
     ],
 )
 def test_what_has_no_band_is_refused(change, words):

@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from tribolab.contact.line import line_kernel
 from tribolab.contact.separation import separation_table
+from tribolab.lubrication.domain import film_estimate, lubrication_problem
 from tribolab.lubrication.factors import _tabulated, flow_factors
 from tribolab.lubrication.mixed import (
     LEAK,
@@ -27,7 +28,7 @@ from tribolab.lubrication.mixed import (
     solve_speed,
 )
 from tribolab.lubrication.stribeck import stribeck_curve
-from tribolab.lubrication.sweep import dry_state, film_estimate, lubrication_problem
+from tribolab.lubrication.sweep import dry_state
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)
 CASES = [("Smooth", 310.0)] + [
@@ -59,6 +60,33 @@ def nine_curves() -> None:
         f"  median {statistics.median(times):.2f} s ({statistics.median(spent):.2f} s busy) "
         f"a curve of {SPEEDS.size} speeds; all nine {sum(times):.1f} s ({sum(spent):.1f} s busy)"
     )
+
+
+def for_lists() -> None:
+    """Print friction at three speeds for lists of speeds that end differently, and how they differ.
+
+    0.1 m/s is asked for beside a list that ends below it.
+    """
+    asked = np.array([1e-3, 1e-2, 1e-1])
+    for name, load in (("Smooth", 310.0), ("Sb-S", 310.0), ("Sb-R", 310.0), ("Sb-S", 2110.0)):
+        psd, found = reference_psd(name), []
+        for last in (1e-2, 10.0):
+            speeds = np.union1d(np.geomspace(1e-5, last, 7), asked[asked <= last])
+            curve = stribeck_curve(CONTACT, psd, 1.4, load, 0.84e6, speeds).friction_coefficient
+            beyond = asked[asked > last]
+            alone = [
+                stribeck_curve(CONTACT, psd, 1.4, load, 0.84e6, v).friction_coefficient[0]
+                for v in beyond
+            ]
+            mu = [*curve.sel(sliding_speed=asked[asked <= last]).values, *map(float, alone)]
+            found.append(mu)
+            print(
+                f"  {name:7}{load:6.0f} N/m, list to {last:5g} m/s: mu = "
+                + ", ".join(f"{one:.6f}" for one in mu)
+                + " at 1e-3, 1e-2, 1e-1 m/s"
+                + (" (the last asked for alone)" if alone else "")
+            )
+        print(f"  largest difference {100 * np.max(np.abs(np.divide(*found) - 1)):.1e} %")
 
 
 def one_curve(case: tuple[str, float]) -> float:
@@ -119,7 +147,7 @@ def against_picard() -> None:
         separation_table(psd, E_STAR),
         flow_factors(psd),
         310.0,
-        tuple(film_estimate(CONTACT, 1.4, 310.0, v) for v in (1e-9, 1e-1)),
+        film_estimate(CONTACT, 1.4, 310.0, 1e-3),
         400,
         1.0,
     )
@@ -151,7 +179,7 @@ def against_two_threads() -> None:
     """Print the solver's time where BLAS may use two threads over that on one."""
     psd = reference_psd("Sb-S")
     problem = lubrication_problem(
-        CONTACT, separation_table(psd, E_STAR), flow_factors(psd), 310.0, (1e-9, 1e-5), 400, 1.0
+        CONTACT, separation_table(psd, E_STAR), flow_factors(psd), 310.0, 1e-6, 400, 1.0
     )
     times = {}
     for threads in (1, 2, 1, 2):
@@ -172,6 +200,8 @@ if __name__ == "__main__":
     print("the paper's nine curves")
     nine_curves()
     on_two_cores()
+    print("the same speeds in different lists")
+    for_lists()
     print("one speed, Sb-R at 310 N/m")
     against_picard()
     against_two_threads()

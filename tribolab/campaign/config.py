@@ -99,10 +99,18 @@ class Contact(Table):
     """Length of the line contact."""
     youngs_modulus: _positive_si("Pa", "1.5 MPa") | None = None
     """Young's modulus of the elastomer at low frequency."""
+    youngs_modulus_range: (
+        tuple[_positive_si("Pa", "1.35 MPa"), _positive_si("Pa", "1.65 MPa")] | None
+    ) = None
+    """Between which values it is uncertain; model curves get a band from it."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
     modulus_file: Text | None = None
     """Storage and loss modulus over frequency (DMA), relative to the raw folder."""
+
+    def line(self) -> dict[str, float | None]:
+        """Return the arguments of `LineContact`, as far as they are known."""
+        return self.model_dump(include={"radius", "length", "youngs_modulus", "poisson_ratio"})
 
 
 class Medium(Table):
@@ -110,6 +118,10 @@ class Medium(Table):
 
     viscosity: _positive_si("Pa s", "1.4 Pa s") | None = None
     """Dynamic viscosity."""
+    viscosity_range: (
+        tuple[_positive_si("Pa s", "1.2 Pa s"), _positive_si("Pa s", "1.6 Pa s")] | None
+    ) = None
+    """Between which values it is uncertain; model curves get a band from it."""
     work_of_adhesion: _si("J/m2", "51 mJ/m^2") | None = None
     """Work of adhesion of the surfaces in this medium."""
     work_of_adhesion_range: tuple[_si("J/m2", "21 mJ/m^2"), _si("J/m2", "59 mJ/m^2")] | None = None
@@ -210,6 +222,8 @@ class Model(Table):
     """Which body is the rough one: it sets the sign of the shear flow factor."""
     friction_factors: bool = True
     """Whether the fluid's friction takes the friction factors of the roughness."""
+    inlet_length: _positive_si("m", "20 mm") | None = None
+    """Where the liquid begins, before the contact's middle; by default it is everywhere."""
     fit_speeds: tuple[_positive_si("m/s", "1 um/s"), _positive_si("m/s", "1 cm/s")] | None = None
     """Between which speeds the shear stress is fitted; by default all that were measured."""
     uncertainty: Literal["lowest load", "all", "none"] = "lowest load"

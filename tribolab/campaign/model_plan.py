@@ -37,6 +37,8 @@ class PlannedModel:
         The table [contact].
     viscosity
         [Pa s]
+    viscosity_range, youngs_modulus_range
+        Between which values [Pa s], [Pa] they are uncertain; None if the campaign does not say.
     settings
         The table [model].
     leading
@@ -57,6 +59,8 @@ class PlannedModel:
     surface_file: str
     contact: dict[str, Any]
     viscosity: float
+    viscosity_range: tuple[float, float] | None
+    youngs_modulus_range: tuple[float, float] | None
     settings: dict[str, Any]
     leading: bool
     uncertain: bool
@@ -108,7 +112,7 @@ def plan_models(
         return ()
     spread, freedom = _repeatability(done, folder)
     known = {surface.name: surface for surface in surfaces}
-    contact = campaign.contact.model_dump(exclude={"modulus_file"})
+    contact = campaign.contact.line()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty"})
     planned, led = [], set()
     for curve, viscosity in sorted(wet, key=lambda pair: pair[0].normal_force or np.inf):
@@ -122,6 +126,8 @@ def plan_models(
             surface_file=surface.data_file if surface else "",
             contact=contact,
             viscosity=viscosity,
+            viscosity_range=campaign.medium[curve.medium].viscosity_range,
+            youngs_modulus_range=campaign.contact.youngs_modulus_range,
             settings=settings,
             leading=first,
             uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),

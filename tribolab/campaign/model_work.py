@@ -82,7 +82,8 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     contact = LineContact(**model.contact)
     load = contact.load(model.curve.normal_force)
     settings = model.settings
-    body = {"rough_body": settings["rough_body"], "friction_factors": settings["friction_factors"]}
+    body = {name: settings[name] for name in ("rough_body", "friction_factors")}
+    body["inlet_length"] = settings["inlet_length"] or np.inf
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
@@ -110,7 +111,8 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
     if model.uncertain and fit is not None and fit.shear_stress > 0:
-        given = {"viscosity": model.viscosity, "load": load, **body}
+        ranges = ("viscosity", "viscosity_range", "youngs_modulus_range")
+        given = {name: getattr(model, name) for name in ranges} | {"load": load, **body}
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
         )
@@ -209,8 +211,10 @@ def _profiles(
     from tribolab.lubrication.stribeck import film_profile
 
     moving = points[points > 0]
+    body = model.settings["rough_body"]
+    begins = model.settings["inlet_length"] or np.inf
     found = [
-        film_profile(contact, psd, model.viscosity, load, v, model.settings["rough_body"])
+        film_profile(contact, psd, model.viscosity, load, v, body, inlet_length=begins)
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")

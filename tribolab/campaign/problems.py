@@ -167,11 +167,16 @@ def of_names(campaign: Campaign) -> list[Problem]:
     for number, surface in enumerate(campaign.surface):
         if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
             found.append(Problem(("surface", number, "instrument"), what))
-    for name, medium in campaign.medium.items():
-        work, bounds = medium.work_of_adhesion, medium.work_of_adhesion_range
-        if bounds and not (work is not None and bounds[0] <= work <= bounds[1]):
-            what = "must go from below to above work_of_adhesion"
-            found.append(Problem(("medium", name, "work_of_adhesion_range"), what))
+    stated = [
+        (("medium", name), quantity, medium)
+        for name, medium in campaign.medium.items()
+        for quantity in ("viscosity", "work_of_adhesion")
+    ]
+    for where, name, table in [*stated, (("contact",), "youngs_modulus", campaign.contact)]:
+        value, bounds = getattr(table, name), getattr(table, f"{name}_range")
+        if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
+            what = f"must go from below to above {name}"
+            found.append(Problem((*where, f"{name}_range"), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
             what = f"no [[surface]] is called '{entry.surface}'" + _hint(

@@ -112,7 +112,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "data_file": f"data/{file}.nc",
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
-            "contact": campaign.contact.model_dump(exclude={"modulus_file"}),
+            "contact": campaign.contact.line(),
             "forces": tuple(sorted({force for name, force in known if name == surface.name})),
             "lowest_force": min((force for _, force in known), default=None),
             "media": media,

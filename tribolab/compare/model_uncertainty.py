@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
-from tribolab.compare.variations import Base, Skipped, Variation, variations
+from tribolab.compare.variations import Base, Skipped, Variation, held_fixed, variations
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
@@ -38,13 +38,16 @@ def model_uncertainty(
     gamma: float = 0.45,
     measured_to: str | float | None = None,
     refit: bool = False,
+    viscosity_range: tuple[str | float, str | float] | None = None,
+    youngs_modulus_range: tuple[str | float, str | float] | None = None,
+    inlet_length: str | float = np.inf,
     cells: int = CELLS,
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
     Parameters
     ----------
-    contact, psd, viscosity, load, shear_stress, rough_body, friction_factors, gamma, cells
+    contact, psd, viscosity, load, shear_stress, rough_body, friction_factors, gamma
         As for `stribeck_curve`, with one load. Of the spectrum ``psd_2d_low``, ``psd_2d_high`` and
         ``origin`` are used where it has them.
     speed
@@ -56,6 +59,11 @@ def model_uncertainty(
     refit
         Give each varied curve the sigma_f that fits the given curve best. So is the band what is
         left to a model whose sigma_f is fitted to a measured curve anyway.
+    viscosity_range, youngs_modulus_range
+        Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
+        leaves them out.
+    inlet_length, cells
+        As for `stribeck_curve`.
 
     Returns
     -------
@@ -68,7 +76,8 @@ def model_uncertainty(
         ``shear_stress_change_low``, ``shear_stress_change_high`` [1], relative change of the
         sigma_f that each end needs to fit the given curve. The curves themselves are
         ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN where there is
-        no such end. The attribute ``not_varied`` says what was left out and why.
+        no such end. The attribute ``not_varied`` names what was left out, and all that no variation
+        reaches, with the reason.
 
     Raises
     ------
@@ -102,24 +111,45 @@ def model_uncertainty(
     >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
     >>> spread = model_uncertainty(contact, None, speed=[1e-3, 1e-1], **given)
     >>> spread.largest_change.to_series().round(2).to_dict()  # of smooth surfaces
-    {'domain': 0.09}
+    {'inlet length': 0.05}
     """
     known_to = None if measured_to is None else positive(measured_to, "1/m", "measured_to")
     error = None if shear_stress_error is None else _error_of_stress(shear_stress_error)
     if psd is not None:  # where nothing is rough there is nothing to vary
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
-    base = Base(psd, rough_body, friction_factors, gamma, known_to)
+    eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, "N/m", "load")
+    begins = to_si(inlet_length, "m", name="inlet_length")
+    base = Base(
+        psd=psd,
+        rough_body=rough_body,
+        friction_factors=friction_factors,
+        gamma=gamma,
+        measured_to=known_to,
+        contact=contact,
+        load=force,
+        viscosity=eta,
+        viscosity_range=_range(viscosity_range, eta, "Pa s", "viscosity"),
+        youngs_modulus_range=_range(
+            youngs_modulus_range, contact.youngs_modulus, "Pa", "youngs_modulus"
+        ),
+        inlet_length=begins,
+    )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     given = {
-        "viscosity": viscosity,
-        "load": positive(load, "N/m", "load"),
+        "viscosity": eta,
+        "load": force,
         "shear_stress": stress,
         "speed": np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed")),
     }
     if np.any(given["speed"] <= 0):
         raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
-    plain = {"rough_body": rough_body, "friction_factors": friction_factors, "gamma": gamma}
+    plain = {
+        "rough_body": rough_body,
+        "friction_factors": friction_factors,
+        "gamma": gamma,
+        "inlet_length": begins,
+    }
     coarse = {**given, **plain, "cells": min(cells, _CELLS)}
     with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
         curve = stribeck_curve(contact, psd, **given, **plain, cells=cells)
@@ -127,10 +157,10 @@ def model_uncertainty(
         found = variations(base)
         varied = [one for one in found if isinstance(one, Variation)]
         mu, fitted = _all_ends(contact, psd, coarse, varied, reference, refit)
-    skipped = [f"{one.name}: {one.reason}" for one in found if isinstance(one, Skipped)]
+    left = [one for one in found if isinstance(one, Skipped)]
     height = reference["friction_coefficient"].values
     if error is None:
-        skipped.append("shear stress: no shear_stress_error was given")
+        left.append(Skipped("shear stress", "no shear_stress_error was given"))
     elif not refit:
         one, ends = _of_stress(error, reference)
         varied.append(one)
@@ -154,14 +184,14 @@ def model_uncertainty(
         },
         {
             "sliding_speed": given["speed"],
-            "variation": [one.name for one in varied],
+            "variation": np.array([one.name for one in varied], dtype=str),
             "range_end": ["low", "high"],
         },
     )
     return stamp(
         data.assign_attrs(curve.attrs),
         load_N_m=given["load"],
-        not_varied="; ".join(skipped),
+        not_varied="; ".join(f"{one.name}: {one.reason}" for one in left + held_fixed(base)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
     )
@@ -184,7 +214,7 @@ def _all_ends(
             if end is None:
                 continue
             try:
-                changed = stribeck_curve(contact, **{"psd": psd, **coarse, **end})
+                changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
             except AnalysisError as error:
                 raise AnalysisError(f"varied {one.name} ({one.texts[j]}): {error}") from error
             fluid = sum(changed[part].values for part in _PARTS)
@@ -194,6 +224,20 @@ def _all_ends(
             fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
             mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
     return mu, fitted
+
+
+def _range(
+    given: tuple[str | float, str | float] | None, value: float, unit: str, name: str
+) -> tuple[float, float] | None:
+    """Return the ends of a range in SI, about the value that it is for."""
+    if given is None:
+        return None
+    low, high = (positive(end, unit, f"{name}_range") for end in given)
+    if not low <= value <= high:
+        raise AnalysisError(
+            f"{name}_range: {low:g} to {high:g} {unit} must go from below to above {value:g} {unit}"
+        )
+    return low, high
 
 
 def _error_of_stress(given: str | float) -> float:
@@ -226,10 +270,14 @@ def _table(
     varied: list[Variation], mu: np.ndarray, height: np.ndarray, speed: np.ndarray
 ) -> dict[str, tuple[str, Any]]:
     """Return ends, reasons and largest changes of each variation."""
+    words = {
+        "variation_low": [one.texts[0] for one in varied],
+        "variation_high": [one.texts[1] for one in varied],
+        "variation_reason": [one.reason for one in varied],
+    }
     table: dict[str, tuple[str, Any]] = {
-        "variation_low": ("variation", [one.texts[0] for one in varied]),
-        "variation_high": ("variation", [one.texts[1] for one in varied]),
-        "variation_reason": ("variation", [one.reason for one in varied]),
+        name: ("variation", np.array(texts, dtype=str))  # text also where nothing is varied
+        for name, texts in words.items()
     }
     for name, over in (("largest_change", height.max()), ("largest_relative_change", height)):
         change = np.nanmax(np.abs(mu - height) / over, axis=1)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 from tribolab.surface.extrapolation import MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
@@ -21,7 +25,19 @@ _PLATEAU = 2.0
 _OPEN, _SHUT = 0.40, 0.50
 _CUTOFFS = 0.3e-9, 3e-9
 _GAMMA = 0.5
-_DOMAINS = 0.5, 2.0
+# What no variation reaches, between any surfaces and between rough ones.
+FIXED = (
+    ("geometry and load", "radius, length, Poisson's ratio and normal force are taken as stated"),
+    ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
+    ("cavitation", "the liquid ruptures at the pressure outside"),
+    ("elasticity", "linear and without loss, of a half-space"),
+)
+FIXED_IF_ROUGH = (
+    ("shear stress in the contact", "the same at every speed, load and temperature"),
+    ("contact area", "that of Persson's theory without adhesion, at rest"),
+    ("roughness", "Gaussian, isotropic and on one of the bodies"),
+    ("form of the flow factors", "effective-medium theory of the gaps' distribution"),
+)
 
 
 class Base(NamedTuple):
@@ -32,6 +48,12 @@ class Base(NamedTuple):
     friction_factors: bool
     gamma: float
     measured_to: float | None  # wavenumber [1/m] above which the spectrum is a guess
+    contact: LineContact
+    load: float  # [N/m]
+    viscosity: float  # [Pa s]
+    viscosity_range: tuple[float, float] | None  # None if it is not known
+    youngs_modulus_range: tuple[float, float] | None
+    inlet_length: float  # [m], infinite if nothing is stated
 
 
 class Variation(NamedTuple):
@@ -205,13 +227,47 @@ def friction_factors(base: Base) -> Variation:
     )
 
 
-def domain(base: Base) -> Variation:
-    """Vary how far from the contact the gap is filled with liquid."""
+def viscosity(base: Base) -> Variation | Skipped:
+    """Vary the liquid's viscosity over the range that is stated."""
+    if base.viscosity_range is None:
+        return Skipped("viscosity", "no viscosity_range was given")
+    low, high = base.viscosity_range
     return Variation(
-        "domain",
-        "how far the liquid reaches; all of it is sheared",
-        tuple(f"{value:g} x the default length" for value in _DOMAINS),
-        ({"domain": _DOMAINS[0]}, {"domain": _DOMAINS[1]}),
+        "viscosity",
+        "as stated; that of a liquid hangs on temperature and on the water it takes up",
+        (f"{low:.3g} Pa s", f"{high:.3g} Pa s"),
+        ({"viscosity": low}, {"viscosity": high}),
+    )
+
+
+def youngs_modulus(base: Base) -> Variation | Skipped:
+    """Vary Young's modulus over the range that is stated."""
+    if base.youngs_modulus_range is None:
+        return Skipped("Young's modulus", "no youngs_modulus_range was given")
+    low, high = base.youngs_modulus_range
+    return Variation(
+        "Young's modulus",
+        "as stated; that of an elastomer hangs on batch, cure, age and frequency",
+        (f"{low / 1e6:.3g} MPa", f"{high / 1e6:.3g} MPa"),
+        tuple({"contact": replace(base.contact, youngs_modulus=end)} for end in (low, high)),
+    )
+
+
+def inlet_length(base: Base) -> Variation | Skipped:
+    """Let the liquid begin where a cylinder ends, and its gap is no parabola any more."""
+    name = "inlet length"
+    if np.isfinite(base.inlet_length):
+        return Skipped(name, "it is stated")
+    stiffness, psd = base.contact.effective_modulus, base.psd
+    table = None if psd is None else separation_table(psd, stiffness, base.gamma)
+    radius = base.contact.radius
+    if not radius > SHORTEST * half_width(base.contact, table, base.load):
+        return Skipped(name, "the contact is as wide as the cylinder")
+    return Variation(
+        name,
+        "where the liquid begins before the contact: at the cylinder's radius, or anywhere beyond",
+        (f"{1e3 * radius:.3g} mm", ""),
+        ({"inlet_length": radius}, None),
     )
 
 
@@ -227,6 +283,12 @@ OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
     friction_factors,
 )
 
+OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
+    viscosity,
+    youngs_modulus,
+    inlet_length,
+)
+
 _NO_TAIL = (
     "no part of the spectrum is marked as extrapolated to large wavenumbers (variable 'origin'); "
     "give measured_to"
@@ -236,7 +298,13 @@ _NO_TAIL = (
 def variations(base: Base) -> list[Variation | Skipped]:
     """Return all that can be varied in a model, and what cannot with the reason."""
     rough = [] if base.psd is None else [make(base) for make in OF_ROUGHNESS]
-    return [*rough, domain(base)]
+    return [*rough, *(make(base) for make in OF_ANY)]
+
+
+def held_fixed(base: Base) -> list[Skipped]:
+    """Return what no variation reaches."""
+    fixed = FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH
+    return [Skipped(name, reason) for name, reason in fixed]
 
 
 def _factors(base: Base, **changed: float) -> dict[str, Any]:

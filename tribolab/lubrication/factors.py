@@ -59,11 +59,11 @@ class FlowFactors:
     percolation_separation
         Mean separation u_c [m] under which nothing flows; 0 if it always does.
     rough_body
-        Which of the two bodies is rough; sets the sign of phi_s.
+        Which of the two bodies is rough; sets the sign of phi_s, and phi_fp.
     model
         What the factors come from, for the attributes of results.
     flow, friction
-        Tables of phi_p and (u + h_rms phi_s)/u for a rough body at rest; and of phi_f, phi_fs and,
+        Tables for a rough body at rest, of phi_p and (u + h_rms phi_s)/u; and of phi_f, phi_fs and,
         where reciprocity does not give it, phi_fp. None if smooth.
     """
 
@@ -83,7 +83,9 @@ class FlowFactors:
         phi_p, open_flow = self.flow(u)[0]
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)
-        return Factors(phi_p, phi_s, phi_f, phi_fs, *(phi_fp or [open_flow]))
+        drag = phi_fp[0] if phi_fp else open_flow
+        # a rough body that moves has the rest of u dp/dx on it, as it carries its valleys along
+        return Factors(phi_p, phi_s, phi_f, phi_fs, drag if self._sign < 0 else 2 - drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
         """phi_p and the entrained separation u + h_rms phi_s [m], each with its slope over u."""
@@ -135,6 +137,7 @@ def flow_factors(
     rough_body
         ``"stationary"`` if the rough body stands still and the smooth one moves (fluid in the
         valleys stays behind: phi_s < 0), ``"moving"`` if it is the other way round (phi_s > 0).
+        It sets phi_fp too: friction is the drag on the body that moves.
     percolation
         Relative contact area at which flow stops, in (0, 1).
     cutoff
@@ -165,9 +168,12 @@ def flow_factors(
     - phi_f = u <1/u>,
 
     u being the mean. So the reciprocity of Onsager, (u + h_rms phi_s)/u = phi_fp for a rough body
-    at rest, holds by construction. For u -> infinity, phi_p = 1 - (9/d - 3)(h/u)^2,
-    phi_fp = 1 - (3/d)(h/u)^2, phi_fs = (3/d)(h/u)^2 and phi_f = 1 + (h/u)^2; d = 2 gives the
-    results of Tripp [3]_. Below percolation phi_p = phi_fp = 0.
+    at rest, holds by construction. On a rough body that moves the pressure gradient drags with
+    2 - phi_fp instead: together the two bodies carry u dp/dx, so that reciprocity holds there too,
+    (u + h_rms phi_s)/u = 2 - phi_fp. For u -> infinity and a rough body at rest,
+    phi_p = 1 - (9/d - 3)(h/u)^2, phi_fp = 1 - (3/d)(h/u)^2, phi_fs = (3/d)(h/u)^2 and
+    phi_f = 1 + (h/u)^2; d = 2 gives the results of Tripp [3]_. Below percolation
+    phi_p = phi_fp = 0.
 
     References
     ----------

@@ -22,19 +22,21 @@ class Mesh(NamedTuple):
     lift: np.ndarray  # stiffness @ 1
 
 
-@functools.lru_cache(maxsize=4)
-def graded_mesh(cells: int, edge: float, inlet: float, outlet: float) -> Mesh:
-    """Cells of equal weight under a density that peaks at x = -1 and x = 1.
+@functools.lru_cache(maxsize=16)
+def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: float = 1.0) -> Mesh:
+    """Cells of equal weight under a density that peaks at x = -size and x = size.
 
     Parameters
     ----------
     cells
         Their number.
     edge
-        Length over which the film leaves the contact's edge, in units of b: cells are finest,
-        about a twentieth of it at 400 cells, there.
+        Length over which the film leaves the contact's edge, in units of size b: cells are
+        finest, about a twentieth of it at 400 cells, there.
     inlet, outlet
         Ends of the domain: -inlet, outlet, in units of b.
+    size
+        Half-width of what is to be resolved, in units of b: more than 1 where the film is thick.
 
     Notes
     -----
@@ -42,14 +44,18 @@ def graded_mesh(cells: int, edge: float, inlet: float, outlet: float) -> Mesh:
     are in units of b and the kernel's own scale goes into the constant of Eq. (9).
     """
     # dense samples of the density where it is peaked: equal steps of asinh((x -+ 1)/edge)
+    inlet, outlet = inlet / size, outlet / size
     reach = np.arcsinh((max(inlet, outlet) + 1) / edge)
     near = edge * np.sinh(np.linspace(-reach, reach, 4001))
     at = np.unique(np.concatenate([near - 1, near + 1, [-inlet, outlet]]))
     at = at[(at >= -inlet) & (at <= outlet)]
     density = 6 / (1 + at**4) + sum(1 / np.hypot(at - end, edge) for end in (-1, 1))
     count = np.append(0, np.cumsum(np.diff(at) * (density[1:] + density[:-1]) / 2))
+    count, kept = np.unique(count, return_index=True)  # samples may lie within rounding
+    at = at[kept]
     faces = PchipInterpolator(count, at)(np.linspace(0, count[-1], cells + 1))
     faces[[0, -1]] = -inlet, outlet
+    faces *= size
     x, width = (faces[1:] + faces[:-1]) / 2, np.diff(faces)
     distance = np.concatenate([[width[0] / 2], np.diff(x), [width[-1] / 2]])
     stiffness = inv(line_kernel(x, width, 1.0))

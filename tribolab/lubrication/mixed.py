@@ -30,6 +30,7 @@ class Problem(NamedTuple):
     half_width: float  # b [m]
     gap: float  # g = b^2/(2R) [m]
     pressure: float  # p = E* g/b [Pa]
+    inlet_length: float = np.inf  # where the liquid begins, before the middle
 
 
 class State(NamedTuple):

@@ -8,7 +8,6 @@ from scipy.special import ndtr
 from tribolab.lubrication.factors import FactorTable, FlowFactors, RoughBody, check_rough_body
 from tribolab.units import positive
 
-_CLOSED = np.log(0.90) / 0.56  # H at which phi_p is 0
 _CONTACT = 1 / 300  # gap in h_rms under which there is no fluid to shear
 
 
@@ -29,13 +28,18 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
 
     Notes
     -----
-    With H the distance of the undeformed mean planes over h_rms, phi_p = 1 - 0.90 exp(-0.56 H);
-    phi_s = 1.899 H^0.98 exp(-0.92 H + 0.05 H^2) up to H = 5, 1.126 exp(-0.25 H) beyond [1]_;
-    phi_fp = 1 - 1.40 exp(-0.66 H), phi_fs = 11.1 H^2.31 exp(-2.38 H + 0.11 H^2) up to H = 7 and
-    falling as 1/H^2 beyond, phi_f = u <1/gap> over gaps above h_rms/300 [2]_. The mean separation
-    is that of what gap is left, ``u/h_rms = H Phi(H) + exp(-H^2/2)/sqrt(2 pi)``. The fits hold
-    above H = 0.5; phi_p is followed down to where it is 0 and phi_fp kept at 1e-3 or more. phi_s
-    and phi_fp are fitted apart and not reciprocal, as effective-medium factors are.
+    With H the distance of the undeformed mean planes over h_rms, their film is the nominal one,
+    h = H h_rms: the pressure flow is phi_p h^3, the stresses are (phi_f + phi_fs) eta v/h and
+    phi_fp h/2 dp/dx, with phi_p = 1 - 0.90 exp(-0.56 H); phi_s = 1.899 H^0.98 exp(-0.92 H +
+    0.05 H^2) up to H = 5, 1.126 exp(-0.25 H) beyond [1]_; phi_fp = 1 - 1.40 exp(-0.66 H),
+    phi_fs = 11.1 H^2.31 exp(-2.38 H + 0.11 H^2) up to H = 7 and falling as 1/H^2 beyond,
+    phi_f = h <1/gap> over gaps above h_rms/300 [2]_. `FlowFactors` refers all of them to the mean
+    separation u, that of what gap is left: u/h_rms = H Phi(H) + exp(-H^2/2)/sqrt(2 pi), exact for
+    Gaussian heights that are cut off where they touch. So theirs are converted, phi_p by (h/u)^3,
+    phi_fp by h/u, phi_f and phi_fs by u/h. phi_s stands beside h_rms and stays, as their Couette
+    flow has the mean gap. The fits hold above H = 0.5; below, phi_p is followed down to H = 0,
+    where phi_p h^3 is 0, and phi_fp kept at 1e-3 or more. phi_s and phi_fp are fitted apart and not
+    reciprocal, as effective-medium factors are.
 
     References
     ----------
@@ -51,30 +55,37 @@ def patir_cheng(rms_roughness: str | float, rough_body: RoughBody = "stationary"
     """
     check_rough_body(rough_body)
     height = positive(rms_roughness, "m", "rms_roughness")
-    above = _CLOSED + np.geomspace(1e-4, 60.0, 240)
-    fitted = np.maximum(above, 0.0)
-    low, high = np.minimum(fitted, 5.0), np.minimum(fitted, 7.0)
+    nominal = np.geomspace(1e-4, 60.0, 240)
+    low, high = np.minimum(nominal, 5.0), np.minimum(nominal, 7.0)
     shear = np.where(
-        fitted <= 5,
-        1.899 * fitted**0.98 * np.exp(-0.92 * fitted + 0.05 * low**2),
-        1.126 * np.exp(-0.25 * fitted),
+        nominal <= 5,
+        1.899 * nominal**0.98 * np.exp(-0.92 * nominal + 0.05 * low**2),
+        1.126 * np.exp(-0.25 * nominal),
     )
+    shear[:2] = 0.0  # below, where nothing flows, it stays as here
     correction = 11.1 * high**2.31 * np.exp(-2.38 * high + 0.11 * high**2)
-    correction = np.maximum(correction * (high / np.maximum(fitted, 1e-9)) ** 2, 1e-12)
-    mean = _mean_gap(above)
-    values = np.stack([1 - 0.90 * np.exp(-0.56 * above), 1 - shear / mean])
-    drag = np.maximum(1 - 1.40 * np.exp(-0.66 * above), 1e-3)
-    closing = float(_mean_gap(np.array(_CLOSED)))
+    correction = correction * (high / nominal) ** 2
+    mean = _mean_gap(nominal)
+    part = nominal / mean  # h/u
+    conductance = (1 - 0.90 * np.exp(-0.56 * nominal)) * part**3
+    drag = np.maximum((1 - 1.40 * np.exp(-0.66 * nominal)) * part, 1e-3)
+    closing = float(_mean_gap(np.array(0.0)))
     zero = np.zeros(2)
     return FlowFactors(
         rms_roughness=height,
         percolation_separation=height * closing,
         rough_body=rough_body,
         model="Patir and Cheng (1978, 1979), isotropic",
-        flow=FactorTable(height * mean, values, height * closing, zero, np.ones(2)),
+        flow=FactorTable(
+            height * mean,
+            np.stack([conductance, 1 - shear / mean]),
+            height * closing,
+            zero,
+            np.ones(2),
+        ),
         friction=FactorTable(
             height * mean,
-            np.stack([mean * _mean_inverse(above), correction, drag]),
+            np.stack([mean * _mean_inverse(nominal), np.maximum(correction / part, 1e-12), drag]),
             0.0,
             np.array([height**2, 0.0, 0.0]),
             np.array([1.0, 0.0, 1.0]),

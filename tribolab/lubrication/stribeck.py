@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.contact.separation import Separation, separation_table
+from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import (
     FlowFactors,
@@ -23,20 +22,7 @@ from tribolab.lubrication.factors import (
     smooth_factors,
 )
 from tribolab.lubrication.friction import fluid_friction
-from tribolab.lubrication.mixed import (
-    NotConvergedError,
-    Problem,
-    Solution,
-    solve_speed,
-)
-from tribolab.lubrication.sweep import (
-    dry_state,
-    film_estimate,
-    lifted_state,
-    lubrication_problem,
-    sweep,
-    wet_state,
-)
+from tribolab.lubrication.speeds import Point, System, solve_speeds
 from tribolab.quantities import labelled, stamp
 from tribolab.units import positive, to_si
 
@@ -46,18 +32,6 @@ REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
     "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
 )
-
-
-class _System(NamedTuple):
-    """Everything but load and speed, in SI."""
-
-    contact: LineContact
-    psd: xr.Dataset | None
-    separation: Separation | None
-    factors: FlowFactors
-    viscosity: float
-    cells: int
-    domain: float
 
 
 def stribeck_curve(
@@ -73,6 +47,7 @@ def stribeck_curve(
     gamma: float = 0.45,
     cells: int = CELLS,
     domain: float = 1.0,
+    inlet_length: str | float = np.inf,
 ) -> xr.Dataset:
     """Friction coefficient of a lubricated rough line contact over sliding speed (and load).
 
@@ -103,7 +78,10 @@ def stribeck_curve(
     cells
         Cells across the contact.
     domain
-        Length of the domain over the default.
+        Length of the domain over the default: a check of the numerics, as the drag of the liquid
+        beyond its ends is added in closed form.
+    inlet_length
+        Where the liquid begins [m], before the contact's middle; by default it is everywhere.
 
     Returns
     -------
@@ -142,7 +120,9 @@ def stribeck_curve(
     array([1.44e-06, 5.89e-06])
     """
     with threadpool_limits(1, user_api="blas"):
-        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
+        system = _system(
+            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length
+        )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
@@ -172,7 +152,7 @@ def stribeck_curve(
     )
 
 
-def _facts(system: _System) -> dict[str, str | float | int]:
+def _facts(system: System) -> dict[str, str | float | int]:
     """Attributes that say what was computed, and on which grid."""
     return {
         "viscosity_Pa_s": system.viscosity,
@@ -183,6 +163,7 @@ def _facts(system: _System) -> dict[str, str | float | int]:
         "factors": system.factors.model,
         "cells": system.cells,
         "domain": float(system.domain),
+        "inlet_length_m": system.inlet_length,
         "references": REFERENCE,
     }
 
@@ -208,12 +189,13 @@ def film_profile(
     gamma: float = 0.45,
     cells: int = CELLS,
     domain: float = 1.0,
+    inlet_length: str | float = np.inf,
 ) -> xr.Dataset:
     """Separation and pressures across the contact at one speed.
 
     Parameters
     ----------
-    contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain
+    contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain, inlet_length
         As for `stribeck_curve`, with one load and one speed.
 
     Returns
@@ -235,8 +217,10 @@ def film_profile(
     force = positive(load, "N/m", "load")
     v = float(_speeds(speed, psd).values[0])
     with threadpool_limits(1, user_api="blas"):
-        system = _system(contact, psd, viscosity, rough_body, factors, gamma, cells, domain)
-        problem, (solution,) = _solve(system, force, np.array([abs(v)]))
+        system = _system(
+            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length
+        )
+        ((_, problem, solution),) = solve_speeds(system, force, np.array([abs(v)]))
     fields = solution.fields
     side = -1 if v < 0 else 1
     solid = fields.contact * problem.pressure
@@ -271,7 +255,8 @@ def _system(
     gamma: float,
     cells: int,
     domain: float,
-) -> _System:
+    inlet_length: str | float,
+) -> System:
     eta = positive(viscosity, "Pa s", "viscosity")
     if cells < 50:
         raise AnalysisError(f"cells: at least 50 are wanted; got {cells}")
@@ -284,7 +269,8 @@ def _system(
         check_rough_body(rough_body)
         factors = replace(factors, rough_body=rough_body)
     separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
-    return _System(contact, psd, separation, factors, eta, cells, domain)
+    begins = to_si(inlet_length, "m", name="inlet_length")  # `solve_speeds` has its lower limit
+    return System(contact, psd, separation, factors, eta, cells, domain, begins)
 
 
 def _loads(load: str | ArrayLike) -> xr.DataArray:
@@ -305,77 +291,43 @@ def _speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArray:
     return speeds
 
 
-def _solve(system: _System, force: float, speeds: np.ndarray) -> tuple[Problem, list[Solution]]:
-    """Solve at each speed, not negative, in rising order and with none twice."""
-    moving = speeds[speeds > 0]
-    ends = (moving.min(), moving.max()) if moving.size else (0.0, 0.0)
-    films = tuple(
-        film_estimate(system.contact, system.viscosity, force, v) if v else 0.0 for v in ends
-    )
-    problem = lubrication_problem(
-        system.contact,
-        system.separation,
-        system.factors,
-        force,
-        films,
-        system.cells,
-        system.domain,
-    )
-    around = problem, system.contact, system.viscosity, force
-    rest, start, no_start = [], None, None
-    try:
-        if system.psd is None:
-            start = wet_state(*around, float(ends[0]))
-        else:
-            start = dry_state(problem, system.contact, system.psd, force)
-        if moving.size < speeds.size:
-            rest = [solve_speed(problem, 0.0, start)]
-    except (AnalysisError, NotConvergedError) as error:
-        no_start = error
-    if no_start and (system.psd is None or moving.size < speeds.size):
-        raise AnalysisError(f"the contact at {speeds[0]:g} m/s: {no_start}") from no_start
-    try:
-        solutions = sweep(
-            problem,
-            system.viscosity,
-            moving,
-            start,
-            lambda: lifted_state(*around, float(ends[1])),
-        )
-    except AnalysisError as error:
-        if no_start:
-            raise AnalysisError(f"{error}; at rest: {no_start}") from error
-        raise
-    return problem, rest + solutions
-
-
 def _curve(
-    system: _System, force: float, speeds: np.ndarray, friction_factors: bool
+    system: System, force: float, speeds: np.ndarray, friction_factors: bool
 ) -> dict[str, np.ndarray]:
     magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
-    problem, solutions = _solve(system, force, magnitudes)
-    film = np.stack([solution.state.film for solution in solutions])
-    solid = np.stack([solution.fields.contact for solution in solutions])
-    contact_length = _area(system, solid * problem.pressure) @ problem.mesh.width
-    parts = [fluid_friction(problem, solution, friction_factors) for solution in solutions]
-    central = np.array([np.interp(0.0, problem.mesh.x, one) for one in film])
-    plain = [sum(fluid_friction(problem, solution, False)) for solution in solutions]
-    real_length = contact_length * problem.half_width
-    table = {
-        "friction_coefficient_couette": np.array([part[0] for part in parts]),
-        "friction_coefficient_pressure": np.array([part[1] for part in parts]),
-        "friction_without_factors": np.array(plain),
+    points = solve_speeds(system, force, magnitudes)
+    # all in one: the pressures of all meshes have one unit
+    solid = np.stack([one.solution.fields.contact * one.problem.pressure for one in points])
+    rows = [
+        _row(system, force, point, area, friction_factors)
+        for point, area in zip(points, _area(system, solid), strict=True)
+    ]
+    return {name: np.array([row[name] for row in rows])[back] for name in rows[0]}
+
+
+def _row(
+    system: System, force: float, point: Point, area: np.ndarray, friction_factors: bool
+) -> dict[str, float]:
+    """All that a curve has of one speed, the relative contact area in its cells being known."""
+    _, problem, solution = point
+    mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
+    real_length = mesh.width @ area * problem.half_width
+    plain = fluid_friction(problem, solution, False)
+    couette, pressure = fluid_friction(problem, solution, True) if friction_factors else plain
+    return {
+        "friction_coefficient_couette": couette,
+        "friction_coefficient_pressure": pressure,
+        "friction_without_factors": sum(plain),
         "friction_per_shear_stress": real_length / force,
         "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
-        "minimum_separation": film.min(axis=1) * problem.gap,
-        "central_separation": central * problem.gap,
-        "solid_load_share": solid @ problem.mesh.width / problem.load,
-        **{name: np.array([getattr(one, name) for one in solutions]) for name in PROOF},
+        "minimum_separation": film.min() * problem.gap,
+        "central_separation": np.interp(0.0, mesh.x, film) * problem.gap,
+        "solid_load_share": solid @ mesh.width / problem.load,
+        **{name: getattr(solution, name) for name in PROOF},
     }
-    return {name: values[back] for name, values in table.items()}
 
 
-def _area(system: _System, pressure: np.ndarray) -> np.ndarray:
+def _area(system: System, pressure: np.ndarray) -> np.ndarray:
     if system.psd is None:
         return np.zeros_like(pressure)
     return contact_area_ratio(pressure, system.psd, system.contact.effective_modulus)

@@ -1,4 +1,4 @@
-"""From the dry contact up in speed: scales, a state to start from, and a step that never jumps."""
+"""From the dry contact up in speed: a state to start from, and a step that never jumps."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import LineContact
-from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.hertz import hertz_pressure
 from tribolab.contact.line import line_kernel, rough_line_contact
-from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.factors import FlowFactors
-from tribolab.lubrication.mesh import Mesh, graded_mesh
+from tribolab.lubrication.domain import film_estimate
+from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.mixed import (
     NotConvergedError,
     Problem,
@@ -24,68 +23,12 @@ from tribolab.lubrication.mixed import (
     solve_speed,
 )
 
-_INLET, _OUTLET = 6.0, 5.0  # ends of the domain, in half-widths
 _SUBSTEPS = 100  # failures on the way that are forgiven
 _FINEST = 1e-2  # smallest step in ln v
 _THICK = 5.0  # roughnesses
+_GROWTH = np.log(4.0)  # of the film, at most, in what is extrapolated to the next speed
+_START_POINTS = 101  # of the line contact that the dry contact starts from
 _DECADES = 12  # below the first speed, where to look for one that starts from the dry contact
-
-
-def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
-    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
-
-    Notes
-    -----
-    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
-    """
-    radius, stiff = contact.radius, 2 * contact.effective_modulus
-    entrained = viscosity * speed / 2
-    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
-    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
-
-
-def lubrication_problem(
-    contact: LineContact,
-    separation: Separation | None,
-    factors: FlowFactors,
-    load: float,
-    films: tuple[float, float],
-    cells: int,
-    domain: float,
-) -> Problem:
-    """Choose scales and mesh.
-
-    Parameters
-    ----------
-    contact, separation, factors
-        Geometry, contact law (none if smooth) and flow.
-    load
-        F_N/L [N/m].
-    films
-        `film_estimate` [m] at the lowest and the highest speed.
-    cells
-        Cells of the mesh.
-    domain
-        Length of the domain over the default, which is 6 half-widths before the middle and 5
-        behind it; roughness and thick films count as half-width as far as they widen the contact.
-    """
-    a, radius = float(hertz_half_width(load, contact)), contact.radius
-    decay = separation.decay_length if separation else 0.0
-    half_width = np.sqrt(a**2 + 4 * radius * decay)
-    gap = half_width**2 / (2 * radius)
-    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
-    edge = (max(decay, films[0]) / gap / 1.9) ** (2 / 3)
-    reach = np.sqrt(1 + 2 * radius * films[1] / half_width**2) * domain
-    mesh = graded_mesh(
-        cells,
-        _rounded(np.clip(edge, 3e-4, 0.5)),
-        _rounded(_INLET * reach),
-        _rounded(_OUTLET * reach),
-    )
-    pressure = contact.effective_modulus * gap / half_width
-    return Problem(
-        mesh, factors, separation, load / (pressure * half_width), half_width, gap, pressure
-    )
 
 
 def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: float) -> State:
@@ -99,7 +42,7 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
         If Newton's method fails.
     """
     gamma = problem.separation.gamma if problem.separation else 0.45
-    dry = rough_line_contact(load, contact, psd, gamma)
+    dry = rough_line_contact(load, contact, psd, gamma, _START_POINTS)
     x = problem.mesh.x * problem.half_width
     pressure = np.interp(x, dry.x.values, dry.pressure.values, left=0.0, right=0.0)
     shape = _gap_under(problem, pressure / problem.pressure)
@@ -109,6 +52,25 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
     inside = np.abs(x) <= dry.x.values[-1]
     film = np.where(inside, known, np.maximum(shape + constant, known))
     return solve_speed(problem, 0.0, _bent(problem, film, constant)).state
+
+
+def carried_state(problem: Problem, before: Problem, state: State) -> State:
+    """Take a state over from another mesh of the same contact: its pressure, and the film to it."""
+    mesh, old = problem.mesh, before.mesh
+    pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
+    pressure *= problem.load / (mesh.width @ pressure)
+    shape = _gap_under(problem, pressure)
+    thinnest = int(np.argmin(state.film))
+    constant = float(state.film[thinnest] - np.interp(old.x[thinnest], mesh.x, shape))
+    return State(np.maximum(shape + constant, state.film[thinnest] / 2), constant, pressure)
+
+
+def is_thick(
+    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+) -> bool:
+    """Whether a speed parts the surfaces by much more than their roughness."""
+    film = film_estimate(contact, viscosity, load, speed)
+    return film >= _THICK * problem.factors.rms_roughness
 
 
 def lifted_state(
@@ -121,8 +83,8 @@ def lifted_state(
     NotConvergedError
         If there is none.
     """
-    above, roughness = speed, problem.factors.rms_roughness
-    while film_estimate(contact, viscosity, load, above) < _THICK * roughness:
+    above = speed
+    while not is_thick(problem, contact, viscosity, load, above):
         above *= 2
     start = wet_state(problem, contact, viscosity, load, above)
     down = np.geomspace(above, speed, 1 + int(np.ceil(4 * np.log10(above / speed))))
@@ -195,8 +157,8 @@ def sweep(
 
     Notes
     -----
-    ln u goes on in ln v by the secant through the last two speeds. Where Newton's method fails,
-    the step in ln v is halved.
+    ln u goes on in ln v by the parabola through the last three speeds, or the secant through two.
+    Where Newton's method fails, the step in ln v is halved.
     """
     speeds = list(speeds)
     solved, lost = _march(problem, viscosity, speeds, start) if start else ([], None)
@@ -217,7 +179,7 @@ def _march(
 ) -> tuple[list[Solution], NotConvergedError | None]:
     """Go through the speeds in their order; what was solved, and why it ended early if it did."""
     solved: list[Solution] = []
-    known: list[tuple[float, State]] = []  # ln v and state of the last two, the newest last
+    known: list[tuple[float, State]] = []  # ln v and state of the last three, the newest last
     budget = _SUBSTEPS
     for speed in speeds:
         aims = [np.log(speed)]
@@ -234,7 +196,7 @@ def _march(
                     return solved, error
                 aims.append(closer)
                 continue
-            known = [*known[-1:], (aim, found.state)]
+            known = [*known[-2:], (aim, found.state)]
             aims.pop()
         solved.append(found)
     return solved, None
@@ -248,22 +210,43 @@ def _bent(problem: Problem, film: np.ndarray, constant: float) -> State:
 def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: float) -> State:
     if not known:
         return start
-    (at, last), (before, first) = known[-1], known[0]
-    if at == before:  # one is known, or two speeds that only rounding tells apart
-        return last
-    part = min((aim - at) / (at - before), 3.0)
-    growth = np.clip((last.film / first.film) ** part, 0.25, 4.0)
-    return last.moved(mesh, last.film * (growth - 1), part * (last.constant - first.constant))
+    last = known[-1][1]
+    weights = _extrapolation([at for at, _ in known], aim)
+    used = [state for _, state in known[len(known) - len(weights) :]]
+    log_growth = sum(
+        weight * np.log(state.film / last.film) for weight, state in zip(weights, used, strict=True)
+    )
+    constant = sum(
+        weight * (state.constant - last.constant)
+        for weight, state in zip(weights, used, strict=True)
+    )
+    growth = np.exp(np.clip(log_growth, -_GROWTH, _GROWTH))
+    return last.moved(mesh, last.film * (growth - 1), constant)
+
+
+def _extrapolation(at: list[float], aim: float) -> list[float]:
+    """Weights of the values at the last points that go on to the aim.
+
+    By the parabola where the steps are alike, by the secant where they are not, but by no more
+    than three of its steps; the last value alone where rounding tells two points apart.
+    """
+    if len(at) < 2 or at[-1] == at[-2]:
+        return [1.0]
+    step, ahead = at[-1] - at[-2], aim - at[-1]
+    if len(at) > 2 and ahead / step < 1.5 and 1 / 3 < (at[-2] - at[-3]) / step < 3:
+        a, b, c = at[-3:]
+        return [
+            (aim - b) * (aim - c) / ((a - b) * (a - c)),
+            (aim - a) * (aim - c) / ((b - a) * (b - c)),
+            (aim - a) * (aim - b) / ((c - a) * (c - b)),
+        ]
+    part = min(ahead / step, 3.0)
+    return [-part, 1 + part]
 
 
 def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
     mesh = problem.mesh
     return mesh.x**2 + line_kernel(mesh.x, mesh.width, 1.0) @ pressure
-
-
-def _rounded(value: float) -> float:
-    """Two digits, so that neighbouring loads and speeds share a mesh."""
-    return float(f"{value:.2g}")
 
 
 def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) -> AnalysisError:

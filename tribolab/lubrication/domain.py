@@ -1,0 +1,165 @@
+"""Scales and mesh of a speed, how much of the gap is solved, and the drag beyond its ends."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import hyp2f1
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import hertz_half_width
+from tribolab.contact.separation import Separation
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mesh import graded_mesh
+from tribolab.lubrication.mixed import Problem, Solution
+
+_INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in reaches of the film
+_CLASS = 100.0  # films within this factor share a mesh
+SHORTEST = 1.5  # half-widths from the middle to where the liquid may begin
+
+
+class Layout(NamedTuple):
+    """All but the cells that the mesh of a speed hangs on, as `graded_mesh` takes it."""
+
+    edge: float
+    inlet: float
+    outlet: float
+    size: float
+
+
+def layout(film: float, decay: float, domain: float, inlet_length: float) -> Layout:
+    """Choose the mesh for the film of one speed alone, whatever other speeds are asked for.
+
+    Parameters
+    ----------
+    film
+        Expected film thickness over the gap g = b^2/(2R).
+    decay
+        Length over which the contact pressure decays with the film, over g.
+    domain
+        Length of the domain over the default.
+    inlet_length
+        Where the liquid begins, in units of b; infinite if it is everywhere.
+
+    Notes
+    -----
+    A film h reaches as far as it widens the contact, b sqrt(1 + h/g). The domain goes 60 of these
+    before the middle and 5 behind, for the thickest film of a class: films of one class, a factor
+    of 100, share a mesh, so that a curve takes few of them. Beyond, `outside_drag` goes on.
+    """
+    lowest = _CLASS ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS))
+    reach = np.sqrt(1 + max(lowest * _CLASS, 1.0)) * domain
+    size = float(np.sqrt(max(lowest, 1.0)))
+    # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
+    edge = (max(decay, lowest) / 1.9) ** (2 / 3)
+    open_end = np.isinf(inlet_length)
+    return Layout(
+        _rounded(np.clip(edge, 3e-4, 0.5)),
+        _rounded(_INLET * reach) if open_end else float(inlet_length),
+        _rounded(_OUTLET * reach),
+        size,
+    )
+
+
+def film_estimate(contact: LineContact, viscosity: float, load: float, speed: float) -> float:
+    """Film thickness [m] between smooth surfaces: the larger of the soft and the rigid limit.
+
+    Notes
+    -----
+    ``3.1 R (eta U/(E' R))^0.6 (F/(L E' R))^-0.2`` and ``4.9 eta U R L/F`` with U = v/2, E' = 2 E*.
+    """
+    radius, stiff = contact.radius, 2 * contact.effective_modulus
+    entrained = viscosity * speed / 2
+    soft = (entrained / (stiff * radius)) ** 0.6 * (load / (stiff * radius)) ** -0.2
+    return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
+
+
+def half_width(contact: LineContact, separation: Separation | None, load: float) -> float:
+    """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
+    decay = separation.decay_length if separation else 0.0
+    return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
+
+
+def lubrication_problem(
+    contact: LineContact,
+    separation: Separation | None,
+    factors: FlowFactors,
+    load: float,
+    film: float,
+    cells: int,
+    domain: float,
+    inlet_length: float = np.inf,
+) -> Problem:
+    """Choose scales and mesh.
+
+    Parameters
+    ----------
+    contact, separation, factors
+        Geometry, contact law (none if smooth) and flow.
+    load
+        F_N/L [N/m].
+    film
+        `film_estimate` [m] at the speed; 0 at rest.
+    cells
+        Cells of the mesh.
+    domain
+        Length of the domain over the default, see `layout`.
+    inlet_length
+        Where the liquid begins [m], before the contact's middle.
+
+    Raises
+    ------
+    AnalysisError
+        If the liquid begins too near the contact.
+    """
+    b = half_width(contact, separation, load)
+    decay = separation.decay_length if separation else 0.0
+    gap = b**2 / (2 * contact.radius)
+    if not inlet_length > SHORTEST * b:
+        raise AnalysisError(
+            f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
+            f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
+        )
+    begins = inlet_length / b
+    mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
+    pressure = contact.effective_modulus * gap / b
+    return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
+
+
+def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
+    """Couette and pressure part of the drag beyond the domain's ends, in units of g p.
+
+    Notes
+    -----
+    There u = k + x^2, k being constant to the logarithm of the bodies' bending, and the pressure
+    falls to 0 far away. With I_n = int_X^inf dx/u^n the inlet adds eta v I_1 by shear and
+    eta v (3 I_1 - 3 u* I_2) by the gradient dp/dx = 6 eta v (u - u*)/u^3. In the cavity behind,
+    liquid covers u*/u of the flat: eta v u* I_2. The load that the inlet's tail carries,
+    4 eta v R^2/X^2, is left out: in the default domain it is under 2e-4 of the whole.
+    """
+    mesh, film, fields = problem.mesh, solution.state.film, solution.fields
+    start, end = mesh.x[0] - mesh.width[0] / 2, mesh.x[-1] + mesh.width[-1] / 2
+    full = fields.flux[0] / solution.couette  # u*
+    couette = pressure = 0.0
+    if np.isinf(problem.inlet_length):
+        before = film[0] - mesh.x[0] ** 2
+        first, second = (_tail(n, -start, before) for n in (1, 2))
+        couette, pressure = first, 3 * (first - full * second)
+    if fields.front < film.size:
+        couette += full * _tail(2, end, film[-1] - mesh.x[-1] ** 2)
+    unit = solution.couette / 6  # eta v b/g^2 in units of p
+    return unit * couette, unit * pressure
+
+
+def _tail(power: int, start: float, constant: float) -> float:
+    """int_X^inf dx/(k + x^2)^n: X^(1-2n)/(2n-1) 2F1(n, n - 1/2; n + 1/2; -k/X^2)."""
+    n = power
+    series = hyp2f1(n, n - 0.5, n + 0.5, -constant / start**2)
+    return float(start ** (1 - 2 * n) / (2 * n - 1) * series)
+
+
+def _rounded(value: float) -> float:
+    """Two digits, so that neighbouring loads share a mesh."""
+    return float(f"{value:.2g}")

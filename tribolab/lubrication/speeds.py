@@ -1,0 +1,152 @@
+"""A lubricated contact solved at any speeds: each on the mesh of its own film."""
+
+from __future__ import annotations
+
+import contextlib
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.separation import Separation
+from tribolab.errors import AnalysisError
+from tribolab.lubrication.domain import film_estimate, lubrication_problem
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mixed import NotConvergedError, Problem, Solution, State, solve_speed
+from tribolab.lubrication.sweep import (
+    carried_state,
+    dry_state,
+    is_thick,
+    lifted_state,
+    sweep,
+    wet_state,
+)
+
+_FAR = 10.0  # times the speed before: so far a state is not carried if there is a shorter way
+
+
+class System(NamedTuple):
+    """Everything but load and speed, in SI."""
+
+    contact: LineContact
+    psd: xr.Dataset | None
+    separation: Separation | None
+    factors: FlowFactors
+    viscosity: float
+    cells: int
+    domain: float
+    inlet_length: float  # infinite if the liquid is everywhere
+
+    def problem(self, force: float, speed: float) -> Problem:
+        """Scales and mesh at one load [N/m] and speed [m/s], that of rest included."""
+        film = film_estimate(self.contact, self.viscosity, force, speed) if speed else 0.0
+        return lubrication_problem(
+            self.contact,
+            self.separation,
+            self.factors,
+            force,
+            film,
+            self.cells,
+            self.domain,
+            self.inlet_length,
+        )
+
+
+class Point(NamedTuple):
+    """A solved speed [m/s] and the problem, with its mesh, that it was solved on."""
+
+    speed: float
+    problem: Problem
+    solution: Solution
+
+
+def solve_speeds(system: System, force: float, speeds: np.ndarray) -> list[Point]:
+    """Solve at each speed [m/s], not negative, in rising order and with none twice.
+
+    Speeds whose films are alike share a mesh, and which one that is depends on the speed alone: so
+    does the solution. From one mesh to the next the last state is carried over.
+
+    Raises
+    ------
+    AnalysisError
+        If a speed cannot be solved; the message says what to change.
+    """
+    points: list[Point] = []
+    posed = ((float(v), system.problem(force, float(v))) for v in speeds)
+    for _, group in groupby(posed, key=lambda pair: id(pair[1].mesh)):
+        some = list(group)
+        problem, wanted = some[0][1], [v for v, _ in some]
+        found = _carried_on(system, force, problem, wanted, points[-1]) if points else None
+        if found is None:
+            found = _afresh(system, force, problem, np.array(wanted))
+        points += [Point(v, problem, one) for v, one in zip(wanted, found, strict=True)]
+    return points
+
+
+def _carried_on(
+    system: System, force: float, problem: Problem, speeds: list[float], last: Point
+) -> list[Solution] | None:
+    """Go on from the last speed on another mesh; None if that leads nowhere."""
+    around = problem, system.contact, system.viscosity, force
+    soon = system.psd is None or is_thick(*around, speeds[0])  # is there by itself
+    if not last.speed or (soon and speeds[0] > _FAR * last.speed):
+        return None
+    start = carried_state(problem, last.problem, last.solution.state)
+    try:
+        return sweep(problem, system.viscosity, [last.speed, *speeds], start)[1:]
+    except AnalysisError:  # no loss: it is tried from rest, which tells what is wrong
+        return None
+
+
+def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
+    """Solve from the dry contact on, from thick films down, or between smooth surfaces.
+
+    The solution is the same whichever way it is reached. From the dry contact is the sure way, but
+    where that has closed its channels, or the first speed parts the surfaces, it is a long one.
+    """
+    moving = speeds[speeds > 0]
+    around = problem, system.contact, system.viscosity, force
+    at_rest = moving.size < speeds.size
+
+    def from_start(start: State | None) -> list[Solution]:
+        return sweep(
+            problem,
+            system.viscosity,
+            moving,
+            start,
+            lambda: lifted_state(*around, float(moving[-1])),
+        )
+
+    if not at_rest and system.psd is not None and is_thick(*around, float(moving[0])):
+        with contextlib.suppress(AnalysisError):
+            return from_start(None)
+    rest, start, no_start = [], None, None
+    try:
+        if system.psd is None:
+            start = wet_state(*around, float(moving[0]))
+        else:
+            start = dry_state(problem, system.contact, system.psd, force)
+        if at_rest:
+            rest = [solve_speed(problem, 0.0, start)]
+    except (AnalysisError, NotConvergedError) as error:
+        no_start = error
+    if no_start and (system.psd is None or at_rest):
+        raise AnalysisError(f"the contact at {speeds[0]:g} m/s: {no_start}") from no_start
+    if not moving.size:
+        return rest
+    if system.psd is not None and start is not None and _is_sealed(problem, start):
+        with contextlib.suppress(AnalysisError):
+            return rest + from_start(None)
+    try:
+        return rest + from_start(start)
+    except AnalysisError as error:
+        if no_start:
+            raise AnalysisError(f"{error}; at rest: {no_start}") from error
+        raise
+
+
+def _is_sealed(problem: Problem, rest: State) -> bool:
+    """Whether the dry contact has closed its last channel somewhere."""
+    return bool(rest.film.min() * problem.gap < problem.factors.percolation_separation)
