@@ -13,6 +13,7 @@ from tribolab.friction.coefficient import friction_coefficient
 from tribolab.friction.half_loops import half_loops
 from tribolab.friction.offsets import wander
 from tribolab.friction.segments import find_segments
+from tribolab.friction.steadiness import NOT_STEADY, STEADY, UNDECIDED, judged
 
 MU = 0.3
 
@@ -223,6 +224,26 @@ def test_trend_within_a_segment_is_reported_and_not_steady():
     assert np.count_nonzero(steady < 0.01) == 0
 
 
+@pytest.mark.parametrize(
+    ("change", "chance", "samples", "verdict"),
+    [
+        (0.001, 0.4, 300, STEADY),
+        (0.2, 1e-4, 300, NOT_STEADY),
+        (-0.2, 0.36, 2.8, UNDECIDED),
+        (-6.2, 0.36, 2.8, UNDECIDED),
+        (-6.2, 0.03, 300, UNDECIDED),
+        (0.2, np.nan, 300, UNDECIDED),
+    ],
+)
+def test_what_cannot_be_decided_is_not_called_steady(change, chance, samples, verdict):
+    columns = {"trend_change": change, "trend_p_value": chance, "effective_samples": samples}
+    made = xr.Dataset({k: ("segment", [v]) for k, v in columns.items()})
+    steady = judged(made.assign(friction_coefficient=("segment", [1.0])))["steady"]
+    assert steady.values.tolist() == [verdict]
+    words = steady.attrs["flag_meanings"].split()
+    assert words[steady.attrs["flag_values"].tolist().index(UNDECIDED)] == "undecided"
+
+
 # what is missing
 
 
@@ -242,7 +263,7 @@ def test_segment_without_contact_is_missing_and_says_why(normal, remark):
     assert np.isnan(mu[2])
     assert friction["remark"].values[2].startswith(remark)
     assert np.isfinite(np.delete(mu, 2)).all()
-    assert friction["steady"].values[2] == 0
+    assert friction["steady"].values[2] == UNDECIDED
 
 
 def test_normal_force_of_zero_everywhere_gives_no_number_anywhere():

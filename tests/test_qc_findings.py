@@ -45,6 +45,7 @@ BITS = {
     "sampling": 23,
     "segment_speed": 24,
     "rows_left_out": 25,
+    "segments": 28,
 }
 
 

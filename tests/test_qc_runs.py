@@ -5,12 +5,13 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.friction.segments import find_segments
 from tribolab.io.runs import read
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run_checks import RUN_CHECKS, check_run
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
 from tribolab.rig.files import force_file, motion_file, write_run
 
@@ -229,3 +230,24 @@ def test_the_command_explains_wrong_use(faulty):
     done = tribolab_check(file, "--instrument", "linear_slidr")
     assert done.exit_code == 2 and "linear_slider" in done.stderr
     assert tribolab_check(faulty / "none.csv").exit_code == 3
+
+
+def test_a_run_that_never_holds_its_speed_is_suspect_and_says_so():
+    time = np.arange(2000) / 100
+    ramp = xr.Dataset(
+        {
+            "sliding_velocity": ("time", 1e-3 * (1 + time)),
+            "friction_force": ("time", 3 + 0.01 * np.random.default_rng(0).standard_normal(2000)),
+        },
+        {"time": time},
+    )
+    found = check_run(ramp)
+    assert found.status == "suspect"
+    assert "never slides at constant speed (ramp 100 % of the time)" in message(found, "segments")
+
+
+def test_a_run_of_which_nothing_was_examined_is_suspect():
+    run = xr.Dataset({"friction_force": ("time", np.ones(50))}, {"time": np.arange(50.0)})
+    found = check_run(run, skip=[name for name in RUN_CHECKS if name != "segments"])
+    assert found.status == "suspect"
+    assert "every check was skipped" in message(found, "segments")

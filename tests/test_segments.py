@@ -9,7 +9,7 @@ from made_runs import SPEEDS, matches, strokes
 from real_runs import actuator, paper, rock
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.segments import find_segments
+from tribolab.friction.segments import find_segments, why_no_segment
 
 
 def reasons(segments):
@@ -332,3 +332,101 @@ def test_numbers_that_are_missing_at_the_ends_are_named():
     found = find_segments(velocity_run(velocity))
     assert found["omitted_reason"].values.tolist() == ["not a number"] * 2
     assert found["start"].item() == pytest.approx(1.0)
+
+
+# no constant speed, no segment
+
+
+def position_run(velocity, dt=0.01, noise=0.0, seed=0):
+    position = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2 * dt)])
+    position = position + noise * np.random.default_rng(seed).standard_normal(position.size)
+    return xr.Dataset({"position": ("time", position)}, {"time": np.arange(position.size) * dt})
+
+
+PLACE = np.linspace(0, 1, 4000)
+MOTIONS = {
+    "triangle": 0.65 * (1 - np.abs(2 * PLACE - 1)),
+    "triangles": 0.65 * (1 - np.abs(2 * (4 * PLACE % 1) - 1)),
+    "crank": 0.2 * np.sin(2 * np.pi * 3 * PLACE),
+    "half sine": 0.2 * np.sin(np.pi * PLACE),
+    "approach": 0.2 * (1 - np.exp(-2 * PLACE)),
+    "S ramp": 0.02 * (0.2 + 0.8 * PLACE**2 * (3 - 2 * PLACE)),
+    "slow ramp": 1e-6 * (1 + 2 * PLACE),
+    "decades": 1e-6 * 10 ** (3 * PLACE),
+}
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize("name", MOTIONS)
+def test_a_speed_that_always_changes_is_never_constant(name, noise):
+    motion = MOTIONS[name]
+    rng = np.random.default_rng(5)
+    found = find_segments(velocity_run(motion * (1 + noise * rng.standard_normal(motion.size))))
+    assert found.sizes["segment"] == 0
+    assert "never slides at constant speed" in why_no_segment(found)
+    way = np.abs(motion).sum() * 0.01
+    assert find_segments(position_run(motion, noise=1e-5 * noise * way)).sizes["segment"] == 0
+
+
+@pytest.mark.parametrize("wave", [0.7, 3.0, 40.0])
+def test_a_plateau_survives_its_start_and_a_ripple_of_one_percent(wave):
+    place = np.linspace(0, 1, 3000)
+    stroke = (1 - np.exp(-place / 0.02)) * (1 + 0.01 * np.sin(2 * np.pi * wave * place))
+    velocity = np.concatenate([1e-3 * stroke, -3e-3 * stroke, 1e-2 * stroke])
+    for run in (velocity_run(velocity), position_run(velocity)):
+        found = find_segments(run)
+        assert found["direction"].values.tolist() == [1, -1, 1]
+        assert found["sliding_speed"].values == pytest.approx([1e-3, 3e-3, 1e-2], rel=0.01)
+        assert found["stop"].values == pytest.approx([30, 60, 90], abs=0.5)
+
+
+def test_a_triangle_beside_a_plateau_takes_nothing_from_it():
+    velocity = np.concatenate([MOTIONS["triangle"], np.zeros(500), np.full(2000, 5e-3)])
+    found = find_segments(velocity_run(velocity))
+    assert found["sliding_speed"].values == pytest.approx([5e-3])
+    assert found["start"].values == pytest.approx([45], abs=0.1)
+
+
+# resets, unloading, long holds
+
+
+def hold_between_strokes(dt=0.02):
+    """Strokes of 3 s at 2 cm/s, a hold of 20 min at 2.3 um/s, strokes."""
+    rest, stroke = np.zeros(150), np.full(150, 2e-2)
+    strokes = np.concatenate([rest, stroke, rest, -stroke])
+    velocity = np.concatenate([strokes, rest, np.full(60_000, 2.3e-6), strokes, rest])
+    return position_run(velocity, dt, noise=2e-7)
+
+
+def assert_hold_and_strokes(found):
+    signed = found["sliding_speed"].values * found["direction"].values
+    assert signed == pytest.approx([2e-2, -2e-2, 2.3e-6, 2e-2, -2e-2], rel=0.02)
+    slack = np.array([0.5, 0.5, 2.0, 0.5, 0.5])  # the hold: its ends are as sharp as its blocks
+    assert (np.abs(found["start"].values - [3, 9, 15, 1218, 1224]) < slack).all()
+    assert (np.abs(found["stop"].values - [6, 12, 1215, 1221, 1227]) < slack).all()
+
+
+def test_a_hold_of_twenty_minutes_beside_fast_strokes_is_found():
+    assert_hold_and_strokes(find_segments(hold_between_strokes()))
+
+
+@pytest.mark.parametrize("at", [[5.0], [400.0], [225.0, 1000.0, 1219.0]])
+def test_a_position_that_is_set_to_zero_in_mid_run_shifts_nothing(at):
+    run = hold_between_strokes()
+    position = run["position"].values.copy()
+    for moment in at:
+        first = np.searchsorted(run["time"].values, moment)
+        position[first:] -= position[first] - 0.011
+    assert_hold_and_strokes(find_segments(run.assign(position=("time", position))))
+
+
+def test_sliding_without_load_is_left_out_with_its_reason():
+    velocity = np.tile(np.repeat([0.0, 2e-3, 0.0, -2e-3], 300), 3)
+    load = np.full(velocity.size, 20.0)
+    load[1200:2400] = 0.0  # the second pair
+    load[2800:] = 0.0  # and a third of the way into the next stroke
+    found = find_segments(velocity_run(velocity).assign(normal_force=("time", load)))
+    assert found["start"].values == pytest.approx([3, 9, 27], abs=0.1)
+    assert found["stop"].values == pytest.approx([6, 12, 28], abs=0.1)
+    unloaded = found["omitted_reason"].values == "no load"
+    assert found["omitted_start"].values[unloaded] == pytest.approx([15, 21, 28, 33], abs=0.1)

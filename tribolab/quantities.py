@@ -74,7 +74,7 @@ _ROWS = [
     ("force_trend", "dF/dt", "N/s", "linear trend of the friction force"),
     ("trend_change", "\\Delta\\mu", "1", "change along the linear trend over the trimmed segment"),
     ("trend_p_value", "p", "1", "probability of such a trend in a steady signal"),
-    ("steady", "", "1", "1 where the trend is not significant, else 0"),
+    ("steady", "", "1", "whether friction is steady: 1; 0 it is not, 2 undecided"),
     ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
     ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),

@@ -55,6 +55,8 @@ def parse_unit(text: str) -> Parsed:
     """
     if len(text) > LONGEST:
         raise UnitError(f"'{text[:20]} ...' is not a unit: it is longer than {LONGEST} letters")
+    if not text.strip():  # a pure number
+        return Parsed(1.0, {})
     reader = _Reader(text)
     found = reader.unit(0)
     if reader.kind:

@@ -10,12 +10,12 @@ import xarray as xr
 from tribolab.errors import AnalysisError, nearest
 from tribolab.friction.offsets import Zero, pair_strokes, unloaded_rest, wander
 from tribolab.friction.statistics import NOTHING, Estimate, describe
+from tribolab.friction.steadiness import judged
 from tribolab.quantities import stamp
 
 OFFSETS = ("auto", "half loop", "zero load", "none")
 NO_CONTACT = 0.02  # share of the run's load below which there is no contact
 LOST = 0.05  # share of samples without contact that spoils a segment
-SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: runs have hundreds
 
 
 def friction_coefficient(
@@ -50,7 +50,8 @@ def friction_coefficient(
         direction, so that ordinary friction is positive), ``_std`` (sample standard deviation of
         the pointwise ratio, the error bar of [1]_), ``_sem``, ``effective_samples``,
         ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
-        ``steady``; ``friction_force``, ``normal_force`` [N] (+ ``_std``, ``_sem``),
+        ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``, ``normal_force`` [N] (+
+        ``_std``, ``_sem``),
         ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``, ``half_loop`` [N] and
         ``remark`` (text: why a value is missing or special). Attribute ``offset``.
 
@@ -109,7 +110,7 @@ def friction_coefficient(
         )
     kept = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
     attrs = {**segments.attrs, **result.attrs}
-    return stamp(kept.merge(result, combine_attrs="drop"), **attrs)
+    return stamp(judged(kept.merge(result, combine_attrs="drop")), **attrs)
 
 
 def _name(run: xr.Dataset) -> str:
@@ -352,9 +353,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, offset: str, pair: np.nda
 
 def _memory(found: list[Estimate]) -> dict[str, np.ndarray]:
     names = ("effective_samples", "autocorrelation_time", "trend_p_value")
-    columns = {name: _column(found, name) for name in names}
-    columns["steady"] = (columns["trend_p_value"] >= SIGNIFICANT).astype(np.int8)
-    return columns
+    return {name: _column(found, name) for name in names}
 
 
 def _table(data: dict[str, np.ndarray], remarks: np.ndarray, method: str) -> xr.Dataset:

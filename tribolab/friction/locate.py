@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.constancy import Record, held_part, is_constant
 from tribolab.friction.plateaus import (
     Noise,
     estimate_noise,
@@ -19,6 +20,10 @@ MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers ar
 FEW_BLOCKS = 512  # in a second look
 PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
 KEPT = ("constant", "at rest")
+STILL = 1e-7  # of the highest speed: nothing slower is told from rest
+SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
+SOMEWHERE = 0.01  # of the longest way of a piece
+PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
@@ -42,7 +47,9 @@ class Limits(NamedTuple):
     rest_speed: float | None
 
 
-def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece]:
+def locate(
+    time: np.ndarray, velocity: np.ndarray, limits: Limits, floor: float = 0.0
+) -> list[Piece]:
     """Return the pieces of a record without gaps in it, in order and touching.
 
     Parameters
@@ -51,10 +58,77 @@ def locate(time: np.ndarray, velocity: np.ndarray, limits: Limits) -> list[Piece
         Finite samples [s], [m/s]; the spacing may change.
     limits
         What counts as constant.
+    floor
+        Least noise of a sample [m/s], where it is known.
     """
-    pieces = _locate(time, velocity, limits, None, None)
+    pieces = _locate(time, velocity, limits, None, None, floor)
     pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
     return _proven(pieces, limits)
+
+
+def moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
+
+    Parameters
+    ----------
+    time, pieces
+        Samples [s], and pieces of the whole record.
+    limits
+        A `rest_speed` of these decides alone.
+    """
+    kept = [p for p in pieces if p.kind == "constant"]
+    if limits.rest_speed is not None or not kept:
+        return pieces
+    top = max(abs(p.velocity) for p in kept)
+    way = [abs(p.velocity) * (time[p.last - 1] - time[p.first]) for p in pieces]
+    least = SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
+    return _fused(
+        [
+            p._replace(kind="at rest")
+            if p.kind == "constant" and abs(p.velocity) <= SLOW * top and d < least
+            else p
+            for d, p in zip(way, pieces, strict=True)
+        ],
+        limits,
+    )
+
+
+def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
+
+    Parameters
+    ----------
+    data
+        The record that the pieces are of.
+    pieces
+        From `locate`, in samples of the record.
+    limits
+        What counts as constant.
+    """
+    result: list[Piece] = []
+    for piece in pieces:
+        if piece.kind != "constant":
+            result.append(piece)
+            continue
+        first, last = held_part(data, piece.first, piece.last, limits.drift)
+        kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
+        parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
+        result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
+    return _paused(_fused(result, limits), limits)
+
+
+def _paused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
+    result = list(pieces)
+    for i in range(1, len(pieces) - 1):
+        before, piece, after = pieces[i - 1 : i + 2]
+        if piece.kind != "constant" or before.kind != "ramp" or after.kind != "ramp":
+            continue
+        shortest = min(before.last - before.first, after.last - after.first)
+        one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
+        if one_way and shortest > PAUSE * (piece.last - piece.first):
+            result[i] = piece._replace(kind="ramp")
+    return _fused(result, limits)
 
 
 def block_size(samples: int, most: int = MOST_BLOCKS) -> int:
@@ -90,22 +164,23 @@ def _locate(
     limits: Limits,
     noise: Noise | None,
     rest_speed: float | None,
+    floor: float = 0.0,
 ) -> list[Piece]:
     size = block_size(time.size, MOST_BLOCKS if noise is None else FEW_BLOCKS)
     t, v = _blocks(time, velocity, size)
     if noise is None:
-        noise = estimate_noise(v)
+        noise = estimate_noise(v, floor / np.sqrt(size))
         # a steady reading may be half a step off, and says nothing of it
         step = quantum(velocity)
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
     else:  # the parent's noise per sample, averaged over a block
-        noise = Noise(noise.floor / np.sqrt(size), noise.relative / np.sqrt(size))
-    single = Noise(noise.floor * np.sqrt(size), noise.relative * np.sqrt(size))
+        noise = noise.scaled(size**-0.5)
+    single = noise.scaled(size**0.5)
     if rest_speed is None:
         rest_speed = limits.rest_speed
     if rest_speed is None:
         top = float(np.quantile(np.abs(v), 0.98))
-        rest_speed = max(1e-5 * top, 0.05 * single.floor)
+        rest_speed = max(STILL * top, 0.05 * single.floor)
     if size == 1:
         v = _despiked(v, noise)
     breaks = find_breaks(v, noise, limits.resolution, rest_speed)

@@ -24,18 +24,33 @@ from typing import NamedTuple
 import numpy as np
 
 SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
+TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
 WORSE = 16.0  # squares (in variances) by which one line may be worse than two
 
 
 class Noise(NamedTuple):
-    """Noise of one block: standard deviation sqrt(floor^2 + (relative * v)^2)."""
+    """Noise of one block: standard deviation sqrt(floor^2 + (r(v) * v)^2).
+
+    `speed` [m/s] ascends, and `relative` holds r there; between them it is interpolated over the
+    logarithm, so that what one speed shows is no noise of another.
+    """
 
     floor: float
-    relative: float
+    speed: np.ndarray
+    relative: np.ndarray
 
-    def variance(self, velocity: np.ndarray | float) -> np.ndarray | float:
+    def variance(self, velocity: np.ndarray | float) -> np.ndarray:
         """Variance of one block at a velocity."""
-        return self.floor**2 + (self.relative * velocity) ** 2
+        if not self.speed.size:
+            return np.full(np.shape(velocity), self.floor**2)
+        size = np.abs(velocity)
+        place = np.log(np.maximum(size, self.speed[0]))
+        share = np.interp(place, np.log(self.speed), self.relative)
+        return self.floor**2 + (share * size) ** 2
+
+    def scaled(self, factor: float) -> Noise:
+        """Noise of blocks that are larger or smaller."""
+        return Noise(self.floor * factor, self.speed, self.relative * factor)
 
 
 class Pieces(NamedTuple):
@@ -70,22 +85,24 @@ def quantum(values: np.ndarray) -> float:
     return float(gaps.min()) if gaps.size else 0.0
 
 
-def estimate_noise(velocity: np.ndarray) -> Noise:
+def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     """Estimate the absolute floor and the relative part of the noise from neighbouring blocks.
 
     The spread of differences is taken per quarter decade of speed, because the lowest speed may
-    drown in a floor that the highest does not show.
+    drown in a floor that the highest does not show. The floor is no lower than `least` [m/s].
     """
-    middle = np.abs(velocity[1:] + velocity[:-1]) / 2
-    difference = np.abs(np.diff(velocity)) / np.sqrt(2)
-    top = np.quantile(middle, 0.98) if middle.size else 0.0
+    # second differences: a ramp has none, so that what one part does is no noise of another
+    middle = np.abs(velocity[2:] + velocity[1:-1] + velocity[:-2]) / 3
+    difference = np.abs(np.diff(velocity, 2)) / np.sqrt(6)
+    nothing = np.zeros(0)
+    top = float(middle.max()) if middle.size else 0.0
     if top == 0:
-        return Noise(0.0, 0.0)
-    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-7))).astype(int)
+        return Noise(least, nothing, nothing)
+    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8))).astype(int)
     levels = []
     for one in np.unique(bins):
         inside = bins == one
-        if np.count_nonzero(inside) >= max(8, 0.002 * middle.size):
+        if np.count_nonzero(inside) >= 8:
             chosen = difference[inside]
             # quantised readings repeat, so that their median difference is zero: then the
             # mean below the largest tenth stands in
@@ -93,17 +110,22 @@ def estimate_noise(velocity: np.ndarray) -> Noise:
                 np.median(chosen) / 0.6745,
                 np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)]),
             )
-            levels.append((np.median(middle[inside]), spread, chosen.size))
+            levels.append((np.median(middle[inside]), spread, chosen.size / middle.size))
     if not levels:
-        return Noise(float(np.median(difference) / 0.6745), 0.0)
-    speed, spread, count = np.array(levels).T
-    floor = float(spread.min())
-    high = speed > 0.03 * top
-    relative = np.sqrt(np.maximum(spread[high] ** 2 - floor**2, 0)) / speed[high]
-    # most blocks lie on plateaus; bins with few blocks are ramps and reversals
-    order = np.argsort(relative)
-    share = np.cumsum(count[high][order]) / count[high].sum()
-    return Noise(floor, float(relative[order][np.searchsorted(share, 0.5)]))
+        floor = max(float(np.median(difference) / 0.6745), least)
+        return Noise(floor, nothing, nothing)
+    speed, spread, share = np.array(levels).T
+    floor = max(float(spread.min()), least)
+    known = speed > 3 * least
+    if not known.any():
+        return Noise(floor, nothing, nothing)
+    speed, spread, share = speed[known], spread[known], share[known]
+    relative = np.sqrt(np.maximum(spread**2 - floor**2, 0)) / speed
+    # bins with few blocks are ramps and reversals, or a short plateau: no worse than the best
+    moves = speed > 3 * floor
+    best = relative[moves].min() if moves.any() else np.inf
+    relative = np.where(share < TRUSTED, np.minimum(relative, best), relative)
+    return Noise(floor, speed, relative)
 
 
 def find_breaks(
@@ -132,15 +154,31 @@ def find_breaks(
             # wide to be many cannot tell, and keep what the narrower ones told
             if 16 * width <= m:
                 usual = score[clear][:: 1 + m // 2048]
-                usual = usual[np.isfinite(usual)]
-                if usual.size > 16:
-                    memory = max(memory, float(np.median(usual)) / 0.6745)
+                bends = _bends(total, noise, width, k[clear][:: 1 + m // 2048])
+                usual, bends = usual[np.isfinite(usual)], bends[np.isfinite(bends)]
+                if min(usual.size, bends.size) > 16:
+                    # a ramp spreads the means as well, but it does not bend
+                    spread = min(float(np.median(usual)), float(np.median(bends)))
+                    memory = max(memory, spread / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
             free[found_now] = 1
             found = np.concatenate([found, found_now])
         width *= 2
     return np.sort(found)
+
+
+def _bends(total: np.ndarray, noise: Noise, width: int, k: np.ndarray) -> np.ndarray:
+    """Second differences of neighbouring window means in standard errors: a ramp has none."""
+    k = k[(k >= width) & (k + 2 * width < total.size)]
+    first, second, third = (
+        (total[k + (i + 1) * width] - total[k + i * width]) / width for i in (-1, 0, 1)
+    )
+    bend = np.abs(first - 2 * second + third)
+    larger = np.maximum(np.abs(first), np.abs(third))
+    variance = noise.variance(first) + 4 * noise.variance(second) + noise.variance(third)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(bend > 1e-12 * larger, bend / np.sqrt(variance / width), 0.0)
 
 
 def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.friction.loaded import loaded
 from tribolab.friction.locate import Limits
 from tribolab.friction.slopes import line
 from tribolab.friction.stretches import (
@@ -18,6 +19,7 @@ from tribolab.friction.stretches import (
     from_steps,
     from_velocity,
     name_of,
+    track,
     velocity_source,
 )
 from tribolab.quantities import stamp
@@ -60,8 +62,9 @@ def find_segments(
         segment (a quarter if ``position`` shows that the speed held) and no less than 20 usual
         sample spacings.
     rest_speed
-        Speed below which the slider is at rest [m/s]; by default 1e-5 of the highest speed or
-        a twentieth of the noise of a reading, whichever is larger.
+        Speed below which the slider is at rest [m/s]; by default a twentieth of the noise of a
+        reading, or 1e-5 of the highest speed, unless more than a hundredth of the longest slide
+        is covered so slowly.
     position_range
         Only the part of each trimmed segment between these positions [m] counts.
 
@@ -131,7 +134,39 @@ def find_segments(
         s._replace(kind="too short") if s.kind == "constant" and s.stop - s.start < shortest else s
         for s in stretches
     ]
+    stretches = loaded(run, stretches, limits)
     return _dataset(run, stretches, source, trim, position_range)
+
+
+def why_no_segment(segments: xr.Dataset) -> str:
+    """Say in a sentence why a run has no segment; empty where it has one.
+
+    Parameters
+    ----------
+    segments
+        From `find_segments`.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> v = 1e-3 * np.arange(500.0)
+    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
+    >>> why_no_segment(find_segments(run))
+    'no segment: the run never slides at constant speed (ramp 100 % of the time)'
+    """
+    if segments.sizes["segment"]:
+        return ""
+    start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
+    reason = segments["omitted_reason"].values.astype(str)
+    whole = float((stop - start).sum())
+    lasted = {one: float((stop - start)[reason == one].sum()) for one in dict.fromkeys(reason)}
+    shares = [
+        f"{one} {lasted[one] / whole:.0%}".replace("%", " %")
+        for one in sorted(lasted, key=lambda one: -lasted[one])
+        if whole > 0 and lasted[one] >= 0.005 * whole
+    ]
+    detail = f" ({', '.join(shares)} of the time)" if shares else ""
+    return f"no segment: the run never slides at constant speed{detail}"
 
 
 def _dataset(
@@ -158,7 +193,7 @@ def _dataset(
     if source == "recorded":
         velocity = _mean_velocity(run, first, last, velocity)
     elif source == "position":
-        velocity = _mean_slope(run, first, last, velocity)
+        velocity = _mean_slope(run, trimmed_start, trimmed_stop, velocity)
     direction = np.where(np.isnan(velocity) & (source == "recorded"), 0, np.sign(velocity))
     if source in ("step", "set speed"):
         direction = np.where(np.signbit(velocity), -1, 1)
@@ -232,15 +267,15 @@ def _mean_velocity(
 
 
 def _mean_slope(
-    run: xr.Dataset, first: np.ndarray, last: np.ndarray, guess: np.ndarray
+    run: xr.Dataset, start: np.ndarray, stop: np.ndarray, guess: np.ndarray
 ) -> np.ndarray:
     """Slope of the position over each trimmed segment."""
-    time, position = run["time"].values, np.asarray(run["position"].values, float)
+    time, position = track(run)
+    first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
     result = guess.copy()
     for i in range(first.size):
-        good = first[i] + np.flatnonzero(np.isfinite(position[first[i] : last[i]]))
-        if good.size >= 3:
-            result[i] = line(time[good], position[good])[1]
+        if last[i] - first[i] >= 3:
+            result[i] = line(time[first[i] : last[i]], position[first[i] : last[i]])[1]
     return result
 
 

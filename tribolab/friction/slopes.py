@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.plateaus import quantum
+
 WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST = 8  # samples in a block
+JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
+FASTER = 3.0  # times the rate around it, for a single sample
+ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
+AROUND = 8  # samples on each side that tell the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
@@ -18,7 +24,56 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
-    return float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    noise = float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    # readings that mostly repeat have no median distance
+    return noise if noise > 0 else quantum(position) / np.sqrt(12)
+
+
+def is_staircase(position: np.ndarray) -> bool:
+    """Whether most readings repeat the one before: the digits are coarser than the motion."""
+    return bool(position.size > 2 and np.mean(np.diff(position) == 0) > 0.5)
+
+
+def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join a position record where it jumps without a motion: set to zero in mid-run, wrapped.
+
+    Parameters
+    ----------
+    time, position
+        Finite samples [s], [m].
+
+    Returns
+    -------
+    tuple
+        The position without its jumps [m], and the samples before which they stood.
+
+    Notes
+    -----
+    A jump is a single difference of `JUMP` of the range or more that stands off from the rates
+    around it; it is replaced by what their median would give.
+    """
+    steps, spacing = np.diff(position), np.diff(time)
+    span = float(np.ptp(position)) if position.size else 0.0
+    far = np.flatnonzero((np.abs(steps) > JUMP * span) & (spacing > 0))
+    if far.size == 0 or steps.size < 2 * AROUND:
+        return position, np.zeros(0, dtype=int)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.where(spacing > 0, steps / spacing, np.nan)
+    near = far[:, None] + np.concatenate([np.arange(-AROUND, 0), np.arange(1, AROUND + 1)])
+    beside = np.where((near >= 0) & (near < rate.size), near, far[:, None])
+    around = rate[beside]
+    around[beside == far[:, None]] = np.nan
+    usual = np.nanmedian(around, axis=1)
+    size = np.where(around == 0, np.nan, np.abs(around))
+    still = np.isnan(size).all(axis=1)
+    size[still] = 0.0
+    scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
+    limit = np.maximum(FASTER * np.nanmedian(size, axis=1), ISOLATED * scatter)
+    jump = np.abs(rate[far] - usual) > limit
+    at = far[jump]
+    moved = np.zeros(position.size)
+    moved[at + 1] = steps[at] - usual[jump] * spacing[at]
+    return position - np.cumsum(moved), at + 1
 
 
 def block_slopes(
@@ -43,36 +98,46 @@ def block_slopes(
     return middle[:, 0], np.where(good, better, slope)
 
 
-def velocity_blocks(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+def velocity_blocks(
+    time: np.ndarray, position: np.ndarray, least: int = FEWEST
+) -> tuple[np.ndarray, np.ndarray, int, float]:
     """Velocity on blocks just long enough for a slope good to a few percent.
+
+    Good at the speeds at which most of the way is covered: what is slower is looked at again.
 
     Parameters
     ----------
     time, position
         Finite samples [s], [m].
+    least
+        Fewest samples in a block.
 
     Returns
     -------
     tuple
-        Mean time of each block [s], velocity [m/s], and samples in a block.
+        Mean time of each block [s], velocity [m/s], samples in a block, and the usual error of
+        a block's velocity [m/s].
     """
     noise = position_noise(time, position)
-    size = FEWEST
-    while size * 32 <= time.size:
+    size, error = least, 0.0
+    while True:
         t, v = block_slopes(time, position, size)
-        moving = np.abs(v) > 0.2 * np.quantile(np.abs(v), 0.9)
-        if not moving.any():
-            break
-        spacing = (
-            np.median(np.diff(t)[moving[1:]]) / size
-            if moving[1:].any()
-            else np.diff(t).mean() / size
-        )
-        error = noise * np.sqrt(12 / size) / (size * spacing)
-        if error <= WANTED_ERROR * np.median(np.abs(v[moving])):
-            break
+        spacing = np.median(np.diff(t)) / size if t.size > 1 else np.inf
+        error = float(noise * np.sqrt(12 / size) / (size * spacing)) if spacing > 0 else 0.0
+        if size * 64 > time.size or _fine(np.abs(v), error):
+            return t, v, size, error
         size *= 2
-    return (*block_slopes(time, position, size), size)
+
+
+def _fine(speed: np.ndarray, error: float) -> bool:
+    """Whether the blocks' velocities are good where most of the way is covered."""
+    sure = np.maximum(speed - 3 * error, 0.0)  # what noise covers is no way
+    if not sure.any():
+        return False
+    order = np.argsort(speed)
+    share = np.cumsum(sure[order])
+    usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
+    return bool(error <= WANTED_ERROR * np.median(speed[speed > 0.2 * usual]))
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:

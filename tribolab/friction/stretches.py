@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,10 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction import slopes
-from tribolab.friction.locate import Limits, Piece, locate
+from tribolab.friction.constancy import Record
+from tribolab.friction.locate import Limits, Piece, held, locate, moving
+
+RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
 class Stretch(NamedTuple):
@@ -59,28 +63,58 @@ def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
     return time[good], values[good]
 
 
+def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Time and position where there is one, joined where its sensor was reset."""
+    time, position = finite(run, "position")
+    return time, slopes.without_resets(time, position)[0]
+
+
 def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")
     if time.size < 2:
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, limits), 0.05
+    pieces = moving(time, pieces, limits)
+    pieces = held(Record(time, velocity=velocity), pieces, limits)
     return _in_time(run, time, pieces, limits, max_gap, share)
 
 
 def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the position, by slopes over blocks."""
-    time, position = finite(run, "position")
+    time, position = track(run)
     if time.size < 3 * slopes.FEWEST:
         return _nothing(run, time.size)
-    t, v, size = slopes.velocity_blocks(time, position)
-    blocks = locate(t, v, limits._replace(min_samples=max(3, limits.min_samples // size)))
-    pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
-    pieces[-1] = pieces[-1]._replace(last=time.size)
-    pieces = _kinks(time, position, pieces, size)
+    pieces = _by_slopes(time, position, limits, slopes.FEWEST)
+    pieces = moving(time, pieces, limits)
+    pieces = held(Record(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
     return _in_time(run, time, pieces, limits, max_gap, share)
+
+
+def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: int) -> list[Piece]:
+    """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
+    t, v, size, error = slopes.velocity_blocks(time, position, least)
+    fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
+    # a staircase of its digits has blocks without noise beside such that hold a whole step
+    floor = error if slopes.is_staircase(position) else 0.0
+    blocks = locate(t, v, fewest, floor)
+    pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
+    pieces[-1] = pieces[-1]._replace(last=time.size)
+    pieces = _kinks(time, position, pieces, size)
+    if error == 0:
+        return pieces
+    result: list[Piece] = []
+    slow = [abs(p.velocity) < RESOLVED * error for p in pieces]
+    for is_slow, some in groupby(zip(slow, pieces, strict=True), key=lambda pair: pair[0]):
+        group = [piece for _, piece in some]
+        first, last = group[0].first, group[-1].last
+        if is_slow and last - first >= 128 * size:
+            inner = _by_slopes(time[first:last], position[first:last], limits, 2 * size)
+            group = [p._replace(first=p.first + first, last=p.last + first) for p in inner]
+        result += group
+    return result
 
 
 def _with_slope(time: np.ndarray, position: np.ndarray, piece: Piece) -> Piece:

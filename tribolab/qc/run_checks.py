@@ -13,7 +13,7 @@ from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
 from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
-from tribolab.qc.register import Check, examine, resolve_limits
+from tribolab.qc.register import Check, Result, examine, resolve_limits
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
@@ -22,6 +22,10 @@ from tribolab.units import to_si
 RUN_CHECKS: dict[str, Check] = {
     c.name: c for c in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS)
 }
+
+SEGMENTS = "segments"
+NOTHING_EXAMINED = "every check was skipped: nothing says that this run is sound"
+EXAMINE = "Look at why each was skipped; the signals that they look at may have other names."
 
 
 def check_run(
@@ -92,7 +96,7 @@ def check_run(
         if contact_width is None
         else to_si(contact_width, "m", name="contact_width"),
     )
-    found = examine(checks, subject, resolved, tuple(skip))
+    found = _examined(examine(checks, subject, resolved, tuple(skip)))
     results = tuple((checks[name], result) for name, rows in found.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()}
     flagged = run
@@ -109,6 +113,15 @@ def check_run(
             flags.setdefault(check.name, []).append(values)
         flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
+
+
+def _examined(found: dict[str, list[Result]]) -> dict[str, list[Result]]:
+    """Object where every other check was skipped: that segments were found says nothing."""
+    others = [result for name, rows in found.items() if name != SEGMENTS for result in rows]
+    own = found.get(SEGMENTS, [])
+    if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
+        return found
+    return found | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
 
 
 def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribolab.friction.coefficient import SIGNIFICANT
+from tribolab.friction import steadiness
 from tribolab.friction.lines import Line
+from tribolab.friction.steadiness import relative_change, undecided
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Count, Limit, Result, Skip
@@ -77,19 +78,9 @@ def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     friction, signal = subject.friction, _signal(subject)
-    name = next((n for n in ("friction_coefficient", "friction_force") if n in friction), "")
-    if "trend_change" in friction:
-        change = friction["trend_change"].values
-    elif "force_trend" in friction:
-        duration = friction["trimmed_stop"].values - friction["trimmed_start"].values
-        change = friction["force_trend"].values * duration
-    else:
-        raise Skip("no trend was estimated")
-    # of the run's typical friction: at high speed in a liquid hardly any is left to divide by
-    typical = np.abs(friction[name].values)
-    if not (typical > 0).any():
-        raise Skip("there is no friction to compare with")
-    change = change / float(np.nanmean(typical))
+    change = relative_change(friction)
+    if change is None:
+        raise Skip("no trend was estimated, or there is no friction to compare with")
     chance, samples = friction["trend_p_value"].values, friction["effective_samples"].values
     open_ = undecided(change, chance, samples, limits)
     graded = np.where(open_, np.nan, np.where(chance >= limits["chance"], 0.0, change))
@@ -113,34 +104,6 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     return [doubt, *(result for result in rest if result.status != "pass")]
 
 
-def undecided(
-    change: np.ndarray, chance: np.ndarray, samples: np.ndarray, limits: Mapping[str, float]
-) -> np.ndarray:
-    """Return where a line through the friction shows neither a trend nor that there is none.
-
-    It changes by as much as is objected to, but of so few effective samples that the test would
-    hardly have seen it.
-
-    Parameters
-    ----------
-    change
-        Along the line, of the typical friction [1] (segment).
-    chance, samples
-        The line's p value, and effective samples (segment).
-    limits
-        Of the check on steadiness.
-
-    Examples
-    --------
-    >>> limits = {"suspect": 0.05, "chance": 0.01, "samples": 10.0}
-    >>> p, n = np.array([0.36, 0.36, 1e-4]), np.array([2.8, 90.0, 2.8])
-    >>> undecided(np.array([-0.2, -0.2, -0.2]), p, n, limits)
-    array([ True, False, False])
-    """
-    large, few = np.abs(change) > limits["suspect"], samples < limits["samples"]
-    return large & few & (chance >= limits["chance"])
-
-
 def _told(results: list[Result], change: np.ndarray) -> list[Result]:
     """Say how large the trends are that are none: a line through noise has a slope, too."""
     if results[0].status != "pass" or results[0].value != 0.0:
@@ -149,6 +112,15 @@ def _told(results: list[Result], change: np.ndarray) -> list[Result]:
         f"no significant trend within a segment; measured at most {np.nanmax(np.abs(change)):.2%}"
     )
     return [replace(results[0], message=text)]
+
+
+def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    _signal(subject)  # without friction there is nothing to slide for: `schema` objects
+    why = subject.no_segment
+    if why:
+        return [Result("suspect", "", why)]
+    number = subject.segments.sizes["segment"]
+    return [Result("pass", "", f"{Count(number):segment|segments} of constant speed")]
 
 
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -209,6 +181,15 @@ _STRENGTH = Limit(0.03, "1", "a weaker oscillation moves a mean over four period
 
 SLIDING_CHECKS = (
     Check(
+        "segments",
+        28,
+        "Does the run slide at constant speed anywhere, and could anything be examined?",
+        "Record position or speed, slide longer at one speed, or state `sliding_speed` in the "
+        "campaign file; see `drift` and `min_samples` under [segments].",
+        {},
+        _segments,
+    ),
+    Check(
         "hum",
         18,
         "Does the mains hum in the friction signal?",
@@ -245,11 +226,13 @@ SLIDING_CHECKS = (
         "Is friction steady within each trimmed segment?",
         "Slide longer, or trim more: the mean of a trend is a mean over the run-in.",
         {
-            "suspect": Limit(0.05, "1", "5 % is above the usual spread of repeats"),
-            "fail": Limit(0.50, "1", "the number has no meaning as a mean"),
-            "chance": Limit(SIGNIFICANT, "1", "so that noise is rarely called a trend"),
+            "suspect": Limit(steadiness.SUSPECT, "1", "5 % is above the usual spread of repeats"),
+            "fail": Limit(steadiness.FAIL, "1", "the number has no meaning as a mean"),
+            "chance": Limit(steadiness.SIGNIFICANT, "1", "so that noise is rarely called a trend"),
             "samples": Limit(
-                10.0, "1", "fewer effective samples do not tell a trend from slow wandering"
+                steadiness.SAMPLES,
+                "1",
+                "fewer effective samples do not tell a trend from slow wandering",
             ),
         },
         _steadiness,

@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import friction_coefficient
 from tribolab.friction.lines import Line, segment_lines
 from tribolab.friction.noise import noise_level
-from tribolab.friction.segments import find_segments
+from tribolab.friction.segments import find_segments, why_no_segment
 from tribolab.qc.register import Skip
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
@@ -70,6 +70,13 @@ class RunSubject:
             return find_segments(self.run)
         except AnalysisError as why:  # e.g. nothing tells the speed: the `schema` check says so
             return Skip(f"no segments: {why}")
+
+    @property
+    def no_segment(self) -> str:
+        """Why there is no segment, in a sentence; empty where there is one."""
+        if isinstance(self._found_segments, Skip):
+            raise self._found_segments  # nothing tells the speed: the `schema` check objects
+        return why_no_segment(self._found_segments)
 
     @property
     def segments(self) -> xr.Dataset:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from tribolab.friction.steadiness import undecided
 from tribolab.qc.run_checks import RUN_CHECKS
-from tribolab.qc.sliding_checks import undecided
 from tribolab.report.wording import percent
 
 _STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}

@@ -11,6 +11,7 @@ import numpy as np
 
 from tribolab.campaign.work import explain
 from tribolab.errors import AnalysisError
+from tribolab.friction.segments import why_no_segment
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
@@ -279,8 +280,9 @@ def _findings(
         found.append({"severity": severity, "run": name, "where": where, "message": message})
 
     count = segments.sizes["segment"]
-    if count == 0:
-        say("suspect", "segments", "no segment of steady sliding was found")
+    told = any(row["check"] == "segments" for row in run.attrs.get("findings", []))
+    if not told and (why := why_no_segment(segments)):
+        say("suspect", "segments", f"{why}.")
     quantity = main_quantity(friction)
     values = _values(friction, quantity, count)
     if quantity in friction and count:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.errors import ReadError, brief
+from tribolab.friction.steadiness import WORDS
 from tribolab.plot.labels import column
 
 if TYPE_CHECKING:
@@ -82,6 +83,8 @@ def friction_table(friction: xr.Dataset) -> pd.DataFrame:
     table = frame(friction, "segment", _FRICTION_FIRST)
     number = np.arange(1, friction.sizes["segment"] + 1)
     table = table.drop(columns="segment", errors="ignore")
+    if "steady" in table:
+        table["steady"] = table["steady"].map(WORDS)
     table.insert(0, "segment", number)
     return table
 
