@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from tribolab.campaign import staging
-from tribolab.campaign.staging import MARKER, staged
+from tribolab.campaign.ledger import MARKER, Ledger
+from tribolab.campaign.staging import staged
 from tribolab.errors import ConfigError, OutputError
 
 
@@ -29,7 +30,6 @@ def beside(output):
 def test_the_new_replaces_the_old_as_a_whole(tmp_path):
     output = tmp_path / "deep" / "results"
     write(output, "old")
-    (output / "left_over.txt").write_text("of the old")
     write(output, "new")
     assert sorted(p.name for p in output.iterdir()) == [MARKER, "answer.txt"]
     assert (output / "answer.txt").read_text() == "new"
@@ -118,6 +118,154 @@ def test_a_folder_with_something_else_in_it_is_never_replaced(tmp_path):
     with pytest.raises(ConfigError, match="is a file"):
         write(tmp_path / "thesis.tex", "new")
     assert (tmp_path / "thesis.tex").read_text() == "three years of work"
+
+
+def test_what_somebody_put_into_the_results_survives_every_rerun(tmp_path):
+    output = tmp_path / "results"
+    write(output, "first")
+    (output / "notes").mkdir()
+    (output / "notes" / "what I saw.md").write_text("squeal at 1 mm/s")
+    (output / "empty").mkdir()
+    (output / "there").symlink_to("nowhere")
+    for text in ("second", "third"):
+        write(output, text)
+        assert (output / "answer.txt").read_text() == text
+        assert (output / "notes" / "what I saw.md").read_text() == "squeal at 1 mm/s"
+        assert (output / "empty").is_dir()
+        assert (output / "there").is_symlink()
+    assert Ledger.read(output).foreign() == ["empty", "notes/what I saw.md", "there"]
+    assert beside(output) == []
+
+
+def test_a_file_of_ours_that_somebody_changed_is_kept_under_another_name(tmp_path):
+    output = tmp_path / "results"
+    with staged(output) as folder:
+        (folder / "answer.txt").write_text("first")
+        (folder / "table.csv").write_text("1")
+    (output / "answer.txt").write_text("mine now, and longer")
+    with staged(output) as folder:
+        (folder / "answer.txt").write_text("second")
+        (folder / "table.csv").write_text("2")
+    [other] = Ledger.read(output).foreign()
+    assert other.startswith("answer.changed-")
+    assert (output / other).read_text() == "mine now, and longer"
+    assert (output / "answer.txt").read_text() == "second"
+    write(output, "third")
+    assert Ledger.read(output).foreign() == [other]
+
+
+def test_a_folder_of_theirs_with_the_name_of_a_file_of_ours_is_kept(tmp_path):
+    output = tmp_path / "results"
+    with staged(output) as folder:
+        (folder / "other.txt").write_text("first")
+    (output / "answer.txt").mkdir()
+    (output / "answer.txt" / "mine.txt").write_text("mine")
+    write(output, "second")
+    assert (output / "answer.txt").read_text() == "second"
+    assert (output / "answer.txt_mine.txt").read_text() == "mine"
+
+
+def test_a_copied_marker_makes_nothing_ours(tmp_path):
+    output, thesis = tmp_path / "results", tmp_path / "thesis"
+    write(output, "new")
+    thesis.mkdir()
+    (thesis / "thesis.tex").write_text("three years of work")
+    shutil.copy2(output / MARKER, thesis)
+    with pytest.raises(ConfigError, match=r"thesis.tex"):
+        write(thesis, "new")
+    (thesis / "answer.txt").write_text("42")  # another file of a name that is listed
+    with pytest.raises(ConfigError, match=r"thesis.tex"):
+        write(thesis, "new")
+
+
+def test_results_that_were_copied_are_still_ours(tmp_path):
+    write(tmp_path / "results", "old")
+    shutil.copytree(tmp_path / "results", tmp_path / "copy", copy_function=shutil.copyfile)
+    write(tmp_path / "copy", "new")
+    assert (tmp_path / "copy" / "answer.txt").read_text() == "new"
+    assert Ledger.read(tmp_path / "copy").foreign() == []
+
+
+@pytest.mark.parametrize("name", ["a[1]", "b*", "c?d", "..e", "[!x]"])
+def test_brackets_and_stars_in_the_name_are_no_wildcards(tmp_path, name):
+    output, other = tmp_path / name, tmp_path / "a1"
+    write(output, "old")
+    write(other, "other")
+    code = KILLED.format(output=str(output), moment="writing")
+    subprocess.run([sys.executable, "-c", code], check=False)
+    assert len(beside(output)) > 1
+    write(output, "new")
+    assert (output / "answer.txt").read_text() == "new"
+    assert beside(output) == ["a1"]
+
+
+INSIDE = """
+import os, signal
+from pathlib import Path
+from tribolab.campaign import staging
+
+staging.os.path.ismount = lambda path: True
+output, moment = Path({output!r}), {moment!r}
+die = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
+rename, count = Path.rename, 0
+def dying_rename(self, target):
+    global count
+    if count == moment:
+        die()
+    count += 1
+    return rename(self, target)
+Path.rename = dying_rename
+with staging.staged(output) as folder:
+    (folder / "answer.txt").write_text("new")
+    (folder / "more").mkdir()
+    (folder / "more" / "text.txt").write_text("new")
+"""
+
+
+@pytest.mark.parametrize("moment", [*range(6), 99])
+def test_a_folder_that_cannot_be_renamed_is_swapped_inside(tmp_path, moment, monkeypatch):
+    output = tmp_path / "results"
+    write(output, "old")
+    (output / "notes.md").write_text("mine")
+    code = INSIDE.format(output=str(output), moment=moment)
+    done = subprocess.run([sys.executable, "-c", code], check=False)
+    assert done.returncode == (0 if moment == 99 else -signal.SIGKILL)
+    staging.recover(output)
+    assert (output / "answer.txt").read_text() == "new"
+    assert (output / "more" / "text.txt").read_text() == "new"
+    assert (output / "notes.md").read_text() == "mine"
+    assert sorted(p.name for p in output.iterdir()) == [MARKER, "answer.txt", "more", "notes.md"]
+    assert beside(output) == []
+
+
+def test_a_mount_point_takes_results(tmp_path):
+    if os.geteuid() != 0:
+        pytest.skip("only root mounts")
+    output = tmp_path / "volume"
+    output.mkdir()
+    mount = ["mount", "-t", "tmpfs", "tmpfs", str(output)]
+    if subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("no mounts here")
+    try:
+        write(output, "first")
+        write(output, "second")
+        assert (output / "answer.txt").read_text() == "second"
+        assert sorted(p.name for p in output.iterdir()) == [MARKER, "answer.txt"]
+        assert beside(output) == []
+    finally:
+        subprocess.run(["umount", str(output)], check=True)
+
+
+def test_a_link_to_itself_is_one_clear_error(tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises((ConfigError, OutputError), match="loop"):
+        write(tmp_path / "loop" / "results", "new")
+
+
+def test_a_name_that_is_too_long_is_one_clear_error(tmp_path):
+    with pytest.raises(OutputError, match="too long"):
+        write(tmp_path / ("x" * 256), "new")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_to_a_folder_stays_a_link(tmp_path):

@@ -10,7 +10,7 @@ from drafts import drafted
 from tribolab.errors import OutputError, ReadError
 from tribolab.io.draft import draft_dialect, save_draft
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 
 ACTUATOR = "actuator_friction_CC0"
@@ -161,7 +161,7 @@ def test_results_and_tables_are_called_what_they_are(shared_data, tmp_path):
     assert (draft.kind, draft.toml, draft.dialect) == ("table", "", None)
     assert "read_results()" in draft.answer
     assert draft.cells[0][:3] == ("Ra", "3,246", "um")
-    assert float(read_results(results).Ra) == 3.246e-6  # the answer tells the truth
+    assert float(read_tester_results(results).Ra) == 3.246e-6  # the answer tells the truth
 
     dma = draft_dialect(shared_data / "dma_pyvisco_BSD3/freq_user_raw.csv")
     assert dma.kind == "table" and "f, E_stor, E_loss, T, Set" in dma.answer

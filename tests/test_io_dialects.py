@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError
 from tribolab.io.dialects import json_schema, known_dialects, load_dialect, recognise
+from tribolab.io.recognise import mismatch
 from tribolab.io.schema_folder import schema_folder
+from tribolab.io.signature import peek
 
 BASE = """
 name = "mine"
@@ -252,3 +254,35 @@ def test_the_complete_example_of_the_readme_works_as_it_stands(tmp_path):
     assert run.attrs["set_normal_force_N"] == 12.0 and run.attrs["operator"] == "M. Weber"
     assert run.attrs["recorded_at"] == "2025-04-03T10:15:00"
     assert run.attrs["columns_not_used"] == "Fehler"
+
+
+ENDLESS = "^(a|aa)+$"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("[text]", f"[recognise]\npreamble = ['{ENDLESS}']\n[text]"),
+        ("line = 1", f"pattern = '{ENDLESS}'"),
+        ("[[column]]", f"[[value]]\nname = 'word'\npattern = '{ENDLESS}'\n[[column]]"),
+    ],
+    ids=["preamble", "header", "value"],
+)
+def test_a_pattern_that_backtracks_without_end_is_a_clear_error_in_time(
+    tmp_path, old, new, monkeypatch
+):
+    monkeypatch.setattr("tribolab.io.patterns._SECONDS", 0.2)
+    text = "a" * 60 + "b\nt [s];F [N]\n" + "".join(f"{n};1\n" for n in range(20))
+    (tmp_path / "raw.csv").write_text(text)
+    known = BASE.replace("line = 1", "pattern = '^t '") if old != "line = 1" else BASE
+    (tmp_path / "mine.toml").write_text(known.replace(old, new, 1))
+    with pytest.raises(ReadError, match="takes too long on this file"):
+        if "recognise" in new:
+            mismatch(peek(tmp_path / "raw.csv"), load_dialect(tmp_path / "mine.toml"))
+        tl.read(tmp_path / "raw.csv", str(tmp_path / "mine.toml"))
+
+
+def test_a_pattern_longer_than_any_line_is_refused(tmp_path):
+    (tmp_path / "mine.toml").write_text(BASE.replace("line = 1", f"pattern = '{'a' * 2000}'"))
+    with pytest.raises(ConfigError, match="at most 1000 are taken"):
+        load_dialect(tmp_path / "mine.toml")

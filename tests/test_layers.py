@@ -13,7 +13,7 @@ ROOT = Path(tribolab.__file__).parent
 
 # What stands in one row may not see its neighbours unless it is the same room.
 LAYERS = [
-    {"errors", "provenance", "quantities", "turns", "units", "validity"},
+    {"errors", "provenance", "quantities", "turns", "unit_text", "units", "validity"},
     {"io"},
     {"qc", "friction", "surface"},
     {"contact", "rubber"},

@@ -1,16 +1,22 @@
 """The pipeline on a Dask cluster, one of whose workers dies on the way."""
 
+import contextlib
+import json
 import logging
 import os
 import signal
+import subprocess
+import sys
+import time
 
 import pytest
 from campaigns import simulated
 
 from tribolab.campaign.config import load_campaign
-from tribolab.campaign.executor import workers
+from tribolab.campaign.executor import ClusterGone, workers
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError
+from tribolab.report.run import run_campaign
 
 distributed = pytest.importorskip("distributed")
 
@@ -50,6 +56,53 @@ def test_a_cluster_does_every_run_though_one_worker_is_killed(cluster, tmp_path)
     ]
     for run in outcome.runs:
         assert (outcome.folder / run.data_file).is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("victims", ["workers", "scheduler"])
+def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(
+    tmp_path, victims, monkeypatch
+):
+    monkeypatch.setattr("tribolab.campaign.executor._PATIENCE", 3.0)
+    campaign = simulated(tmp_path, repeats=1)
+    with _processes(tmp_path) as (address, scheduler, alive):
+
+        def progress(stage, done, total):
+            for process in alive if victims == "workers" else [scheduler]:
+                process.kill()
+
+        with pytest.raises(ClusterGone, match=r"Dask cluster is lost.*repeat the command"):
+            run_campaign(campaign, scheduler=address, progress=progress)
+    assert {path.name for path in campaign.parent.iterdir()} == {"campaign.toml", "raw", "truth"}
+
+
+@contextlib.contextmanager
+def _processes(folder):
+    """A scheduler and two workers as they are started by hand, each a process of its own."""
+    file = folder / "scheduler.json"
+    python = [sys.executable, "-m", "distributed.cli."]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    common = ["--scheduler-file", str(file), "--no-dashboard"]
+
+    def start(kind, *options):
+        return subprocess.Popen(
+            [*python[:2], f"{python[2]}dask_{kind}", *common, *options], **quiet
+        )
+
+    started = [start("scheduler", "--host", "127.0.0.1", "--port", "0")]
+    try:
+        started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
+        deadline = time.monotonic() + 60
+        while not file.is_file() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        address = json.loads(file.read_text())["address"]
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield address, started[0], started[1:]
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
 
 
 @pytest.mark.slow

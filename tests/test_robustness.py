@@ -24,14 +24,14 @@ from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
 from tribolab.io.mat5 import read_variables
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 
 HEAD = "# Surftest profile\nx [mm],z [um]\n"
 REAL = {
     "bearing_profiles_MIT/NU206-RE-1.txt": read_scans,
     "cetr_umt2_MIT/HT-2n-6-4 2_001.csv": tl.read,
-    "mitutoyo_sj410_res_MIT/12A11003.TXT": read_results,
+    "mitutoyo_sj410_res_MIT/12A11003.TXT": read_tester_results,
     "nanovea_map_MIT/test1.txt": lambda path: read_scans(path, "nanovea_map"),
     "pcs_mtm_ehd_MIT/demo_2.txt": tl.read,
     "pcs_mtm_ehd_MIT/demo_3.txt": tl.read,
@@ -278,7 +278,7 @@ def test_a_unit_that_cannot_be_names_file_and_line(tmp_path, line):
     text = f"// Header\nMode;RES\n// Condition-A\n{line}\n// CalcResult\n{line}\n"
     (tmp_path / "a.TXT").write_text(text)
     with pytest.raises(ReadError, match=rf"a\.TXT: line \d, '{line[:2]}': unit"):
-        read_results(tmp_path / "a.TXT")
+        read_tester_results(tmp_path / "a.TXT")
 
 
 def test_uneven_positions_are_not_continued_beyond_their_ends(tmp_path):

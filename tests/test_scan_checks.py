@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tribolab import rig
 from tribolab.errors import AnalysisError, ConfigError, UnitError
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 from tribolab.qc import profiles
 from tribolab.qc.flags import SUSPECT
@@ -113,7 +113,7 @@ def test_results_that_do_not_belong_to_their_profile_are_found(shared_data):
 
 
 def test_what_the_instrument_could_not_compute_is_found(shared_data, clean):
-    results = read_results(shared_data / "mitutoyo_sj410_res_MIT" / "12A11003.TXT")
+    results = read_tester_results(shared_data / "mitutoyo_sj410_res_MIT" / "12A11003.TXT")
     table = check_scans(clean, results=results).table
     row = table.query("check == 'results' and variable == 'results'").iloc[0]
     assert row.status == "suspect"

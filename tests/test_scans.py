@@ -7,7 +7,7 @@ import xarray as xr
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scan_grid import even
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 from tribolab.rig.files import scan_file
 
@@ -109,7 +109,7 @@ def test_map_as_rows_of_xyz_is_put_on_its_grid(shared_data):
 )
 def test_results_files_of_the_paper_s_profilometer(shared_data, name, ra, rq, rz):
     path = shared_data / "mitutoyo_sj410_res_MIT" / f"{name}.TXT"
-    found = read_results(path)
+    found = read_tester_results(path)
     np.testing.assert_allclose([found.Ra, found.Rq, found.Rz], np.array([ra, rq, rz]) * 1e-6)
     assert found.attrs["lambda_s_m"] == 2.5e-6
     assert found.attrs["pitch_m"] == 5e-7
@@ -118,7 +118,7 @@ def test_results_files_of_the_paper_s_profilometer(shared_data, name, ra, rq, rz
 
 
 def test_error_codes_and_names_used_twice(shared_data):
-    found = read_results(shared_data / "mitutoyo_sj410_res_MIT" / "12A11003.TXT").attrs
+    found = read_tester_results(shared_data / "mitutoyo_sj410_res_MIT" / "12A11003.TXT").attrs
     assert found["instrument_errors"] == "Rc: Err110; RPc: Err110; RSm: Err110"
     assert np.isnan(found["instrument_Rc_m"])
     assert found["instrument_Rmr_c_P_10_0_percent"] == 0.075

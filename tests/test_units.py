@@ -1,13 +1,18 @@
 """Units at the edge and the dictionary of quantities."""
 
+import contextlib
+
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tribolab import units
 from tribolab.errors import TribolabError, UnitError
 from tribolab.quantities import QUANTITIES, labelled, quantity, stamp
-from tribolab.units import conversion, positive, to_si
+from tribolab.unit_text import parse_unit
+from tribolab.units import conversion, positive, registry, to_si
 
 
 @pytest.mark.parametrize(
@@ -98,3 +103,43 @@ def test_what_is_no_quantity_is_refused_by_its_name(wrong):
 def test_several_values_where_one_is_wanted_are_refused(wrong):
     with pytest.raises(UnitError, match="load: one number"):
         positive(wrong, "N/m", "load")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("9**9**9**9", "9**9", "m**9**9", "10**1000 N", "m^99999", "1e400 m", "N" * 5000),
+        *("__import__('os').getpid()", "m.__class__", "(" * 5000 + "m", "N/0", "N**", "*N", "N)"),
+        *("N; m", "lambda: 1", "N//m", "\x1b[31mN", "m**(1/0)", "10**10**10"),
+    ],
+)
+def test_units_are_parsed_and_never_evaluated(text):
+    with pytest.raises(UnitError) as caught:
+        conversion(text, "N")
+    assert len(str(caught.value)) < 300 and str(caught.value).isprintable()
+    with pytest.raises(UnitError):
+        to_si(f"1 {text}", "N")
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(alphabet="mNs19.*/^()- kµ%e+", max_size=40))
+def test_any_text_is_a_unit_or_an_error_at_once(text):
+    with contextlib.suppress(UnitError):
+        parsed = parse_unit(text)
+        assert 1e-60 < abs(parsed.factor) < 1e60
+        assert all(abs(power) <= 12 for power in parsed.powers.values())
+
+
+def test_products_and_quotients_go_from_left_to_right():
+    ureg = registry()
+    for text in ("N/m*s", "kg*m**2/s**3", "N/(m*s)", "mm**-1", "J/mol/K", "m*(s/kg)**2"):
+        factor, powers = parse_unit(text)
+        mine = ureg.Unit("")
+        for name, power in powers.items():
+            mine = mine * ureg.Unit(name) ** power
+        assert factor == 1.0 and mine == ureg.Unit(text)
+
+
+def test_a_number_that_is_none_is_refused():
+    with pytest.raises(UnitError, match="larger than any number"):
+        to_si("1e999 N", "N")

@@ -34,7 +34,7 @@ _PUBLIC = {
     "check_scans": "tribolab.qc.scan_checks",
     "check_scan_set": "tribolab.qc.scan_sets",
     "read_scans": "tribolab.io.scans",
-    "read_results": "tribolab.io.scan_results",
+    "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
     "psd_1d": "tribolab.surface.psd",
@@ -144,13 +144,13 @@ if TYPE_CHECKING:
     from tribolab.io.draft import draft_dialect
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read
-    from tribolab.io.scan_results import read_results
     from tribolab.io.scans import read_scans
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve
     from tribolab.qc.run_checks import check
     from tribolab.qc.scan_checks import check_scans
     from tribolab.qc.scan_sets import check_scan_set
+    from tribolab.report.read_results import read_results
     from tribolab.report.run import run_campaign
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.report.progress import progress_bars
+from tribolab.report.streams import Terminated, prepared
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -102,7 +103,8 @@ def demo(
 @app.command()
 def reproduce(
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder of the results; replaced as a whole.")
+        Path,
+        typer.Option("--output", "-o", help="Folder of the results; files of yours in it stay."),
     ] = Path("tribolab-paper"),
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -135,7 +137,7 @@ def run(
         typer.Option(
             "--output",
             "-o",
-            help="Folder of the results; replaced as a whole.",
+            help="Folder of the results; files of yours in it stay.",
             show_default="as the campaign file says, else results/ beside it",
         ),
     ] = None,
@@ -346,8 +348,9 @@ def _reported(debug: bool) -> Iterator[None]:
         _fail(str(error), USAGE, debug)
     except TribolabError as error:
         _fail(str(error), UNREADABLE, debug)
-    except KeyboardInterrupt:
-        _fail("interrupted; results of before are as they were", INTERRUPTED, debug)
+    except KeyboardInterrupt as stop:
+        code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
+        _fail("interrupted; results of before are as they were", code, debug)
     except (typer.Exit, BrokenPipeError):
         raise
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
@@ -375,6 +378,8 @@ def _show(outcome: Outcome, debug: bool) -> int:
         terminal.console().print(table)
     for line in terminal.outcome_lines(outcome):
         typer.echo(line)
+    for line in terminal.foreign_lines(outcome):
+        typer.echo(line)
     for line in terminal.failure_lines(outcome):
         typer.echo(f"tribolab: {line}", err=True)
     crashes = [curve.crash for curve in outcome.curves if curve.crash]
@@ -383,7 +388,7 @@ def _show(outcome: Outcome, debug: bool) -> int:
     if not outcome.segments:
         typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
-    if spoilt or crashes or not outcome.segments:
+    if spoilt or outcome.kept or crashes or not outcome.segments:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))
@@ -394,4 +399,5 @@ def _show(outcome: Outcome, debug: bool) -> int:
 
 def main() -> None:
     """Run the command line."""
-    app()
+    with prepared():
+        app()

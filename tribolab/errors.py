@@ -53,6 +53,17 @@ def brief(error: BaseException, most: int = 300) -> str:
     return text if len(text) <= most else f"{text[:most]} ..."
 
 
+def shown(value: object, most: int = 80) -> str:
+    r"""Return a value as a message may show it: short, and without what steers a terminal.
+
+    >>> shown("\x1b[31mred\n"), shown("x" * 1000, 5)
+    ('?[31mred?', 'xxxxx ...')
+    """
+    text = value if isinstance(value, str) else repr(value)
+    text = "".join(c if c.isprintable() else "?" for c in text[: most + 1])
+    return text if len(text) <= most else f"{text[:most]} ..."
+
+
 _MOST = 60  # letters of a word; what a damaged file calls a name may have any length
 
 

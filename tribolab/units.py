@@ -5,14 +5,16 @@ from __future__ import annotations
 import functools
 import math
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.errors import AnalysisError, UnitError, shown
 from tribolab.turns import Counted, holds_an_angle, reciprocal, scale_of_reciprocal, usual_reading
+from tribolab.unit_text import parse_unit
 
 if TYPE_CHECKING:
     import pint
 
+_LONGEST = 200  # letters of a number with its unit
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
 # How instruments write units that pint reads otherwise or not at all.
@@ -87,6 +89,21 @@ def _clean(unit: str) -> str:
     return unit.replace("^", "**")
 
 
+class _Units(NamedTuple):
+    factor: float
+    units: pint.Unit
+
+
+def _units(text: str) -> _Units:
+    """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
+    ureg = registry()
+    factor, powers = parse_unit(_clean(text))
+    product = ureg.Unit("")
+    for name, power in powers.items():
+        product = product * ureg.Unit(name) ** power
+    return _Units(factor, product)
+
+
 def _prefix(unit: str, si_unit: str) -> float | None:
     """Scale of the SI unit itself with a prefix: mm/s for m/s. Loading pint takes 0.5 s."""
     if unit == si_unit:
@@ -140,13 +157,14 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
 
     ureg = registry()
     try:
-        source, target = ureg.Unit(_clean(unit)), ureg.Unit(_clean(si_unit))
-        zero = ureg.Quantity(0.0, source).to(target).magnitude
-        one = ureg.Quantity(1.0, source).to(target).magnitude
+        source, target = _units(unit), _units(si_unit)
+        zero = ureg.Quantity(0.0, source.units).to(target.units).magnitude
+        one = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{unit}' cannot be turned into '{si_unit}'") from error
     except Exception as error:  # pint raises many kinds on text that is no unit
-        raise UnitError(f"'{unit}' is not a unit that is known; write e.g. '{si_unit}'") from error
+        said = shown(unit)
+        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
     scale = float(one - zero)
     # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
@@ -163,8 +181,8 @@ def base_unit(unit: str) -> str:
     import pint
 
     try:
-        return f"{registry().Quantity(1.0, _clean(unit)).to_base_units().units:~C}"
-    except (pint.PintError, ValueError, TypeError):
+        return f"{registry().Quantity(1.0, _units(unit).units).to_base_units().units:~C}"
+    except (UnitError, pint.PintError, ValueError, TypeError):
         return "m"
 
 
@@ -205,12 +223,15 @@ def to_si(
             raise UnitError(
                 f"{name}: one number, or text such as '1 {si_unit}', is wanted; got {value!r:.60}"
             ) from error
-    match = _NUMBER.match(value)
+    said = shown(value)
+    match = _NUMBER.match(value) if len(value) <= _LONGEST else None
     if not match:
-        raise UnitError(f"{name}: '{value}' has no number; write e.g. '1 {si_unit}'")
+        raise UnitError(f"{name}: '{said}' has no number; write e.g. '1 {si_unit}'")
     number, unit = float(match[1]), match[2]
+    if not math.isfinite(number):
+        raise UnitError(f"{name}: '{said}' is larger than any number; write e.g. '1 {si_unit}'")
     if not unit and si_unit not in ("", "1"):
-        raise UnitError(f"{name}: '{value}' has no unit; write e.g. '{value} {si_unit}'")
+        raise UnitError(f"{name}: '{said}' has no unit; write e.g. '{said} {si_unit}'")
     try:
         scale, offset = conversion(unit, si_unit, bare)
     except UnitError as error:

@@ -38,7 +38,7 @@ from mutations import mutate
 from tribolab.errors import TribolabError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 
 SECONDS, MEMORY, LONGEST_MESSAGE = 5.0, 1 << 30, 1500
@@ -135,7 +135,7 @@ def readers(source: Path) -> list:
         reader = read_scans if scan else read
         found += 3 * [(f"{reader.__name__} {own}", lambda p: reader(p, own))]
     if source.parent.name == "mitutoyo_sj410_res_MIT":
-        found += 3 * [("read_results", read_results)]
+        found += 3 * [("read_results", read_tester_results)]
     if source.suffix == ".nc":
         found += 3 * [("read_netcdf", read_netcdf)]
     if source.suffix in (".mat", ".tdms", ".nc"):

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import signal
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
+    FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
     Future,
     ProcessPoolExecutor,
     as_completed,
+    wait,
 )
 from functools import partial
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
-from tribolab.errors import AnalysisError, ConfigError
+from tribolab.errors import AnalysisError, ConfigError, OutputError, brief
 
 # Two BLAS threads in each of many workers are slower than one, by up to fifty times.
 _ONE_THREAD = {
@@ -35,6 +39,8 @@ _ONE_THREAD = {
 
 
 DASK_TIMEOUT = "20s"
+_LOOK = 1.0  # s between two looks at a cluster that does not answer
+_PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
 _STOPPED = "stopped before it was done"
 _DIED = (
     "its worker process ended without an answer, twice (out of memory? a crash in a compiled "
@@ -44,6 +50,10 @@ _DIED = (
 
 class WorkerDied(AnalysisError):
     """A worker process ended without an answer, twice."""
+
+
+class ClusterGone(OutputError):
+    """The scheduler or all of its workers are gone, and nothing more can be done there."""
 
 
 def default_jobs() -> int:
@@ -63,7 +73,14 @@ def completed(
     """
     if executor is None:
         return _here(function, tasks)
-    return _as_they_end({executor.submit(function, task): task for task in tasks})
+    lost = executor.lost if isinstance(executor, _Cluster) else None
+    try:
+        futures = {executor.submit(function, task): task for task in tasks}
+    except Exception as error:
+        if lost is None:
+            raise
+        raise ClusterGone(_gone(f"it takes no work ({brief(error)})", 0, 0)) from error
+    return _as_they_end(futures, lost)
 
 
 def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tuple[Any, Future]]:
@@ -76,13 +93,34 @@ def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tupl
         yield task, future
 
 
-def _as_they_end(futures: dict[Future, Any]) -> Iterator[tuple[Any, Future]]:
+def _as_they_end(
+    futures: dict[Future, Any], lost: Callable[[], str] | None
+) -> Iterator[tuple[Any, Future]]:
+    pending = set(futures)
     try:
-        for future in as_completed(futures):
-            yield futures[future], future
+        while pending:
+            ended, pending = wait(
+                pending, timeout=None if lost is None else _LOOK, return_when=FIRST_COMPLETED
+            )
+            for future in ended:
+                if lost is not None and future.cancelled():
+                    text = lost() or "its scheduler dropped the work"
+                    raise ClusterGone(_gone(text, len(futures) - len(pending) - 1, len(futures)))
+                yield futures[future], future
+            if pending and lost is not None and (text := lost()):
+                raise ClusterGone(_gone(text, len(futures) - len(pending), len(futures)))
     finally:
-        for future in futures:
+        for future in pending:
             future.cancel()
+
+
+def _gone(why: str, done: int, of: int) -> str:
+    said = f"; {done} of {of} pieces of work were done" if of else ""
+    return (
+        f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
+        "they were; start scheduler and workers again and repeat the command, or leave "
+        "--scheduler out"
+    )
 
 
 @contextlib.contextmanager
@@ -138,10 +176,43 @@ def _dask(scheduler: str) -> Iterator[Executor]:
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
             "its address, e.g. tcp://localhost:8786"
         ) from error
-    with client:
+    chatter = logging.getLogger("distributed")
+    level = chatter.level
+    chatter.setLevel(logging.CRITICAL)  # what it would say of a lost worker is said by us
+    try:
         if not client.scheduler_info()["workers"]:
             raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
-        yield client.get_executor(pure=False)
+        yield _Cluster(client)
+    finally:
+        with contextlib.suppress(Exception):  # a scheduler that is gone cannot be told goodbye
+            client.close(timeout=2)
+        chatter.setLevel(level)
+
+
+class _Cluster(Executor):
+    """The workers of a Dask scheduler, and whether they are still there."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._inner = client.get_executor(pure=False)
+        self._missed: float | None = None
+
+    def submit(self, function: Callable, /, *args: Any, **kwargs: Any) -> Future:
+        """Queue a call on the cluster and return its future."""
+        return self._inner.submit(function, *args, **kwargs)
+
+    def lost(self) -> str:
+        """Return why no answer will come any more; "" as long as one may."""
+        why = ""
+        if self._client.status != "running":
+            why = "its scheduler does not answer any more"
+        elif not self._client.scheduler_info()["workers"]:
+            why = "all of its workers are gone"
+        if not why:
+            self._missed = None
+            return ""
+        self._missed = self._missed or time.monotonic()
+        return why if time.monotonic() - self._missed > _PATIENCE else ""
 
 
 class LastingPool(Executor):

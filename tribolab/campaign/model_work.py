@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -288,23 +288,38 @@ def _done(
 
 def known_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
     """Return the outcome of earlier results, if data, settings and version are the same."""
-    import netCDF4
-
     from tribolab import __version__
 
-    if model.missing or not path.is_file():
+    found = None if model.missing else _stored(path, model)
+    if found is None:
+        return None
+    attrs, outcome = found
+    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
+    return replace(outcome, reused=True) if same == (model.config_sha256, __version__) else None
+
+
+def earlier_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
+    """Return the outcome of earlier results, whatever the data and the settings were."""
+    found = _stored(path, model)
+    return found and found[1]
+
+
+def _stored(path: Path, model: PlannedModel) -> tuple[dict[str, Any], ModelOutcome] | None:
+    """Return attributes and outcome that a data file holds; None if it is damaged."""
+    import netCDF4
+
+    if not path.is_file():
         return None
     try:
         with netCDF4.Dataset(path) as file:
             attrs, groups = file.__dict__, tuple(file.groups)
         record = json.loads(attrs[RECORD])
         findings = [Finding(*finding) for finding in record["findings"]]
+        if groups != tuple(record["parts"]):
+            return None
     except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
         return None
-    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
-    if same != (model.config_sha256, __version__) or groups != tuple(record["parts"]):
-        return None
-    return _done(model, groups, findings, reused=True)
+    return attrs, _done(model, groups, findings)
 
 
 def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:

@@ -46,6 +46,9 @@ class RunOutcome:
     quality
         Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
         a run that could not be checked.
+    kept
+        Since when and why these are earlier results, because the raw file cannot be read now; ""
+        for everything else.
     """
 
     name: str
@@ -61,6 +64,7 @@ class RunOutcome:
     seconds: float = 0.0
     segments: int = 0
     quality: str = ""
+    kept: str = ""
 
     @property
     def done(self) -> bool:
@@ -136,7 +140,7 @@ class SurfaceOutcome:
         Gravest finding of the checks on the scans that were used, as for a run.
     checks
         What every check said of every scan: a row each, with the scan's file as "scan".
-    status, reason, error, data_file, reused, seconds
+    status, reason, error, data_file, reused, seconds, kept
         As for a run.
     """
 
@@ -152,6 +156,7 @@ class SurfaceOutcome:
     findings: tuple[Finding, ...] = ()
     quality: str = ""
     checks: tuple[dict[str, Any], ...] = ()
+    kept: str = ""
 
     @property
     def done(self) -> bool:
@@ -182,7 +187,7 @@ class ModelOutcome:
         The measured curve that it belongs to, as in its `CurveOutcome`.
     parts
         Names of the groups in the data file.
-    status, reason, error, data_file, reused, seconds
+    status, reason, error, data_file, reused, seconds, kept
         As for a run; "skipped" if the campaign file knows too little for a model.
     """
 
@@ -199,6 +204,7 @@ class ModelOutcome:
     seconds: float = 0.0
     parts: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    kept: str = ""
 
     @property
     def done(self) -> bool:
@@ -225,6 +231,8 @@ class Outcome:
         One record for each surface of the campaign file.
     models
         One record for each measured curve with a fluid, in the order of the curves.
+    foreign
+        Files in the results folder that are not ours; they were left there.
     """
 
     campaign: Campaign
@@ -234,6 +242,13 @@ class Outcome:
     sources: tuple[tuple[str, str, int], ...]
     surfaces: tuple[SurfaceOutcome, ...] = ()
     models: tuple[ModelOutcome, ...] = ()
+    foreign: tuple[str, ...] = ()
+
+    @property
+    def kept(self) -> dict[str, str]:
+        """Names of the parts that are earlier results, and why."""
+        parts = (*self.runs, *self.surfaces, *self.models)
+        return {part.name: part.kept for part in parts if part.kept}
 
     @property
     def failed(self) -> tuple[RunOutcome, ...]:

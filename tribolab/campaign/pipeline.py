@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
@@ -12,8 +10,15 @@ from traceback import format_exception
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.executor import WorkerDied, completed
+from tribolab.campaign.kept import Earlier, keep_runs, kept_model, kept_surface, link
 from tribolab.campaign.model_plan import plan_models
-from tribolab.campaign.model_work import ModelTask, failed_model, known_model, process_model
+from tribolab.campaign.model_work import (
+    ModelTask,
+    earlier_model,
+    failed_model,
+    known_model,
+    process_model,
+)
 from tribolab.campaign.outcome import CurveOutcome, ModelOutcome, Outcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun, distinct, plan, safe_name
 from tribolab.campaign.problems import message
@@ -104,7 +109,8 @@ def process(
         tell("runs", len(records), len(runs))
     _refuse_if_all_died(records[task.run.name].outcome for task in left)
     _lend_zeros(runs, records, staging, executor)
-    ordered = [records[run.name] for run in runs]
+    earlier = Earlier.read(previous)
+    ordered = keep_runs(campaign, earlier, staging, [records[run.name] for run in runs])
     outcomes = tuple(record.outcome for record in ordered)
     surfaces = _surfaces(campaign, outcomes, staging, previous, executor, tell)
     curves = _curves(outcomes, staging, executor, tell)
@@ -178,7 +184,7 @@ def _taken_over(
         for (run, (known, outcome, zero)), sources in zip(candidates, sums, strict=True):
             if known == sorted((name, checksum) for name, checksum, _ in sources):
                 try:
-                    _link(previous / outcome.data_file, staging / outcome.data_file)
+                    link(previous / outcome.data_file, staging / outcome.data_file)
                 except FileNotFoundError:  # replaced by another process meanwhile: done anew
                     continue
                 rows = zip(run.labels, sources, strict=True)
@@ -230,15 +236,6 @@ def _checksums(files: Iterable[Path]) -> list[Source]:
         return [(file.name, sha256_of_file(file), file.stat().st_size) for file in files]
     except OSError:  # vanished: nothing is the same; processing it says why
         return []
-
-
-def _link(old: Path, new: Path) -> None:
-    try:
-        os.link(old, new)
-    except FileNotFoundError:
-        raise
-    except OSError:  # a file system without hard links
-        shutil.copy2(old, new)
 
 
 def _curves(
@@ -297,7 +294,7 @@ def _surfaces(
         known = previous and known_surface(previous / surface.data_file, surface)
         if known and known[0] == sources_of(surface):
             try:
-                _link(previous / surface.data_file, staging / surface.data_file)
+                link(previous / surface.data_file, staging / surface.data_file)
             except FileNotFoundError:  # replaced by another process meanwhile: done anew
                 continue
             records[surface.name] = SurfaceRecord(known[1], known[0])
@@ -308,9 +305,11 @@ def _surfaces(
             raise error
         if error is not None:  # the worker could not even say what went wrong
             outcome = failed_surface(task.surface, *explain(error))
-            records[task.surface.name] = SurfaceRecord(outcome, ())
+            record = SurfaceRecord(outcome, ())
         else:
-            records[task.surface.name] = future.result()
+            record = future.result()
+        kept = kept_surface(campaign, task.surface, previous, staging, record)
+        records[task.surface.name] = kept
         tell("surfaces", len(records), len(planned))
     return tuple(records[surface.name] for surface in planned)
 
@@ -331,7 +330,7 @@ def _models(
         known = previous and known_model(previous / model.data_file, model)
         if known:
             try:
-                _link(previous / model.data_file, staging / model.data_file)
+                link(previous / model.data_file, staging / model.data_file)
             except FileNotFoundError:  # replaced by another process meanwhile: done anew
                 continue
             done[model.name] = known
@@ -342,9 +341,13 @@ def _models(
         if isinstance(error, OutputError):
             raise error
         if error is not None:  # the worker could not even say what went wrong
-            done[task.model.name] = failed_model(task.model, *explain(error))
+            model = failed_model(task.model, *explain(error))
         else:
-            done[task.model.name] = future.result()
+            model = future.result()
+        if previous is not None:
+            earlier = earlier_model(previous / task.model.data_file, task.model)
+            model = kept_model(model, earlier, previous, staging)
+        done[task.model.name] = model
         tell("models", len(done), len(planned))
     return tuple(done[model.name] for model in planned)
 

@@ -114,6 +114,20 @@ def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
+def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
+    """Return every file that a campaign reads, and what it is in words."""
+    found = [(campaign.file, "the campaign file")]
+    for entry in campaign.run:
+        found += [(f, "a raw file") for p in entry.files for f in _matching(campaign.raw, p)]
+    found += [(file, "a scan") for file in scan_files(campaign)]
+    if (name := campaign.contact.modulus_file) is not None:
+        found.append((campaign.raw / name, "the modulus file"))
+    for one in (*campaign.run, *campaign.surface):
+        if one.instrument and one.instrument.endswith(".toml"):
+            found.append((Path(instrument_of(campaign, one.instrument)), "a dialect"))
+    return found
+
+
 def instrument_of(campaign: Campaign, name: str) -> str:
     """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
     return str(campaign.file.parent / name) if name.endswith(".toml") else name

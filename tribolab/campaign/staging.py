@@ -1,9 +1,12 @@
 """Results appear whole or not at all: written beside their place, then swapped in.
 
-The staging room ``.<name>.tribolab-<random>`` lies beside the output, on the same file system.
-It holds ``new`` (what is being written) and, where two folders cannot be exchanged in one step,
-for a moment ``old``. The file of the same name that ends in ``.lock`` is locked for as long as
-the process lives, whatever ends it: a room whose lock is free is a dead process's.
+The staging room ``.<name>.tribolab-<random>`` lies beside the output, on the same file system, or
+inside it where it cannot be renamed (a mount point, a folder whose parent is not ours to write
+in). It holds ``new`` (what is being written) and, where two folders cannot be exchanged in one
+step, for a moment ``old``. The file of the same name that ends in ``.lock`` is locked for as long
+as the process lives, whatever ends it: a room whose lock is free is a dead process's.
+
+Files in the output that are not ours are never removed: they are linked into the new folder.
 """
 
 from __future__ import annotations
@@ -19,12 +22,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
+from tribolab.campaign.ledger import MARKER, Ledger, other_name
 from tribolab.errors import ConfigError, OutputError
 
-MARKER = ".tribolab-results"
-_MARKER_TEXT = "Written by tribolab. The next run replaces this folder as a whole.\n"
 _RENAME_EXCHANGE = 2
 _AT_FDCWD = -100
+_READY = "ready"  # in a room inside the output: the swap has begun, and is to be completed
 
 _CURES = {
     errno.ENOSPC: "the disk is full; make room or choose another folder with --output",
@@ -33,6 +36,8 @@ _CURES = {
     errno.EPERM: "no permission to write here; choose another folder with --output",
     errno.EROFS: "the file system is read-only; choose another folder with --output",
     errno.EIO: "the disk reports an error; choose another folder with --output",
+    errno.ENAMETOOLONG: "a name that is too long; choose a shorter one with --output",
+    errno.ELOOP: "a symbolic link that leads to itself; choose another folder with --output",
 }
 
 
@@ -42,7 +47,8 @@ def staged(output: str | Path) -> Iterator[Path]:
 
     If the block raises, `output` stays as it was and the new folder is removed. If the process
     is killed, `output` holds either the old or the new results; the next call removes what was
-    left behind.
+    left behind. Files in `output` that we did not write, or that somebody changed since, stay:
+    the former under their names, the latter under `other_name`.
 
     Parameters
     ----------
@@ -64,7 +70,8 @@ def staged(output: str | Path) -> Iterator[Path]:
     Notes
     -----
     The swap is one ``renameat2(RENAME_EXCHANGE)`` on Linux file systems that know it. Elsewhere
-    it is two renames; a kill between them is mended by the next call.
+    it is two renames; a kill between them is mended by the next call. A folder that cannot be
+    renamed is swapped entry by entry, with the same promise.
 
     Examples
     --------
@@ -75,10 +82,10 @@ def staged(output: str | Path) -> Iterator[Path]:
     >>> (place / "answer.txt").read_text()
     '42'
     """
-    output = Path(output).resolve()
-    recover(output)
-    _refuse_foreign(output)
+    output = resolved(output)
     try:
+        recover(output)
+        _refuse_foreign(output)
         output.parent.mkdir(parents=True, exist_ok=True)
         lock, room = _locked_room(output)
     except OSError as error:
@@ -86,7 +93,9 @@ def staged(output: str | Path) -> Iterator[Path]:
     try:
         (room / "new").mkdir(parents=True)
         yield room / "new"
-        (room / "new" / MARKER).write_text(_MARKER_TEXT, encoding="utf-8")
+        ledger = Ledger.read(output)
+        ledger.write(room / "new")
+        _take_along(ledger, room / "new")
         _swap(room, output)
     except OSError as error:
         if not _is_about(error, room, output):
@@ -98,40 +107,70 @@ def staged(output: str | Path) -> Iterator[Path]:
         lock.close()
 
 
+def resolved(output: str | Path) -> Path:
+    """Return the folder that a path means, without links.
+
+    Raises
+    ------
+    ConfigError
+        If it leads nowhere, e.g. a link to itself.
+    """
+    try:
+        return Path(output).resolve()
+    except (OSError, RuntimeError, ValueError) as error:  # RuntimeError: a loop, up to Python 3.12
+        raise ConfigError(
+            f"{output}: cannot be a results folder ({error}); choose another with --output"
+        ) from error
+
+
 def recover(output: str | Path) -> None:
-    """Remove what dead processes left beside `output`, and complete a swap that was cut short."""
-    output = Path(output).resolve()
-    if not output.parent.is_dir():
-        return
-    for room in sorted(output.parent.glob(f"{_prefix(output)}*")):
+    """Remove what dead processes left beside or in `output`, and complete a swap cut short."""
+    output = resolved(output)
+    for room in (*_rooms(output.parent, _prefix(output)), *_rooms(output, _prefix(output))):
         if room.suffix == ".lock" or _alive(room):
             continue
-        if not output.exists() and (room / "old").exists():  # killed between the two renames
+        if room.parent == output:
+            if (room / _READY).exists():
+                _move_in(room, output)
+        elif not output.exists() and (room / "old").exists():  # killed between the two renames
             complete = room / "new" if (room / "new").exists() else room / "old"
             complete.rename(output)
         shutil.rmtree(room, ignore_errors=True)
-    for lock in output.parent.glob(f"{_prefix(output)}*.lock"):
-        if not _alive(lock.with_suffix("")):
+    for lock in (*_rooms(output.parent, _prefix(output)), *_rooms(output, _prefix(output))):
+        if lock.suffix == ".lock" and not _alive(lock.with_suffix("")):
             lock.unlink(missing_ok=True)
 
 
-def is_results(folder: Path) -> bool:
-    """Whether a folder holds results that this package wrote."""
-    return (folder / MARKER).is_file()
+def _rooms(place: Path, prefix: str) -> list[Path]:
+    """Rooms and locks in a folder; names are compared as they are: brackets are no wildcards."""
+    try:
+        return sorted(path for path in place.iterdir() if path.name.startswith(prefix))
+    except OSError:
+        return []
 
 
 def _prefix(output: Path) -> str:
-    return f".{output.name}.tribolab-"
+    return f".{output.name[:100]}.tribolab-"
 
 
 def _lock_of(room: Path) -> Path:
     return room.with_name(f"{room.name}.lock")
 
 
+def _home_of_room(output: Path) -> Path:
+    """Where the room is made: beside the output, or inside it if it cannot be renamed."""
+    if not output.is_dir():
+        return output.parent
+    parent = output.parent
+    fixed = os.path.ismount(output) or output.stat().st_dev != parent.stat().st_dev
+    return output if fixed or not os.access(parent, os.W_OK, effective_ids=True) else parent
+
+
 def _locked_room(output: Path) -> tuple[IO[bytes], Path]:
     """Lock a new name; the lock is made before its room, so that no living room is without."""
+    home = _home_of_room(output)
     while True:
-        handle, name = tempfile.mkstemp(prefix=_prefix(output), suffix=".lock", dir=output.parent)
+        handle, name = tempfile.mkstemp(prefix=_prefix(output), suffix=".lock", dir=home)
         lock = os.fdopen(handle, "wb")
         fcntl.flock(lock, fcntl.LOCK_EX)
         if Path(name).exists():  # else somebody tidied it away before it was locked
@@ -151,26 +190,93 @@ def _alive(room: Path) -> bool:
 
 
 def _refuse_foreign(output: Path) -> None:
+    """Refuse a folder that holds something, and nothing that we wrote."""
     if not output.exists():
         return
     if not output.is_dir():
         raise ConfigError(f"{output} is a file; results want a folder: choose it with --output")
-    inside = sorted(path.name for path in output.iterdir())
-    if inside and not is_results(output):
+    inside = sorted(p.name for p in output.iterdir() if not p.name.startswith(_prefix(output)))
+    if not inside:
+        return
+    ledger = Ledger.read(output)
+    if not any(ledger.is_ours(name) for name in ledger.files):
         raise ConfigError(
             f"{output} holds something else than results ({', '.join(inside[:3])}"
-            f"{', ...' if len(inside) > 3 else ''}) and would be replaced as a whole; choose "
-            "another folder with --output, or empty it"
+            f"{', ...' if len(inside) > 3 else ''}); choose another folder with --output, or "
+            "empty it"
         )
+
+
+def _take_along(ledger: Ledger, new: Path) -> None:
+    """Link what is not ours into the new folder; what of ours was changed, under another name."""
+    for name in ledger.foreign():
+        if not name.startswith(_prefix(ledger.folder)):
+            _keep(ledger, name, new)
+
+
+def _keep(ledger: Ledger, name: str, new: Path) -> None:
+    old, target = ledger.folder / name, new / name
+    if old.is_dir() and not old.is_symlink():
+        target.mkdir(parents=True, exist_ok=True)
+        return
+    if name in ledger.files or target.exists():
+        target = new / other_name(name, old.lstat().st_mtime_ns)
+    for above in reversed(target.relative_to(new).parents):
+        if (new / above).is_file():  # a folder of theirs has the name of a file of ours
+            target = new / f"{name.replace('/', '_')}"
+            break
+    if target.exists() or target.is_symlink():
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        os.link(old, target, follow_symlinks=False)
+    except OSError:  # a file system without hard links
+        shutil.copy2(old, target, follow_symlinks=False)
 
 
 def _swap(room: Path, output: Path) -> None:
     new = room / "new"
+    if room.parent == output:
+        (room / _READY).touch()
+        _move_in(room, output)
+        return
     if not output.exists():
         new.rename(output)
-    elif not exchange(new, output):
-        output.rename(room / "old")
+        return
+    before = Ledger.read(output)
+    if exchange(new, output):
+        replaced = new
+    else:
+        replaced = room / "old"
+        output.rename(replaced)
         new.rename(output)
+    # what somebody put there while the swap was made ready
+    for name in Ledger(replaced, before.files).foreign():
+        _keep_late(replaced / name, output / name)
+
+
+def _keep_late(old: Path, target: Path) -> None:
+    if old.is_dir() or target.exists() or target.is_symlink():
+        return
+    with contextlib.suppress(OSError):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        old.rename(target)
+
+
+def _move_in(room: Path, output: Path) -> None:
+    """Put each entry of the new folder in its place, the old one away; may be cut short."""
+    (room / "old").mkdir(exist_ok=True)
+    new = room / "new"
+    wanted = {path.name for path in new.iterdir()} if new.is_dir() else set()
+    if new.is_dir() and not (room / "listed").exists():
+        for path in output.iterdir():
+            if path.name not in wanted and not path.name.startswith(_prefix(output)):
+                path.rename(room / "old" / path.name)
+        (room / "listed").touch()
+    for name in sorted(wanted, key=lambda name: name == MARKER):  # the marker last
+        if os.path.lexists(output / name):
+            (output / name).rename(room / "old" / name)
+        (new / name).rename(output / name)
 
 
 def exchange(one: Path, other: Path) -> bool:

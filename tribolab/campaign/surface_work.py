@@ -145,9 +145,33 @@ def known_surface(
     path: Path, surface: PlannedSurface
 ) -> tuple[tuple[Source, ...], SurfaceOutcome] | None:
     """Return sources and outcome of earlier results, if settings and version are the same."""
-    import netCDF4
-
     from tribolab import __version__
+
+    found = _stored(path)
+    if found is None:
+        return None
+    attrs, sources, stored = found
+    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
+    if same != (surface.config_sha256, __version__):
+        return None
+    facts = {"name": surface.name, "files": surface.labels, "data_file": surface.data_file}
+    return sources, replace(stored, **facts, reused=True)
+
+
+def earlier_surface(
+    path: Path, now: SurfaceOutcome
+) -> tuple[tuple[Source, ...], SurfaceOutcome] | None:
+    """Return sources and outcome of earlier results, whatever the settings were."""
+    found = _stored(path)
+    if found is None:
+        return None
+    _, sources, stored = found
+    return sources, replace(stored, name=now.name)
+
+
+def _stored(path: Path) -> tuple[dict[str, Any], tuple[Source, ...], SurfaceOutcome] | None:
+    """Return attributes, sources and outcome that a data file holds; None if it is damaged."""
+    import netCDF4
 
     if not path.is_file():
         return None
@@ -156,25 +180,21 @@ def known_surface(
             attrs, groups = file.__dict__, tuple(file.groups)
         record: dict[str, Any] = json.loads(attrs[RECORD])
         sources = tuple((str(n), str(c), int(b)) for n, c, b in record["sources"])
-        findings = tuple(Finding(*finding) for finding in record["findings"])
-        quality, checks = str(record["quality"]), tuple(map(dict, record["checks"]))
+        if groups != tuple(record["parts"]):
+            return None
+        outcome = SurfaceOutcome(
+            name=str(attrs.get("surface", "")),
+            files=tuple(label for label, _, _ in sources),
+            status="done",
+            data_file=f"data/{path.name}",
+            parts=groups,
+            findings=tuple(Finding(*finding) for finding in record["findings"]),
+            quality=str(record["quality"]),
+            checks=tuple(map(dict, record["checks"])),
+        )
     except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
         return None
-    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
-    if same != (surface.config_sha256, __version__) or groups != tuple(record["parts"]):
-        return None
-    outcome = SurfaceOutcome(
-        name=surface.name,
-        files=surface.labels,
-        status="done",
-        data_file=surface.data_file,
-        reused=True,
-        parts=groups,
-        findings=findings,
-        quality=quality,
-        checks=checks,
-    )
-    return sources, outcome
+    return attrs, sources, outcome
 
 
 def _place(task: SurfaceTask) -> Path:

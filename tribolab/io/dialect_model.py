@@ -21,7 +21,8 @@ from pydantic import (
     model_validator,
 )
 
-from tribolab.errors import TribolabError, nearest
+from tribolab.errors import TribolabError, nearest, shown
+from tribolab.io.patterns import PatternError, guarded
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
 from tribolab.units import base_unit, conversion, positive, to_si
@@ -29,9 +30,9 @@ from tribolab.units import base_unit, conversion, positive, to_si
 
 def _is_pattern(text: str) -> str:
     try:
-        re.compile(text)
-    except re.error as error:
-        raise ValueError(f"'{text}' is not a regular expression: {error}") from error
+        guarded(text)
+    except PatternError as error:
+        raise ValueError(f"'{shown(text)}' is not a regular expression: {error}") from error
     return text
 
 
@@ -239,7 +240,7 @@ class Value(_Strict):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        if re.compile(self.pattern).groups < 1:
+        if guarded(self.pattern).groups < 1:
             raise ValueError(f"value '{self.name}': the pattern needs a group ( ) for the value")
         if self.unit is not None:
             _check_unit(self.unit, self.si_unit, self.bare)

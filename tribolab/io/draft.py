@@ -258,7 +258,7 @@ def _results(file: File, name: str) -> Draft:
         toml="",
         answer=(
             f"{len(rows)} results of a roughness tester (name, value, unit, condition), without "
-            "the profile; tribolab.io.scan_results.read_results() reads it without a dialect"
+            "the profile; tribolab.read_results() reads it without a dialect"
         ),
         cells=tuple(tuple(row) for row in rows[:_SHOWN]),
         known="",

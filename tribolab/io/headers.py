@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io.dialect_model import Dialect
+from tribolab.io.patterns import Guarded
 from tribolab.io.signature import File, peek
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
@@ -169,7 +170,7 @@ def _header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> 
     header = dialect.header
     first = 3 if content[:3] == _BOM else 0
     if header.pattern is not None:
-        found = compiled(header.pattern, dialect).finditer(content, first)
+        found = compiled(header.pattern, dialect).all(content, first)
         wanted = None if header.repeats else 1  # looking for more would read the whole head
         starts = [
             max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(found, wanted)
@@ -237,9 +238,9 @@ def _decode(content: bytes, file: File, dialect: Dialect) -> str:
         ) from error
 
 
-def compiled(pattern: str, dialect: Dialect) -> re.Pattern[bytes]:
+def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
     """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
     # behind "\s*", a second wish for blanks would take a time that grows with their number squared
     if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
         pattern = pattern[:-1] + r"[ \t\r]*$"
-    return re.compile(pattern.encode(_encoding(dialect), errors="replace"), re.MULTILINE)
+    return Guarded(pattern.encode(_encoding(dialect), errors="replace"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime as dt
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -13,6 +12,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
+from tribolab.io.patterns import guarded
 from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
@@ -145,8 +145,7 @@ def _checked(content: Content, dialect: Dialect) -> Content:
 
 def last_match(pattern: str, text: str) -> str | None:
     """Group 1 of a pattern's last match, so that a step's own text goes before earlier steps'."""
-    found = next(reversed(list(re.finditer(pattern, text, re.MULTILINE))), None)
-    return found[1].strip() if found and found[1] is not None else None
+    return guarded(pattern).last(text)
 
 
 def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:

@@ -10,6 +10,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.dialect_model import Dialect, Recognise
 from tribolab.io.headers import find_tables, split_row
+from tribolab.io.patterns import guarded
 from tribolab.io.signature import File
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
@@ -33,7 +34,7 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         return f"it is {file.format}, not {dialect.format}"
     if rules == Recognise():
         return "the dialect has no rules to recognise it by"
-    if rules.file_name and not re.search(rules.file_name, file.path.name):
+    if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
     if dialect.format == "mat":
         from tribolab.io.mat import variable_names
@@ -56,7 +57,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     encoding = "utf-16" if file.head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
     text = _text(file.head[: 1 << 16], encoding)
     for pattern in rules.preamble:
-        if not re.search(pattern, text[:_PREAMBLE], re.MULTILINE):
+        if not guarded(pattern).search(text[:_PREAMBLE]):
             return f"nothing in it matches '{pattern}'"
     try:
         raw = find_tables(file, dialect)

@@ -26,7 +26,7 @@ def is_results(head: bytes) -> bool:
     return text.startswith("// Header") and _MODE.search(text) is not None
 
 
-def read_results(path: str | Path) -> xr.Dataset:
+def read_tester_results(path: str | Path) -> xr.Dataset:
     r"""Read the roughness parameters that a Surftest SJ-410 computed itself.
 
     Parameters
@@ -54,7 +54,7 @@ def read_results(path: str | Path) -> xr.Dataset:
     >>> file = pathlib.Path(tempfile.mkdtemp()) / "A1.TXT"
     >>> head = "// Header\nMode;RES\n// Condition-A\nLc;0,8;mm\n// CalcResult\n"
     >>> _ = file.write_text(head + "Ra;3,246;um;;\nRc;Err110;um;;\n")
-    >>> found = read_results(file)
+    >>> found = read_tester_results(file)
     >>> float(found.Ra), found.attrs["lambda_c_m"], found.attrs["instrument_errors"]
     (3.246e-06, 0.0008, 'Rc: Err110')
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import struct
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from tribolab.errors import ReadError, brief
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import split_name
+from tribolab.io.patterns import guarded
 from tribolab.io.pieces import Content, Piece
 from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
@@ -105,7 +105,7 @@ def _steps(
     texts = [
         str(value)
         for key, value in group.properties.items()
-        if marks.labels and re.search(marks.labels, key)
+        if marks.labels and guarded(marks.labels).search(key)
     ]
     notes = {"step_labels": "; ".join(texts)} if texts else {}
     return np.searchsorted(at, time, side="right").astype(float), notes

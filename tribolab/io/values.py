@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from tribolab.errors import ReadError
 from tribolab.io.dialect_model import Dialect, Value
+from tribolab.io.patterns import guarded
 from tribolab.io.pieces import Content, last_match
 from tribolab.quantities import QUANTITIES
 from tribolab.units import conversion
@@ -58,8 +57,7 @@ def step_values(
 
 
 def _first_match(pattern: str, text: str) -> str | None:
-    found = re.search(pattern, text, re.MULTILINE)
-    return found[1].strip() if found and found[1] is not None else None
+    return guarded(pattern).first(text)
 
 
 def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:

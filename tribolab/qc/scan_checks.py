@@ -36,7 +36,7 @@ def check_scans(
     skip
         Names of checks to leave out; they appear as skipped.
     results
-        What `tribolab.io.scan_results.read_results` gave for the instrument's own results.
+        What `tribolab.io.scan_results.read_tester_results` gave for the instrument's own results.
 
     Returns
     -------

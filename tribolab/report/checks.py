@@ -15,7 +15,7 @@ from rich.table import Table
 from tribolab.errors import ConfigError, TribolabError
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.run_checks import check_run
 from tribolab.report.file_info import read_scan
@@ -93,7 +93,7 @@ def check_files(
     for group, kind in kinds.items():
         try:
             if kind == "results":
-                results[group[0]] = read_results(group[0])
+                results[group[0]] = read_tester_results(group[0])
             elif kind == "run":
                 run = read(list(group) if len(group) > 1 else group[0], instrument)
                 checked[group] = Checked(group, check_run(run))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tribolab.campaign.executor import workers
+from tribolab.report import tables
 from tribolab.report.truth import Comparison, compare_with_truth, write_truth
 from tribolab.report.truth_shear_stress import compare_shear_stress, write_truth_shear_stress
 from tribolab.report.truth_surfaces import compare_surfaces, write_truth_surfaces
@@ -83,7 +84,7 @@ def run_demo(
 def _write(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
     """Compare, and write ``truth*.csv`` and ``paper.csv``."""
     runs, surfaces = write_truth(outcome, folder), write_truth_surfaces(outcome, folder)
-    paper.to_csv(_paper_file(outcome), index=False, float_format="%.6g", lineterminator="\n")
+    tables.write(paper, _paper_file(outcome), digits=6)
     stresses = write_truth_shear_stress(outcome, folder)
     return DemoComparison(folder, runs, surfaces, stresses, paper)
 
@@ -93,7 +94,7 @@ def compare(outcome: Outcome, folder: Path) -> DemoComparison:
     from tribolab.studies.comparison import compare_with_paper
 
     there = _paper_file(outcome)
-    paper = pd.read_csv(there) if there.is_file() else compare_with_paper()
+    paper = tables.read(there) if there.is_file() else compare_with_paper()
     runs, surfaces = compare_with_truth(outcome, folder), compare_surfaces(outcome, folder)
     stresses = compare_shear_stress(outcome, folder)
     return DemoComparison(folder, runs, surfaces, stresses, paper)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
     from tribolab.report.run_summary import RunSummary
 
-SCHEMA_VERSION = "1.2"
+SCHEMA_VERSION = "1.3"
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -89,12 +89,15 @@ def verdict(runs: Sequence[dict[str, Any]], rejected_scans: Sequence[str] = ()) 
     rejected = len(done) - len(sound)
     segments = sum(run["segments_found"] for run in done)
     quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
+    kept = sum(bool(run.get("kept")) for run in done)
     status = "incomplete" if done else "nothing"
-    if done and not (failed or rejected or rejected_scans):
+    if done and not (failed or rejected or rejected_scans or kept):
         status = "complete"
     parts = [f"{len(done)} of {many(len(runs), 'run')} done"]
     if failed:
         parts.append(f"{failed} failed")
+    if kept:
+        parts.append(f"{kept} kept from before")
     if rejected:
         parts.append(f"{rejected} rejected by {'its' if rejected == 1 else 'their'} checks")
     if rejected_scans:
@@ -115,6 +118,7 @@ def verdict(runs: Sequence[dict[str, Any]], rejected_scans: Sequence[str] = ()) 
         "done": len(done),
         "failed": failed,
         "rejected": rejected,
+        "kept": kept,
         "reused": sum(run["reused"] for run in runs),
         "segments": segments,
         "ranges": ranges,
@@ -169,6 +173,7 @@ def _run(run: RunOutcome, summary: RunSummary | None) -> dict[str, Any]:
         "files": list(run.files),
         "data_file": run.data_file,
         "reused": run.reused,
+        "kept": run.kept,
         "seconds": run.seconds,
         "segments_found": len(facts["segments"]),
         **facts,

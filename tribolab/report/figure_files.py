@@ -6,6 +6,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.report import tables
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -42,5 +44,5 @@ def save_figure(figure: Figure, folder: Path, file: str, caption: str, alt: str)
     if len(numbers):
         data = str(Path(file).with_suffix(".csv").as_posix())
         # nine digits: more than any eye or figure resolves
-        numbers.to_csv(folder / data, index=False, float_format="%.9g", lineterminator="\n")
+        tables.write(numbers, folder / data, digits=9)
     return {"file": file, "data": data, "caption": caption, "alt": alt}

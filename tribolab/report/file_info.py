@@ -11,7 +11,7 @@ from tribolab.io.companion import describe_companion
 from tribolab.io.dialects import known_dialects, load_dialect
 from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
-from tribolab.io.scan_results import read_results
+from tribolab.io.scan_results import read_tester_results
 from tribolab.io.signature import peek
 from tribolab.qc.register import Count
 from tribolab.quantities import quantity
@@ -87,7 +87,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
 
 def _results_lines(path: Path) -> list[str]:
-    results = read_results(path)
+    results = read_tester_results(path)
     lines = [f"{path}: results of a roughness tester, no profile"]
     for name, values in results.data_vars.items():
         unit = quantity(str(name)).unit

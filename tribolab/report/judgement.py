@@ -92,7 +92,7 @@ def is_bad(run: Mapping[str, Any]) -> bool:
 
 
 def status_word(run: Mapping[str, Any]) -> str:
-    """Return one word: failed, error, fail, suspect or done.
+    """Return one word: failed, error, fail, kept (from before), suspect or done.
 
     Examples
     --------
@@ -101,6 +101,8 @@ def status_word(run: Mapping[str, Any]) -> str:
     """
     if run["status"] != "done":
         return "failed"
+    if run.get("kept") and not is_bad(run):
+        return "kept"
     return run["quality"] if run["quality"] in _GRAVE else "done"
 
 
@@ -115,6 +117,8 @@ def why(run: Mapping[str, Any]) -> str:
     """
     if run["status"] != "done":
         return str(run["reason"] or run["error"])
+    if run.get("kept"):
+        return str(run["kept"])
     grave = [row for row in run["checks"] if row["status"] in _GRAVE]
     if not grave:
         return ""

@@ -247,6 +247,7 @@ def model_record(model: ModelOutcome, rows: ModelRows | None) -> dict[str, Any]:
             "normal_force_N": model.normal_force,
             "data_file": model.data_file,
             "reused": model.reused,
+            "kept": model.kept,
             "seconds": model.seconds,
             "fit": fit,
             "sensitivity": rows.sensitivity if rows else [],

@@ -62,6 +62,7 @@ def write_report(
 
     findings = _notes(outcome.campaign)
     findings += [_failure(run) for run in outcome.runs if not run.done]
+    findings += [_kept(run) for run in outcome.runs if run.kept]
     findings += [_left_out(run) for run in outcome.runs if run.quality in ("fail", "error")]
     # what the others wait for begins first; meanwhile the rows of the tables are read here
     runs = _RunFigures(outcome, executor)
@@ -128,6 +129,10 @@ def _notes(campaign: Campaign) -> list[dict[str, str]]:
 def _failure(run: RunOutcome) -> dict[str, str]:
     reason = run.reason or run.error or "no reason was given"
     return {"severity": "fail", "run": run.name, "where": "run", "message": reason}
+
+
+def _kept(run: RunOutcome) -> dict[str, str]:
+    return {"severity": "fail", "run": run.name, "where": "run", "message": run.kept}
 
 
 def _left_out(run: RunOutcome) -> dict[str, str]:

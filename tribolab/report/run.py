@@ -11,10 +11,11 @@ from pathlib import Path
 from tribolab import __version__
 from tribolab.campaign.config import Campaign, load_campaign
 from tribolab.campaign.executor import workers
+from tribolab.campaign.ledger import Ledger
 from tribolab.campaign.outcome import Outcome
 from tribolab.campaign.pipeline import Progress, process
-from tribolab.campaign.plan import scan_files
-from tribolab.campaign.staging import staged
+from tribolab.campaign.plan import inputs_of, scan_files
+from tribolab.campaign.staging import resolved, staged
 from tribolab.errors import ConfigError
 from tribolab.provenance import sha256_of, sha256_of_file
 
@@ -38,8 +39,9 @@ def run_campaign(
     path_or_campaign
         A campaign file, or what `load_campaign` made of it.
     output
-        Results folder; by default the one that the campaign file names. It is replaced as a
-        whole when everything is written; until then, and if anything goes wrong, it stays.
+        Results folder; by default the one that the campaign file names. What an earlier run
+        wrote there is replaced as a whole when everything is written; until then, and if
+        anything goes wrong, it stays. Other files in it are left there.
     executor
         Any `concurrent.futures.Executor` to work in.
     jobs
@@ -85,7 +87,7 @@ def run_campaign(
     campaign = path_or_campaign
     if not isinstance(campaign, Campaign):
         campaign = load_campaign(campaign)
-    place = Path(campaign.output if output is None else output).resolve()
+    place = resolved(campaign.output if output is None else output)
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
@@ -105,7 +107,7 @@ def run_campaign(
             (folder / FINGERPRINT).write_text(fingerprint, encoding="utf-8")
     except _Unchanged:  # the staged copy is dropped; what is there is the same and complete
         pass
-    return replace(outcome, folder=place)
+    return replace(outcome, folder=place, foreign=tuple(Ledger.read(place).foreign()))
 
 
 class _Unchanged(Exception):  # noqa: N818 - a way out, not an error
@@ -120,6 +122,7 @@ def _fingerprint(outcome: Outcome) -> str:
             "tribolab_version": __version__,
             "campaign": sha256_of_file(campaign.file),
             "sources": outcome.sources,
+            "kept": outcome.kept,
             "scans": [sha256_of_file(path) for path in scan_files(campaign)],
         }
     )
@@ -133,14 +136,20 @@ def _all_reused(outcome: Outcome) -> bool:
 
 def _is_complete(place: Path, fingerprint: str) -> bool:
     made = place / FINGERPRINT
-    there = made.is_file() and (place / "report.html").is_file()
-    return there and made.read_text(encoding="utf-8") == fingerprint
+    return Ledger.read(place).is_whole and made.read_text(encoding="utf-8") == fingerprint
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:
-    raw, file = campaign.raw.resolve(), campaign.file.resolve()
-    if file.is_relative_to(place) or raw.is_relative_to(place) or place.is_relative_to(raw):
+    """Refuse a results folder that holds, or lies in, what the campaign reads."""
+    raw = campaign.raw.resolve()
+    if place.is_relative_to(raw):
         raise ConfigError(
-            f"{place}: results must lie apart from the raw files and the campaign file; choose "
-            "another folder with --output"
+            f"{place}: results must lie apart from the raw files; choose another folder with "
+            "--output"
         )
+    for file, what in [(raw, "the raw files"), *inputs_of(campaign)]:
+        if file.resolve().is_relative_to(place):
+            raise ConfigError(
+                f"{place}: results must lie apart from what they are made from, and {what} "
+                f"({file.name}) would lie in them; choose another folder with --output, or move it"
+            )

@@ -109,6 +109,7 @@ def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[st
         "files": list(surface.files),
         "data_file": surface.data_file,
         "reused": surface.reused,
+        "kept": surface.kept,
         "seconds": surface.seconds,
         "roughness": rows.roughness if rows else None,
         "contact": rows.contact if rows else [],

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
+from tribolab.errors import ReadError, brief
 from tribolab.friction.steadiness import WORDS
 from tribolab.plot.labels import column
 
@@ -130,6 +131,66 @@ def checks_table(checks: Mapping[str, Sequence[Mapping[str, Any]]]) -> pd.DataFr
     return pd.DataFrame(rows, columns=["run", *columns])
 
 
-def write(table: pd.DataFrame, path: Path) -> None:
-    """Write a table as CSV: UTF-8, LF, every float with all its digits."""
-    table.to_csv(path, index=False, encoding="utf-8", lineterminator="\n")
+# What a spreadsheet takes for a formula at the beginning of a cell; and our own sign, so that
+# reading undoes exactly what writing did.
+_ACTIVE = tuple("=+-@\t\r\n'＝＋－＠")
+_SIGN = "'"
+
+
+def harmless(cell: Any) -> Any:
+    r"""Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
+
+    Numbers stay as they are, also those written as text.
+
+    Examples
+    --------
+    >>> harmless("=1+1"), harmless("-3.5e2"), harmless(-3.5), harmless("sb-r")
+    ("'=1+1", '-3.5e2', -3.5, 'sb-r')
+    """
+    if not isinstance(cell, str) or not cell.startswith(_ACTIVE):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"{_SIGN}{cell}"
+    return cell
+
+
+def as_it_was(cell: Any) -> Any:
+    """Undo `harmless`."""
+    return cell[1:] if isinstance(cell, str) and cell.startswith(_SIGN) else cell
+
+
+def write(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
+    """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
+
+    Text that a spreadsheet would compute is made `harmless`; `read` gives it back.
+    """
+    safe = _mapped(table, harmless)
+    float_format = None if digits is None else f"%.{digits}g"
+    safe.to_csv(path, index=False, encoding="utf-8", lineterminator="\n", float_format=float_format)
+
+
+def read(path: Path) -> pd.DataFrame:
+    """Read a table that `write` wrote.
+
+    Raises
+    ------
+    ReadError
+        If it is no table.
+    """
+    try:
+        table = pd.read_csv(path, encoding="utf-8", keep_default_na=False, na_values=[""])
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{path}: no table ({brief(error)})") from error
+    return _mapped(table, as_it_was)
+
+
+def _mapped(table: pd.DataFrame, how: Callable[[Any], Any]) -> pd.DataFrame:
+    """Map the texts of a table and the names of its columns."""
+    done = table.copy()
+    for place, name in enumerate(table.columns):
+        values = table.iloc[:, place]
+        if values.dtype == object or pd.api.types.is_string_dtype(values):
+            done[name] = values.map(how, na_action="ignore")
+    return done.rename(columns=how)

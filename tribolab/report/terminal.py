@@ -130,6 +130,16 @@ def _computed(outcome: Outcome) -> str:
     return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
 
 
+def foreign_lines(outcome: Outcome) -> list[str]:
+    """Name the files in the results folder that are not ours."""
+    if not outcome.foreign:
+        return []
+    names = ", ".join(outcome.foreign[:_HANDFUL])
+    more = len(outcome.foreign) - _HANDFUL
+    names += f" and {more} more" if more > 0 else ""
+    return [f"not written by tribolab and left where they are: {names}"]
+
+
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     from tribolab.report.sliding import condition
@@ -142,6 +152,9 @@ def failure_lines(outcome: Outcome) -> list[str]:
             f"surface {surface.name}: {as_in_campaign(finding.message, '[[surface]]')}"
             for finding in surface.unreadable
         ]
+    failed += [
+        f"{run.name}: {as_in_campaign(run.kept, '[[run]]')}" for run in outcome.runs if run.kept
+    ]
     failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
@@ -190,14 +203,13 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
-    import pandas as pd
-
+    from tribolab.report import tables
     from tribolab.report.model_words import is_described
 
     path = results / "tables" / "shear_stress.csv"
     if not path.is_file():
         return ""
-    fits = pd.read_csv(path)
+    fits = tables.read(path)
     fits = fits[[not is_described(words) for words in fits.judgement]]
     said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
     verb = "is" if len(fits) == 1 else "are"

@@ -11,6 +11,7 @@ import pandas as pd
 
 from tribolab.campaign.outcome import Outcome
 from tribolab.errors import AnalysisError
+from tribolab.report import tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,9 +86,7 @@ def write_truth(outcome: Outcome, folder: str | Path) -> Comparison:
     comparison = compare_with_truth(outcome, folder)
     place = outcome.folder / "tables"
     place.mkdir(exist_ok=True)
-    comparison.table.to_csv(
-        place / "truth.csv", index=False, float_format="%.9g", lineterminator="\n"
-    )
+    tables.write(comparison.table, place / "truth.csv", digits=9)
     return comparison
 
 

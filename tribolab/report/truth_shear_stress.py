@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from tribolab.report import tables
+
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
 
@@ -44,7 +46,7 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         if "shear_stress" in run["law"]
     }
     rows: list[dict[str, Any]] = []
-    for fit in pd.read_csv(path).to_dict("records"):
+    for fit in tables.read(path).to_dict("records"):
         known = true.get((fit["surface"], fit["medium"], fit["normal_force_N"]))
         if known is None:
             continue
@@ -67,5 +69,5 @@ def write_truth_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFra
     """Compare as `compare_shear_stress`, and write ``tables/truth_shear_stress.csv``."""
     table = compare_shear_stress(outcome, folder)
     place = Path(outcome.folder) / "tables" / "truth_shear_stress.csv"
-    table.to_csv(place, index=False, float_format="%.9g", lineterminator="\n")
+    tables.write(table, place, digits=9)
     return table

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from tribolab.report import tables
 from tribolab.report.surface_records import surface_rows
 
 if TYPE_CHECKING:
@@ -88,5 +89,5 @@ def write_truth_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     """Compare as `compare_surfaces`, and write ``tables/truth_surfaces.csv``."""
     table = compare_surfaces(outcome, folder)
     place = outcome.folder / "tables" / "truth_surfaces.csv"
-    table.to_csv(place, index=False, float_format="%.9g", lineterminator="\n")
+    tables.write(table, place, digits=9)
     return table

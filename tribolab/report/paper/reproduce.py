@@ -13,6 +13,7 @@ import pandas as pd
 
 from tribolab.campaign.executor import completed, workers
 from tribolab.campaign.staging import staged
+from tribolab.report import tables
 from tribolab.report.page import framed
 from tribolab.report.paper import laboratory as lab
 from tribolab.report.paper.data import SURFACES, PaperData
@@ -84,9 +85,8 @@ def reproduce(
             data = PaperData(folder, outcome.runs, outcome.curves, fits)
             figures = _drawn(data, pool, tell)
         document = paper_document(table, figures, fits, laboratory, outcome.sources)
-        options = {"index": False, "float_format": "%.6g", "lineterminator": "\n"}
-        table.to_csv(folder / "paper.csv", **options)
-        fits.to_csv(folder / "data" / "shear_stress.csv", **options)
+        tables.write(table, folder / "paper.csv", digits=6)
+        tables.write(fits, folder / "data" / "shear_stress.csv", digits=6)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
         page = framed("paper/page.html.j2", context_of(document), shown_sections(), folder)

@@ -1,0 +1,176 @@
+"""Good results do not go with a raw file that cannot be read for an hour."""
+
+import json
+import re
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pandas as pd
+import pytest
+from campaigns import RUNS, copied, simulated
+from typer.testing import CliRunner
+
+import tribolab
+from tribolab.campaign.config import load_campaign
+from tribolab.campaign.kept import kept_model
+from tribolab.campaign.outcome import ModelOutcome
+from tribolab.campaign.pipeline import process
+from tribolab.cli import app
+from tribolab.errors import ConfigError
+from tribolab.report.run import run_campaign
+
+SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
+
+
+RUNS = (RUNS[0], RUNS[2])  # of a campaign without repeats
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    """A campaign with its results; not to be changed."""
+    file = simulated(tmp_path_factory.mktemp("kept"), repeats=1)
+    run_campaign(file, jobs=1)
+    return file
+
+
+@pytest.fixture
+def campaign(original, tmp_path):
+    return copied(original, tmp_path)
+
+
+def table(campaign, name="friction"):
+    return pd.read_csv(campaign.parent / "results" / "tables" / f"{name}.csv")
+
+
+def first_log(campaign, log="force"):
+    return campaign.parent / f"raw/friction/{RUNS[0]}_{log}.csv"
+
+
+def emptied(path):
+    path.write_bytes(b"")
+
+
+def spoilt(path):
+    path.write_text("Lunch is at noon.\n")
+
+
+def made_a_folder(path):
+    path.unlink()
+    path.mkdir()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("spoil", "log"), [(emptied, "force"), (spoilt, "motion"), (Path.unlink, "motion")]
+)
+def test_the_earlier_result_of_a_run_is_kept_and_says_so(campaign, spoil, log):
+    before, raw = table(campaign), first_log(campaign, log).read_bytes()
+    spoil(first_log(campaign, log))
+    answer = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"])
+    assert answer.exit_code == 3
+    assert re.search(rf"{RUNS[0]}.*kept from 20\d\d-.*cannot be read now", answer.output)
+    after = table(campaign)
+    pd.testing.assert_frame_equal(after, before)
+    report = json.loads((campaign.parent / "results/report.json").read_text("utf-8"))
+    jsonschema.validate(report, json.loads(SCHEMA.read_text("utf-8")))
+    assert [run["name"] for run in report["runs"]] == list(RUNS)
+    assert [bool(run["kept"]) for run in report["runs"]] == [True, False]
+    assert report["verdict"]["kept"] == 1 and report["verdict"]["status"] == "incomplete"
+    assert "kept from" in (campaign.parent / "results/report.html").read_text("utf-8")
+    when = report["runs"][0]["kept"].split(": ")[0]
+    again = run_campaign(campaign, jobs=1)  # still kept, from the same moment
+    assert again.runs[0].kept.split(": ")[0] == when
+    first_log(campaign, log).write_bytes(raw)  # it is there again
+    outcome = run_campaign(campaign, jobs=1)
+    assert not outcome.kept
+    report = json.loads((campaign.parent / "results/report.json").read_text("utf-8"))
+    assert report["verdict"]["status"] == "complete"
+
+
+def test_a_run_is_dropped_when_the_campaign_names_it_no_more(campaign):
+    text = campaign.read_text("utf-8")
+    emptied(first_log(campaign))
+    start, stop = text.index("[[run]]"), text.index("[[run]]", text.index("[[run]]") + 1)
+    campaign.write_text(text[:start] + text[stop:], "utf-8")
+    outcome = run_campaign(campaign, jobs=1)
+    assert RUNS[0] not in [run.name for run in outcome.runs] and not outcome.kept
+
+
+def test_a_raw_file_that_was_renamed_is_not_counted_twice(campaign):
+    for log in ("force", "motion"):
+        path = first_log(campaign, log)
+        path.rename(path.with_name(path.name.replace("_01_", "_07_")))
+    outcome = run_campaign(campaign, jobs=1)
+    assert not outcome.kept and len(outcome.runs) == len(RUNS)
+    assert {run.name for run in outcome.runs} == {RUNS[0].replace("_01", "_07"), *RUNS[1:]}
+
+
+@pytest.mark.slow
+def test_the_spectrum_of_all_scans_is_kept_when_one_cannot_be_read(tmp_path):
+    campaign = simulated(tmp_path, repeats=1, scans=True)
+    [scan] = (campaign.parent / "raw/profiles").iterdir()
+    second = scan.with_name("sb-r_second.csv")
+    second.write_bytes(scan.read_bytes() + b"\n")  # of other content, like every scan
+    read = load_campaign(campaign)
+    before = process(read, tmp_path / "0")
+    content = (tmp_path / "0" / before.surfaces[0].data_file).read_bytes()
+    for number, spoil in enumerate((emptied, Path.unlink)):
+        spoil(second)
+        new = tmp_path / str(number + 1)
+        outcome = process(read, new, previous=tmp_path / str(number))
+        [surface] = outcome.surfaces
+        assert surface.kept.startswith("kept from 20") and "sb-r_second.csv" in surface.kept
+        assert surface.unreadable  # so the exit code is 3
+        assert (new / surface.data_file).read_bytes() == content
+
+
+def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
+    (tmp_path / "old/data").mkdir(parents=True)
+    (tmp_path / "new/data").mkdir(parents=True)
+    (tmp_path / "old/data/model_a.nc").write_bytes(b"")
+    done = ModelOutcome("model_a", "a", "s", "m", 31.0, "done", data_file="data/model_a.nc")
+    died = replace(done, status="failed", error="WorkerDied", reason="out of memory", data_file="")
+    kept = kept_model(died, done, tmp_path / "old", tmp_path / "new")
+    assert kept.done and "out of memory" in kept.kept
+    assert (tmp_path / "new/data/model_a.nc").exists()
+    wrong = replace(died, error="AnalysisError")  # an answer about the data stands
+    assert kept_model(wrong, done, tmp_path / "old", tmp_path / "new") is wrong
+
+
+def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):
+    text = campaign.read_text("utf-8")
+    campaign.write_text(text.replace("trim = 0.10", "min_duration = '9 h'"), "utf-8")
+    outcome = run_campaign(campaign, jobs=1)
+    assert not any(run.kept for run in outcome.runs) and outcome.segments == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        (r"\[\[surface\]\]", '[[surface]]\nscans = "../results/mine"', "a scan"),
+        (r"files = .*", 'files = "../results/mine"', "a raw file"),
+        (r"\[contact\]", '[contact]\nmodulus_file = "../results/mine"', "the modulus file"),
+        (r"instrument = .*", 'instrument = "results/mine.toml"', "a dialect"),
+    ],
+    ids=lambda text: text.split()[-1],
+)
+def test_inputs_inside_the_results_are_refused_before_work_starts(campaign, old, new, what):
+    results = campaign.parent / "results"
+    dialect = Path(tribolab.__file__).parents[1] / "raw_data_schema/instruments/linear_slider.toml"
+    shutil.copy(dialect, results / "mine.toml")
+    shutil.copy(first_log(campaign), results / "mine")
+    campaign.write_text(re.sub(old, new, campaign.read_text("utf-8"), count=1), "utf-8")
+    with pytest.raises(ConfigError, match=rf"{what} \(mine.*--output"):
+        run_campaign(campaign, jobs=1)
+
+
+def test_notes_in_the_results_survive_and_are_named(campaign):
+    note = campaign.parent / "results" / "notes.md"
+    note.write_text("squeal at 1 mm/s")
+    text = campaign.read_text("utf-8")
+    campaign.write_text(text.replace("trim = 0.10", "trim = 0.2"), "utf-8")
+    answer = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1"])
+    assert answer.exit_code == 0 and "left where they are: notes.md" in answer.output
+    assert note.read_text() == "squeal at 1 mm/s"

@@ -1,0 +1,61 @@
+"""The command line in any terminal and pipe, and stopped in any way."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+SAY = [sys.executable, "-c"]
+LONG = "from tribolab.report.streams import prepared\nimport sys\n"
+LONG += "with prepared():\n    [print('line', n) for n in range(100_000)]\nsys.exit(7)"
+
+
+def test_a_reader_that_leaves_changes_nothing_but_what_is_shown():
+    with subprocess.Popen([*SAY, LONG], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout.readline() == b"line 0\n"
+        process.stdout.close()
+        errors = process.stderr.read()
+    assert (process.returncode, errors) == (7, b"")
+
+
+@pytest.mark.parametrize(
+    ("settings", "wanted"),
+    [
+        ({"LC_ALL": "POSIX", "PYTHONUTF8": "0"}, b"0.8 +- 0.1 um \\udcff\n"),
+        ({"PYTHONUTF8": "1"}, "0.8 ± 0.1 µm \\udcff\n".encode()),
+    ],
+)
+def test_every_text_can_be_shown_in_every_terminal(settings, wanted):
+    code = "from tribolab.report.streams import prepared\n"
+    code += "with prepared(): print('0.8 \\xb1 0.1 \\xb5m \\udcff')"
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))} | settings
+    done = subprocess.run([*SAY, code], capture_output=True, env=env, check=True)
+    assert done.stdout == wanted
+
+
+STOPPED = """
+import sys, time
+from tribolab.campaign.staging import staged
+from tribolab.report.streams import Terminated, prepared
+try:
+    with prepared(), staged(sys.argv[1]) as folder:
+        print("working", flush=True)
+        time.sleep(60)
+except Terminated as stop:
+    sys.exit(stop.code)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_being_stopped_tidies_up(tmp_path, number):
+    began = time.monotonic()
+    command = [*SAY, STOPPED, str(tmp_path / "results")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        assert process.stdout.readline() == b"working\n"
+        process.send_signal(number)
+        process.wait(30)
+    assert process.returncode == 128 + number
+    assert list(tmp_path.iterdir()) == [] and time.monotonic() - began < 30

@@ -1,0 +1,107 @@
+"""Regular expressions that other people wrote: they may take their time, but not for ever."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from typing import AnyStr, Generic
+
+import regex
+
+from tribolab.errors import ReadError, shown
+
+LONGEST = 1000  # letters of a pattern
+_SECONDS = 2.0  # that a pattern may take on a little text, and on each _AMOUNT more
+_AMOUNT = 1 << 22
+
+
+class PatternError(ValueError):
+    """A pattern is no regular expression."""
+
+
+class Guarded(Generic[AnyStr]):
+    r"""A regular expression of a dialect, which ends in time or with an error.
+
+    ``(a|aa)+$`` backtracks for longer than anybody lives on the wrong text.
+
+    Parameters
+    ----------
+    pattern
+        As `re` has it, with ``^`` and ``$`` at every line.
+
+    Raises
+    ------
+    PatternError
+        If it is none.
+
+    Examples
+    --------
+    >>> Guarded(r"load (\d+) N").first("at load 31 N")
+    '31'
+    """
+
+    def __init__(self, pattern: AnyStr) -> None:
+        if len(pattern) > LONGEST:
+            raise PatternError(f"it has {len(pattern)} letters, and at most {LONGEST} are taken")
+        self.pattern = pattern
+        try:
+            self._compiled = regex.compile(pattern, regex.MULTILINE)
+        except (regex.error, RecursionError, OverflowError, MemoryError) as error:
+            raise PatternError(str(error)) from error
+
+    @property
+    def groups(self) -> int:
+        """Number of its groups."""
+        return int(self._compiled.groups)
+
+    def search(
+        self, text: AnyStr, start: int = 0, stop: int | None = None
+    ) -> regex.Match[AnyStr] | None:
+        """Return the first match in a text, or None.
+
+        Raises
+        ------
+        ReadError
+            If that takes longer than the text is worth.
+        """
+        stop = len(text) if stop is None else stop
+        try:
+            return self._compiled.search(text, start, stop, timeout=_limit(stop - start))
+        except TimeoutError as error:
+            raise self._endless() from error
+
+    def all(self, text: AnyStr, start: int = 0) -> Iterator[regex.Match[AnyStr]]:
+        """Give the matches in a text, one after the other; errors as in `search`."""
+        limit = _limit(len(text) - start)
+        try:
+            yield from self._compiled.finditer(text, start, timeout=limit)
+        except TimeoutError as error:
+            raise self._endless() from error
+
+    def first(self, text: AnyStr) -> AnyStr | None:
+        """Group 1 of the first match, without blanks around it."""
+        found = self.search(text)
+        return found[1].strip() if found and found[1] is not None else None
+
+    def last(self, text: AnyStr) -> AnyStr | None:
+        """Group 1 of the last match, without blanks around it."""
+        found = None
+        for found in self.all(text):  # noqa: B007 - the last one is wanted
+            pass
+        return found[1].strip() if found and found[1] is not None else None
+
+    def _endless(self) -> ReadError:
+        return ReadError(
+            f"the pattern {shown(self.pattern)} of the dialect takes too long on this file; write "
+            "it without a repeat inside a repeat, such as (a|aa)+"
+        )
+
+
+@functools.lru_cache(maxsize=256)
+def guarded(pattern: str) -> Guarded[str]:
+    """Return a pattern for text, compiled once."""
+    return Guarded(pattern)
+
+
+def _limit(length: int) -> float:
+    return _SECONDS * (1 + max(length, 0) / _AMOUNT)

@@ -1,0 +1,101 @@
+"""Output and signals of the command line: any terminal, any pipe, any way of being stopped."""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import io
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from types import FrameType
+from typing import NoReturn
+
+_PLAIN = str.maketrans(
+    {"–": "-", "−": "-", "±": "+-", "µ": "u", "μ": "u", "×": "x", "…": "...", "’": "'", "·": "*"}
+    | {"²": "2", "³": "3", "η": "eta", "σ": "sigma", "°": " deg ", "≤": "<=", "≥": ">="}
+)
+_ERRORS = "tribolab_plain"
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM or SIGHUP arrived: to be tidied up after as after Ctrl-C."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.code = 128 + number
+
+
+class _Pipe(io.RawIOBase):
+    """A file descriptor for writing; when its reader is gone, the rest goes nowhere.
+
+    So ``| head -1`` changes what is shown, not what is done nor the exit code.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+
+    def writable(self) -> bool:
+        return True
+
+    def fileno(self) -> int:
+        return self._number
+
+    def isatty(self) -> bool:
+        return os.isatty(self._number)
+
+    def write(self, data: object) -> int:
+        view = memoryview(data)  # type: ignore[arg-type]
+        try:
+            return os.write(self._number, view)
+        except BrokenPipeError:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._number)
+            os.close(nowhere)
+            return view.nbytes
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    """Say in ASCII what an encoding does not have; bytes of a file's name stay to be seen."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    text = error.object[error.start : error.end].translate(_PLAIN)
+    return text.encode("ascii", "backslashreplace").decode("ascii"), error.end
+
+
+@contextlib.contextmanager
+def prepared() -> Iterator[None]:
+    """Have standard output and errors take every text, and SIGTERM and SIGHUP clean up.
+
+    Does nothing to streams that somebody else put in place, as tests and notebooks do.
+    """
+    codecs.register_error(_ERRORS, _plain)
+    for name, number in (("stdout", 1), ("stderr", 2)):
+        stream = getattr(sys, name)
+        if stream is getattr(sys, f"__{name}__") and stream is not None:
+            stream.flush()
+            opened = io.TextIOWrapper(
+                io.BufferedWriter(_Pipe(number)),
+                encoding=stream.encoding,
+                errors=_ERRORS,
+                line_buffering=stream.isatty() or number == 2,
+            )
+            setattr(sys, name, opened)
+    before = {}
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP, and means it
+            before[number] = signal.signal(number, _stop)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+
+
+def _stop(number: int, frame: FrameType | None) -> NoReturn:
+    signal.signal(number, signal.SIG_IGN)  # once is enough: tidying up is not to be cut short
+    raise Terminated(number)
