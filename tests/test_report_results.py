@@ -3,6 +3,7 @@
 import base64
 import json
 import math
+import zlib
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
@@ -18,10 +19,11 @@ from reporting import made_curve, made_outcome, made_run, write_groups
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
+from tribolab.report.packed import clock_of, packed_points
 from tribolab.report.results import write_report
 from tribolab.report.run_summary import RunTask, stick_slip_of, summarise_run
 from tribolab.report.tables import checks_table
-from tribolab.report.traces import as_text, flagged_spans, trace
+from tribolab.report.traces import as_text, finer_trace, flagged_spans, trace
 from tribolab.report.wording import plain_value, with_error
 
 SCHEMA = json.loads(
@@ -425,25 +427,71 @@ def test_curves_beyond_nine_go_to_further_figures(tmp_path):
     assert len({figure.file for figure in planned}) == 2
 
 
-def test_traces_for_the_page_are_the_signals_with_every_extreme():
+def unpacked(signal, clock):
+    """The times and values of a signal, as the page reads them."""
+    raw = base64.b64decode(signal["data"])
+    raw = zlib.decompress(raw) if signal["deflated"] else raw
+    planes = np.frombuffer(raw, np.uint8).reshape(-1, signal["points"]).astype(float)
+    width = signal["step_bytes"]
+    steps, levels = (
+        256.0 ** np.arange(len(part)) @ part for part in (planes[:width], planes[width:])
+    )
+    value = signal["low"] + levels / 65534 * (signal["high"] - signal["low"])
+    value = np.where(levels > 65534, np.nan, value)
+    if signal.get("linear_below"):
+        value = signal["linear_below"] * np.sinh(value)
+    return np.interp(np.cumsum(steps), *clock), value
+
+
+@pytest.mark.parametrize("fine", [False, True])
+def test_traces_for_the_page_are_the_signals_with_every_extreme(fine):
     run, segments, friction = made_run(samples=3000)
     run["friction_force"][7000] = 900.0
     packed = trace(run, segments, friction, 2000)
-    assert not packed["complete"] and packed["signals"][0]["points"] < 2200
-    length = float(run.time[-1] - run.time[0])
+    clock = packed["clock"]
+    assert len(clock[0]) < 40, "a knot where the rate of sampling changes"
+    if fine:
+        packed = json.loads(finer_trace(run, segments, friction, 2000, 25_000))
+    assert not packed["complete"] and packed["signals"][0]["points"] < (13_000 if fine else 2200)
+    step = np.diff(run.time.values)
+    within = np.minimum(np.r_[step, step[-1]], np.r_[step[0], step]) / 4 + 1e-5
     for signal, name in zip(packed["signals"], ("ratio", "sliding_velocity"), strict=True):
-        raw, points = base64.b64decode(signal["data"]), signal["points"]
-        share = np.frombuffer(raw, "<u4", points) / (2**32 - 1)
-        level = np.frombuffer(raw, "<u2", points, 4 * points) / 65534
-        value = signal["low"] + level * (signal["high"] - signal["low"])
-        if signal["linear_below"]:
-            value = signal["linear_below"] * np.sinh(value)
+        time, value = unpacked(signal, clock)
+        assert signal["points"] > (2500 if fine else 900)
         true = (run.friction_force / run.normal_force if name == "ratio" else run[name]).values
-        at = np.abs(np.subtract.outer(share * length, run.time.values)).argmin(axis=1)
+        at = np.abs(np.subtract.outer(time, run.time.values)).argmin(axis=1)
+        assert np.all(np.abs(time - run.time.values[at]) <= within[at])
         resolution = np.ptp(true) / 65534 if name == "ratio" else 1e-3 * np.abs(true[at]) + 1e-9
         assert np.all(np.abs(value - true[at]) <= resolution)
         assert value.max() == pytest.approx(true.max(), rel=1e-4)
     assert as_text({"a": "</script>"}) == '{"a":"\\u003c/script>"}'
+
+
+@pytest.mark.parametrize(("jitter", "counted"), [(0.0, True), (0.1, True), (0.9, False)])
+@pytest.mark.parametrize("deflate", [False, True])
+def test_points_with_gaps_pack_into_what_they_were(jitter, counted, deflate):
+    rng = np.random.default_rng(4)
+    time = 1e-3 * (np.arange(40_000) + jitter * rng.uniform(0, 1, 40_000))
+    time[30_000:] += 50.0
+    time -= time[0]
+    value = np.where(np.arange(time.size) % 7 == 3, np.nan, rng.normal(size=time.size))
+    clock = clock_of(time)
+    assert (clock.place[-1] == time.size - 1) == counted
+    few = np.sort(rng.choice(np.arange(1, time.size - 1), 900, replace=False))
+    for pick in (few, np.array([0, time.size - 1]), np.arange(time.size)):
+        packed = packed_points(clock.place[pick], value[pick], deflate=deflate)
+        found = unpacked(packed, (clock.knots, clock.at_s))
+        assert np.abs(found[0] - time[pick]).max() < 0.26e-3
+        np.testing.assert_allclose(found[1], value[pick], atol=1e-4)
+
+
+def test_finer_trace_holds_to_its_size_and_is_left_out_where_it_adds_nothing():
+    run, segments, friction = made_run(samples=3000)
+    sizes = [len(finer_trace(run, segments, friction, 500, size)) for size in (9e5, 3e4, 1.5e4)]
+    assert sizes[0] > 3e4 >= sizes[1] > 1.5e4 >= sizes[2] > 0
+    assert json.loads(finer_trace(run, segments, friction, 500, 9e5))["complete"]
+    assert finer_trace(run, segments, friction, 500, 2000) == ""
+    assert finer_trace(run, segments, friction, run.sizes["time"], 9e5) == ""
 
 
 def test_flagged_spans_say_where_why_and_how_gravely():

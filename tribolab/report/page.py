@@ -21,9 +21,9 @@ from markupsafe import Markup
 from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
 from tribolab.report.model_words import stress_interval
+from tribolab.report.packed import deflated
 from tribolab.report.sections import Section, shown_sections
 from tribolab.report.sliding_figures import traces_stems
-from tribolab.report.traces import as_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
@@ -31,7 +31,7 @@ _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("uplot.min.css", "report.css")
 _SCRIPTS = ("uplot.min.js", "report.js", "files.js", "table.js", "drawing.js", "chart.js")
 _LICENCES = {"uplot.min.js": "uplot.LICENSE"}
-_MOST_INSIDE = 300  # runs whose details the page holds itself; of more it would take long to open
+_MOST_OPEN = 300  # runs whose details are not compressed; with more the page would open slowly
 _FIGURES_BYTES = 5e6  # of the runs' own figures that are put inside the page
 
 
@@ -44,14 +44,14 @@ class PageTrace:
     key
         What the run's own files are called.
     json
-        From `tribolab.report.traces`.
+        From `tribolab.report.traces.trace`.
     fine
-        File with more points, relative to the results folder; "" if there is none.
+        From `tribolab.report.traces.finer_trace`; "" if there is none.
     """
 
     key: str
     json: Markup
-    fine: str = ""
+    fine: Markup = Markup("")
 
 
 def write_page(
@@ -59,8 +59,7 @@ def write_page(
 ) -> Path:
     """Write ``report.html`` into the results folder, with what it shows inside it.
 
-    Of very many runs the details go to files in ``traces/``, which the page opens when they are
-    asked for.
+    Of very many runs the details are compressed, and the page unpacks them when they are asked for.
     """
     path = folder / "report.html"
     path.write_text(render(document, folder, traces), encoding="utf-8")
@@ -85,7 +84,7 @@ def render(
     -------
     str
         HTML. Text from files is escaped, and a content security policy forbids every script but
-        the page's own and those beside it, and every request to elsewhere.
+        the page's own, wherever it lies, and every request.
     """
     surfaces = document.get("surfaces", [])
     context = document | {
@@ -95,7 +94,7 @@ def render(
         "left_out": left_out(document["runs"]),
         "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
     }
-    context["beside"] = _put_beside(_environment(folder), context, folder)
+    context["packed"] = _packed_details(_environment(folder), context)
     return framed("report.html.j2", context, shown_sections(context), folder)
 
 
@@ -126,9 +125,8 @@ def framed(
         scripts=scripts,
         sections=sections,
         policy=(
-            "default-src 'none'; img-src data: 'self' file:; base-uri 'none'; "
-            f"form-action 'none'; style-src '{fingerprint(style)}'; "
-            f"script-src {hashes} 'self' file:"
+            "default-src 'none'; img-src data: 'self' file:; connect-src 'none'; base-uri 'none'; "
+            f"form-action 'none'; style-src '{fingerprint(style)}'; script-src {hashes}"
         ),
     )
 
@@ -144,20 +142,15 @@ def _bytes_of_figures(runs: Sequence[dict[str, Any]], folder: Path) -> int:
     return sum(path.stat().st_size for path in named if not path.stem.endswith("_trace"))
 
 
-def _put_beside(
-    environment: jinja2.Environment, context: dict[str, Any], folder: Path
-) -> dict[str, str]:
-    """Write the details of very many runs to files, and return these by the runs' names."""
-    if len(context["runs"]) <= _MOST_INSIDE:
+def _packed_details(environment: jinja2.Environment, context: dict[str, Any]) -> dict[str, str]:
+    """Return the details of very many runs, compressed, by the runs' names."""
+    if len(context["runs"]) <= _MOST_OPEN:
         return {}
-    (folder / "traces").mkdir(exist_ok=True)
-    template, files = environment.get_template("run.html.j2"), {}
-    for index, run in enumerate(context["runs"], start=1):
-        html = template.render(context, run=run, index=index)
-        files[run["name"]] = file = f"traces/run-{index}.js"
-        call = f"report.receive({as_text(f'run-{index}')}, {as_text(html)});\n"
-        (folder / file).write_text(call, encoding="utf-8")
-    return files
+    template = environment.get_template("run.html.j2")
+    return {
+        run["name"]: deflated(template.render(context, run=run, index=index).encode())
+        for index, run in enumerate(context["runs"], start=1)
+    }
 
 
 def _environment(folder: Path) -> jinja2.Environment:
@@ -185,7 +178,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "status_word": judgement.status_word,
         "why": judgement.why,
         "stem": lambda file: Path(file).stem,
-        "numbers": lambda file: Markup(as_text((folder / file).read_text(encoding="utf-8"))),
+        "numbers": lambda file: deflated((folder / file).read_bytes()),
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }
     environment.globals |= {

@@ -24,7 +24,7 @@ from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
 from tribolab.report.sliding_figures import SlipFigure, draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
-from tribolab.report.traces import trace_points
+from tribolab.report.traces import trace_size
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -112,7 +112,7 @@ def write_report(
     document |= {"sliding_mode": modes, "models": models, **drawn}
     write_json(document, folder / "report.json")
     traces = {
-        name: PageTrace(summary.key, Markup(summary.trace), summary.fine)
+        name: PageTrace(summary.key, Markup(summary.trace), Markup(summary.fine))
         for name, summary in summaries.items()
         if summary.trace
     }
@@ -149,8 +149,8 @@ class _RunFigures:
 
     def __init__(self, outcome: Outcome, executor: Executor | None) -> None:
         done = [run for run in outcome.runs if run.done]
-        points, fine = trace_points(len(done))
-        tasks = [RunTask(run, Path(outcome.folder), points, fine) for run in done]
+        points, fine_size = trace_size(len(done))
+        tasks = [RunTask(run, Path(outcome.folder), points, fine_size) for run in done]
         self.names = [run.name for run in done]
         self.work = completed(executor, summarise_run, tasks)
 

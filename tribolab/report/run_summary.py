@@ -15,7 +15,7 @@ from tribolab.friction.segments import why_no_segment
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
-from tribolab.report.traces import as_text, flagged_spans, trace
+from tribolab.report.traces import as_text, finer_trace, flagged_spans, trace
 from tribolab.report.wording import (
     SPREAD_OF,
     SYMBOLS,
@@ -40,15 +40,16 @@ _SPEED_TOLERANCE = 0.1
 
 @dataclass(frozen=True)
 class RunTask:
-    """A run to describe, the folder of the results, and how many points its traces may have.
+    """A run to describe, the folder of the results, and what its traces may have.
 
-    `points` go into the page, `fine_points` into a file beside it, from which the page zooms.
+    `points` of each signal are shown at once; the finer trace, into which the page zooms, may
+    have `fine_size` characters.
     """
 
     run: RunOutcome
     folder: Path
     points: int = 4000
-    fine_points: int = 0
+    fine_size: int = 0
 
     @property
     def key(self) -> str:
@@ -66,7 +67,7 @@ class RunSummary:
     findings: tuple[dict[str, str], ...]
     key: str = ""
     trace: str = ""  # for the page, as JSON
-    fine: str = ""  # file with more points, relative to the results
+    fine: str = ""  # with more points, as JSON
 
 
 def summarise_run(task: RunTask) -> RunSummary:
@@ -358,23 +359,16 @@ def _traces(
     friction: xr.Dataset,
     findings: list[dict[str, str]],
 ) -> tuple[str, str]:
-    """Return the trace for the page, and the file that a finer one was written to, if any."""
+    """Return the trace for the page, and a finer one to zoom into, if any."""
     try:
-        coarse = trace(run, segments, friction, task.points)
-        if coarse["complete"] or task.fine_points <= task.points:
-            return as_text(coarse), ""
-        file = f"traces/{task.key}.js"
-        (task.folder / "traces").mkdir(exist_ok=True)
-        finer = as_text(trace(run, segments, friction, task.fine_points))
-        call = f"report.receive({as_text(task.key)}, {finer});\n"
-        (task.folder / file).write_text(call, encoding="utf-8")
+        coarse = as_text(trace(run, segments, friction, task.points))
+        return coarse, finer_trace(run, segments, friction, task.points, task.fine_size)
     except AnalysisError as error:  # recorded, as above
         text = f"no trace to show: {error}"
         findings.append(
             {"severity": "error", "run": task.run.name, "where": "trace", "message": text}
         )
         return "", ""
-    return as_text(coarse), file
 
 
 _TRACE = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -13,32 +12,37 @@ from tribolab.plot.reduce import envelope_index
 from tribolab.plot.signals import main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
+from tribolab.report.packed import Clock, clock_of, packed_points
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
-_LAST = 2**32 - 1  # a time of the trace, as a share of its length
-_TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _MOST_SPANS = 400
-_SIGNAL_BYTES = 2 * 8  # of a point of two signals: six bytes each, as text eight
-_PAGE_BYTES, _FILES_BYTES = 6e6, 100e6
+_FINEST = 24_000  # points of a signal that the page zooms into
+_SIGNAL_BYTES = 2 * 16 / 3  # of a point of two signals: four bytes each, as text a third more
+_COARSE_BYTES, _FINE_BYTES = 3e6, 6e6  # of all runs together
 
 
-def trace_points(runs: int) -> tuple[int, int]:
-    """Return how many points a signal may have in the page and in the file beside it.
+def trace_size(runs: int) -> tuple[int, int]:
+    """Return how many points a signal of a run has at once, and how long its finer trace may be.
 
-    The page of many runs shall stay one that can be sent, and all traces beside it a tenth of a
-    gigabyte.
+    The page of many runs shall stay one that can be sent.
+
+    Returns
+    -------
+    points
+        Of each signal, to be shown when a run is opened.
+    size
+        Of the finer trace, in characters of the page.
 
     Examples
     --------
-    >>> trace_points(5), trace_points(200), trace_points(2000)
-    ((4000, 24000), (1875, 24000), (1000, 3125))
+    >>> trace_size(5), trace_size(200), trace_size(2000)
+    ((2000, 1200000), (1406, 30000), (500, 3000))
     """
-    points = _PAGE_BYTES // (_SIGNAL_BYTES * max(runs, 1))
-    fine = _FILES_BYTES // (_SIGNAL_BYTES * max(runs, 1))
-    return int(np.clip(points, 1000, 4000)), int(min(fine, 24_000))
+    points = _COARSE_BYTES / (_SIGNAL_BYTES * max(runs, 1))
+    return int(np.clip(points, 500, 2000)), int(_FINE_BYTES // max(runs, 1))
 
 
 def trace(
@@ -66,6 +70,61 @@ def trace(
         If the run has neither a friction force nor a friction coefficient.
     """
     time = np.asarray(run["time"], float)
+    clock = clock_of(time)
+    return {
+        "length_s": float(time[-1] - time[0]) if time.size else 0.0,
+        "samples": int(time.size),
+        "clock": [clock.knots, clock.at_s],
+        **_signals(run, segments, friction, clock, points, deflate=False),
+        "segments": _segments(segments, friction, main_signal(run, friction).name),
+        "flags": flagged_spans(run),
+    }
+
+
+def finer_trace(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    size: int,
+) -> str:
+    """Return the signals of a run with as many points as fit, for the page to zoom into.
+
+    Parameters
+    ----------
+    run, segments, friction
+        As for `trace`.
+    points
+        What the trace has that the page shows at once: with no more there is nothing to zoom into.
+    size
+        Length of the text [characters]; the points are halved until it is met.
+
+    Returns
+    -------
+    str
+        ``complete`` and ``signals`` as of `trace`, compressed, as JSON that may stand in a script
+        element; "" if that trace is complete or no finer one fits.
+    """
+    clock = clock_of(np.asarray(run["time"], float))
+    finer = _FINEST if run.sizes["time"] > points else 0
+    while finer > points:
+        text = as_text(_signals(run, segments, friction, clock, finer, deflate=True))
+        if len(text) <= size:
+            return text
+        finer //= 2
+    return ""
+
+
+def _signals(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    clock: Clock,
+    points: int,
+    *,
+    deflate: bool,
+) -> dict[str, Any]:
+    time = np.asarray(run["time"], float)
     bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
     main = main_signal(run, friction)
     signals = [(main.name, main.values)]
@@ -86,16 +145,12 @@ def trace(
                 "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
-                **_packed(time[chosen], levels[chosen], time),
+                **packed_points(clock.place[chosen], levels[chosen], deflate=deflate),
             }
         )
     return {
-        "length_s": float(time[-1] - time[0]) if time.size else 0.0,
-        "samples": int(time.size),
         "complete": all(signal["points"] == time.size for signal in packed),
         "signals": packed,
-        "segments": _segments(segments, friction, main.name),
-        "flags": flagged_spans(run),
     }
 
 
@@ -110,23 +165,6 @@ def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: in
         if b - a > 1:
             parts.append(a + envelope_index(time[a:b], values[a:b], columns))
     return np.unique(np.concatenate([*parts, [0, time.size - 1]]))
-
-
-def _packed(x: np.ndarray, y: np.ndarray, time: np.ndarray) -> dict[str, Any]:
-    """Pack points: times as shares of the record in 32 bits, values as shares of their range."""
-    finite = y[np.isfinite(y)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
-    length, span = time[-1] - time[0], high - low
-    share = (x - time[0]) / length if length > 0 else np.zeros(x.size)
-    level = (y - low) / span if span > 0 else np.zeros(y.size)
-    level = np.where(np.isfinite(y), np.round(np.nan_to_num(level) * _TOP), _TOP + 1)
-    raw = np.round(share * _LAST).astype("<u4").tobytes() + level.astype("<u2").tobytes()
-    return {
-        "points": int(x.size),
-        "low": low,
-        "high": high,
-        "data": base64.b64encode(raw).decode(),
-    }
 
 
 def _slowest(segments: xr.Dataset) -> float | None:

@@ -1,7 +1,7 @@
 "use strict";
 // The traces of a run: drawn by uPlot, zoomed and panned by mouse, keys and buttons.
 (() => {
-  const LAST = 2 ** 32 - 1, TOP = 65534; // as report/traces.py packs them
+  const TOP = 65534; // as report/packed.py has it
   const LIGHT = {
     ink: "#1c2126", grid: "#d8dee4", mean: "#c00000", suspect: "#b07500", fail: "#a8201a",
     forward: "58, 58, 58", backward: "230, 159, 0", unknown: "86, 180, 233",
@@ -21,16 +21,21 @@
     return dark && !printing ? DARK : LIGHT;
   }
 
-  function decode(signal, length) {
-    const bytes = Uint8Array.from(atob(signal.data), (c) => c.charCodeAt(0));
-    const times = new Uint32Array(bytes.buffer, 0, signal.points);
-    const levels = new Uint16Array(bytes.buffer, 4 * signal.points, signal.points);
-    const step = (signal.high - signal.low) / TOP;
+  // Bytes of one kind stand side by side: the lowest of all steps, the next ones, then those of the values.
+  function decode(bytes, signal, [knots, at]) {
+    const { points, step_bytes: width } = signal;
+    const share = (signal.high - signal.low) / TOP;
     const value = signal.linear_below === null ? (level) => level : (level) => signal.linear_below * Math.sinh(level);
-    return [
-      Array.from(times, (t) => (t / LAST) * length),
-      Array.from(levels, (v) => (v > TOP ? null : value(signal.low + v * step))),
-    ];
+    const times = new Array(points), values = new Array(points);
+    for (let k = 0, place = 0, part = 0; k < points; k++) {
+      for (let b = 0; b < width; b++) place += bytes[b * points + k] * 256 ** b;
+      while (part < knots.length - 2 && place > knots[part + 1]) part++;
+      const pace = (at[part + 1] - at[part]) / (knots[part + 1] - knots[part]);
+      times[k] = place === knots[part] ? at[part] : at[part] + (place - knots[part]) * pace;
+      const level = bytes[width * points + k] + 256 * bytes[(width + 1) * points + k];
+      values[k] = level > TOP ? null : value(signal.low + level * share);
+    }
+    return [times, values];
   }
 
   // Speeds span decades in both directions, so their axis is linear only near zero.
@@ -55,12 +60,12 @@
       this.figure = figure;
       this.place = figure.querySelector(".plot");
       this.data = JSON.parse(figure.querySelector("script").textContent);
+      this.finer = figure.querySelector("script.finer");
       this.level = this.data; // what is drawn: this, or the finer one once it is there
       this.range = [0, this.data.length_s];
-      this.asked = false;
       this.state = figure.querySelector(".state");
       this.readout = figure.querySelector(".readout");
-      this.drawn = this.data.signals.map((signal) => decode(signal, this.data.length_s));
+      this.drawn = this.data.signals.map((signal) => decode(report.bytes(signal.data), signal, this.data.clock));
       this.build();
       this.listen();
       this.tell();
@@ -158,7 +163,7 @@
       ctx.restore();
     }
 
-    // One of the plots was zoomed: the others follow, and a finer trace is fetched if need be.
+    // One of the plots was zoomed: the others follow, and the finer trace is unpacked if need be.
     follow(u) {
       const { min, max } = u.scales.x;
       if (this.moving || min === null || (min === this.range[0] && max === this.range[1])) return;
@@ -173,7 +178,7 @@
       this.moving = true;
       for (const plot of this.plots) plot.batch(() => plot.setScale("x", { min: start, max: start + span }));
       this.moving = false;
-      if (span < 0.4 * whole && this.figure.dataset.fine && !this.asked) this.fetch();
+      if (span < 0.4 * whole && this.finer) this.refine();
       this.tell();
     }
 
@@ -187,26 +192,26 @@
       this.show(low + by, high + by);
     }
 
-    fetch() {
-      this.asked = true;
-      report.load(this.figure.dataset.fine, this.figure.dataset.key, (finer) => {
-        if (!finer) {
-          this.missing = true;
-        } else {
-          this.level = finer;
-          this.drawn = finer.signals.map((signal) => decode(signal, finer.length_s));
-          this.plots.forEach((plot, row) => plot.setData(this.drawn[row], false));
-          this.show(...this.range);
-        }
-        this.tell();
-      });
+    async refine() {
+      const finer = JSON.parse(this.finer.textContent);
+      this.finer = null; // once is enough
+      const unpacking = finer.signals.map((signal) => report.unpacked(signal.data));
+      const bytes = await Promise.all(unpacking).catch(() => null);
+      if (bytes === null) {
+        this.missing = true;
+        return this.tell();
+      }
+      this.level = finer;
+      this.drawn = finer.signals.map((signal, row) => decode(bytes[row], signal, this.data.clock));
+      this.plots.forEach((plot, row) => plot.setData(this.drawn[row], false));
+      this.show(...this.range);
     }
 
     tell() {
       const [low, high] = this.range;
       const points = this.level.signals[0].points;
       const part = this.level.complete ? `all ${this.data.samples} samples` : `${points} of ${this.data.samples} samples, extremes kept`;
-      const lost = this.missing ? `; the finer trace in ${this.figure.dataset.fine} is not beside this page` : "";
+      const lost = this.missing ? "; this browser cannot unpack the finer trace" : "";
       this.state.textContent = `${plain(low)} s to ${plain(high)} s of ${plain(this.data.length_s)} s; ${part}${lost}`;
     }
 

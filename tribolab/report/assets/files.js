@@ -1,55 +1,48 @@
 "use strict";
-// Files beside the page, and files that the page hands out. No request leaves the folder.
+// What is packed inside the page, and files that the page hands out. No request leaves it.
 {
-  const waiting = new Map();
+  report.bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
-  // A page opened from disk may not fetch, but it may load a script; each calls `report.receive`.
-  report.load = (file, key, then) => {
-    const script = document.createElement("script");
-    waiting.set(key, then);
-    script.addEventListener("error", () => report.receive(key, null));
-    script.src = file;
-    document.head.append(script);
+  // Fails where the browser has no DecompressionStream (those of before 2023).
+  report.unpacked = async (text) => {
+    const packed = new Blob([report.bytes(text)]).stream();
+    return new Uint8Array(await new Response(packed.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
   };
 
-  report.receive = (key, what) => {
-    const then = waiting.get(key);
-    waiting.delete(key);
-    then?.(what);
-  };
-
-  report.save = (name, type, text) => {
+  report.save = (name, type, content) => {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], { type: `${type};charset=utf-8` }));
+    link.href = URL.createObjectURL(new Blob([content], { type: `${type};charset=utf-8` }));
     link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
   };
 
   // Figures are inside the page: their copies are made from it, so they are there without the folder.
-  document.addEventListener("click", (event) => {
+  document.addEventListener("click", async (event) => {
     const link = event.target.closest?.("a[data-copy]");
     if (!link) return;
     const figure = link.closest("figure"), name = link.getAttribute("href").split("/").pop();
     const image = figure.querySelector("img"), numbers = figure.querySelector("script");
     const svg = link.dataset.copy === "svg" && image?.src.startsWith("data:");
-    if (!svg && !(link.dataset.copy === "csv" && numbers)) return; // then the link leads to the file
+    const csv = link.dataset.copy === "csv" && numbers && typeof DecompressionStream !== "undefined";
+    if (!svg && !csv) return; // then the link leads to the file
     event.preventDefault();
     if (svg) report.save(name, "image/svg+xml", decodeURIComponent(image.src.slice(image.src.indexOf(",") + 1)));
-    else report.save(name, "text/csv", JSON.parse(numbers.textContent));
+    else report.save(name, "text/csv", await report.unpacked(numbers.textContent));
   });
 
-  // Of very many runs the page has only the table; what stands under a run comes when it is opened.
-  report.opened.push((details) => {
-    const { file } = details.dataset;
-    if (!file) return;
-    delete details.dataset.file;
-    report.load(file, details.id, (text) => {
-      const place = document.createElement("div");
-      place.innerHTML = text ?? "";
-      if (text === null) place.textContent = `${file} is not beside this page.`;
-      details.append(place);
-      report.open(details);
-    });
+  // Of very many runs the page shows only the table; what stands under a run is unpacked when it is opened.
+  report.opened.push(async (details) => {
+    const packed = details.querySelector(":scope > script.packed");
+    if (!packed) return;
+    packed.remove();
+    const place = document.createElement("div");
+    try {
+      place.innerHTML = new TextDecoder().decode(await report.unpacked(packed.textContent));
+    } catch {
+      place.textContent = "This browser cannot unpack the details of a run; their numbers are in report.json and tables/.";
+    }
+    details.append(place);
+    if (details.open) report.open(details);
   });
 }

@@ -1,0 +1,148 @@
+"""Points of a signal, and longer texts, packed small enough to stand inside the page."""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+_TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
+_WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept
+_MOST_KNOTS = 1000
+_FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of a clock without any order
+
+
+def deflated(raw: bytes) -> str:
+    """Return bytes compressed (zlib) and as text (base64), which can end no script element.
+
+    Examples
+    --------
+    >>> import zlib
+    >>> zlib.decompress(base64.b64decode(deflated(b"</script>" * 1000))) == b"</script>" * 1000
+    True
+    """
+    return base64.b64encode(zlib.compress(raw, 9)).decode()
+
+
+@dataclass(frozen=True)
+class Clock:
+    """When the samples of a record were taken, in small numbers.
+
+    Parameters
+    ----------
+    place
+        Of every sample (time): whole numbers that rise.
+    knots
+        Some places, the first and the last among them.
+    at_s
+        When these are [s] since the first sample; in between the clock goes evenly.
+    """
+
+    place: np.ndarray
+    knots: list[int]
+    at_s: list[float]
+
+
+def clock_of(time: np.ndarray) -> Clock:
+    """Return a clock that keeps every time to a quarter of the distance to the next sample.
+
+    Parameters
+    ----------
+    time
+        Of all samples [s] (time), rising.
+
+    Returns
+    -------
+    Clock
+        Its places are the samples' numbers, with knots where the rate of sampling changes. A clock
+        with too many of these counts ticks instead, sixteen in its shortest steps.
+
+    Examples
+    --------
+    >>> clock_of(np.r_[np.arange(100) * 1e-3, 0.1 + np.arange(11)]).knots
+    [0, 100, 110]
+    >>> clock_of(np.array([0.0, 0.0, 1.0, 5.0])).place.tolist()
+    [0, 0, 16, 80]
+    """
+    since = time - time[0] if time.size else time
+    length = float(since[-1]) if time.size else 0.0
+    steps = np.diff(since)
+    if length > 0 and not (steps > 0).all():
+        knots = None
+    else:
+        knots = _knots(since, np.minimum(np.r_[steps, np.inf], np.r_[np.inf, steps]) * _WITHIN)
+    if knots is not None:
+        return Clock(np.arange(time.size), knots, [float(f"{since[k]:.9g}") for k in knots])
+    short = np.percentile(steps[steps > 0], 1, method="lower")
+    ticks = int(min(np.ceil(_FINER * length / short), _MOST_TICKS))
+    return Clock(np.round(since / length * ticks).astype(np.int64), [0, ticks], [0.0, length])
+
+
+def _knots(since: np.ndarray, within: np.ndarray) -> list[int] | None:
+    """Return samples between which all others are even, by halving where they are least so.
+
+    After D. H. Douglas and T. K. Peucker, Cartographica 10, 112 (1973).
+    """
+    found = {0, max(since.size - 1, 0)}
+    parts = [(0, since.size - 1)]
+    while parts:
+        a, b = parts.pop()
+        if b - a < 2:
+            continue
+        even = since[a] + (since[b] - since[a]) / (b - a) * np.arange(b - a + 1)
+        off = np.abs(since[a : b + 1] - even)[1:-1] / within[a + 1 : b]
+        if off.max() <= 1:
+            continue
+        worst = a + 1 + int(off.argmax())
+        found.add(worst)
+        if len(found) > _MOST_KNOTS:
+            return None
+        parts += [(a, worst), (worst, b)]
+    return sorted(found)
+
+
+def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> dict[str, Any]:
+    """Pack points: when as steps from place to place, values as shares of their range in 16 bits.
+
+    Parameters
+    ----------
+    place
+        Of the points on the record's `Clock` (point).
+    value
+        In any unit (point).
+    deflate
+        Compress; what a page shows at once is left as it is, for browsers that cannot unpack it.
+
+    Returns
+    -------
+    dict
+        Ready for JSON: ``points``, ``low`` and ``high`` of the values, ``step_bytes``,
+        ``deflated``, and ``data``: the lowest bytes of all steps, the next bytes of all of them
+        and so on, then likewise the two bytes of the values, as base64.
+
+    Notes
+    -----
+    Bytes of one kind side by side compress best.
+    """
+    finite = value[np.isfinite(value)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+    level = (value - low) / (high - low) if high > low else np.zeros(value.size)
+    level = np.where(np.isfinite(value), np.round(np.nan_to_num(level) * _TOP), _TOP + 1)
+    steps = np.diff(place, prepend=0)
+    step_bytes = 2 if steps.max(initial=0) < 2**16 else 4
+    raw = _planes(steps, step_bytes) + _planes(level, 2)
+    return {
+        "points": int(value.size),
+        "low": low,
+        "high": high,
+        "step_bytes": step_bytes,
+        "deflated": deflate,
+        "data": deflated(raw) if deflate else base64.b64encode(raw).decode(),
+    }
+
+
+def _planes(whole: np.ndarray, width: int) -> bytes:
+    return whole.astype(f"<u{width}").view(np.uint8).reshape(-1, width).T.tobytes()
