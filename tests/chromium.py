@@ -61,12 +61,13 @@ class Browser:
         self._devtools.close()
 
     @contextlib.contextmanager
-    def page(self, address, width=1400, height=900, dark=False):
-        """Open an address; afterwards the tab is closed."""
+    def page(self, address, width=1400, height=900, dark=False, before=""):
+        """Open an address, a script run before any of its own; afterwards the tab is closed."""
         target = self._devtools.call("Target.createTarget", url="about:blank")["targetId"]
         tab = _Devtools(f"ws://127.0.0.1:{self._port[0]}/devtools/page/{target}")
         try:
             page = Page(tab, width, height, dark)
+            page.before(before)
             page.go(address)
             yield page
         finally:
@@ -81,6 +82,11 @@ class Page:
         self._tab = tab
         for domain in ("Page", "Runtime", "Log", "Network"):
             tab.call(f"{domain}.enable")
+        # a policy that stops something says so in the page too, whatever reaches the console
+        self.before(
+            "window.stopped = []; document.addEventListener('securitypolicyviolation',"
+            "(event) => stopped.push(event.violatedDirective + ' ' + event.blockedURI))"
+        )
         tab.call(
             "Emulation.setDeviceMetricsOverride",
             width=width,
@@ -96,6 +102,10 @@ class Page:
         url = address if "://" in str(address) else Path(address).as_uri()
         self._tab.call("Page.navigate", url=url)
         self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
+
+    def before(self, script):
+        """Run a script in every page that is opened from now on, before any of its own."""
+        self._tab.call("Page.addScriptToEvaluateOnNewDocument", source=script)
 
     def run(self, script):
         """Return the value of an expression, awaited if it is a promise."""
@@ -168,13 +178,24 @@ class Page:
         return said
 
     @property
+    def stopped(self):
+        """What the content security policy stopped: the directive and the address."""
+        return self.run("stopped")
+
+    @property
     def requests(self):
-        """The addresses that were asked for, data addresses aside."""
+        """The addresses that were asked for, of files too; data and what was stopped aside."""
         self.run("0")
+        told = [(event["method"], event["params"]) for event in self._tab.events]
+        stopped = {
+            what["requestId"]
+            for method, what in told
+            if method == "Network.loadingFailed" and what.get("blockedReason") == "csp"
+        }
         urls = [
-            event["params"]["request"]["url"]
-            for event in self._tab.events
-            if event["method"] == "Network.requestWillBeSent"
+            what["request"]["url"]
+            for method, what in told
+            if method == "Network.requestWillBeSent" and what["requestId"] not in stopped
         ]
         return [url for url in urls if not url.startswith("data:")]
 

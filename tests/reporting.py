@@ -140,7 +140,9 @@ files = "*.csv"
 """
 
 
-def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS, samples=400):
+def made_outcome(
+    folder, runs, name="A made campaign", failed=(), speeds=SPEEDS, samples=400, note=None
+):
     """Write data files of made runs and return their outcome.
 
     `runs` has (name, surface, medium, load, mu) of each run, `failed` (name, reason).
@@ -185,7 +187,7 @@ def made_outcome(folder, runs, name="A made campaign", failed=(), speeds=SPEEDS,
         write_netcdf(curve, results / data_file)
         names = tuple(member for member, _ in members)
         curves.append(CurveOutcome(f"curve{number}", surface, medium, load, data_file, names))
-    campaign = Campaign(campaign={"name": name}, run=[{"files": "*.csv"}])
+    campaign = Campaign(campaign={"name": name, "note": note}, run=[{"files": "*.csv"}])
     campaign._file = campaign_file
     return Outcome(
         campaign=campaign,

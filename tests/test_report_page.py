@@ -3,13 +3,17 @@
 import json
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from chromium import BROWSER, chromium
-from report_pages import FLAGGED, LONG, Reader, made, page_of
-from reporting import made_outcome
+from report_pages import FLAGGED, LONG, RUNS, Reader, made, page_of
+from reporting import made_outcome, made_run, write_groups
 
+from tribolab.qc.flags import attach
 from tribolab.report import page as page_module
 from tribolab.report.page import data_address
 from tribolab.report.results import write_report
@@ -41,11 +45,31 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
+    """Every text that comes from a file: names, notes, messages, columns, reasons."""
     runs = [(HOSTILE[1], HOSTILE[2], HOSTILE[0], 31.0, 0.8)]
     failed = [(HOSTILE[3], HOSTILE[1])]
     folder = tmp_path_factory.mktemp("hostile")
-    outcome = made_outcome(folder, runs, HOSTILE[0], failed, speeds=[1e-3], samples=50)
-    write_report(outcome)
+    outcome = made_outcome(folder, runs, HOSTILE[0], failed, [1e-3], 50, note=HOSTILE[1])
+    run, segments, friction = made_run([1e-3], samples=50)
+    words = dict.fromkeys(("check", "variable", "message", "cure", "unit"), HOSTILE[3])
+    run = attach(run, "friction_force", {"spikes": np.full(run.sizes["time"], 3)}, {"spikes": 14})
+    run.attrs |= {
+        "instrument": HOSTILE[3],
+        "recorded_at": HOSTILE[0],
+        "clock_shift_s": 0.1,
+        "clock_shift_source": HOSTILE[1],
+        "columns_not_used": "; ".join(HOSTILE),
+        "quality": "suspect",
+        "findings": [words | {"status": "suspect", "value": 1.0}],
+    }
+    segments["omitted_reason"] = ("omitted", np.array(HOSTILE[:3], dtype=object))
+    friction.attrs |= {"offset": HOSTILE[3], "velocity_source": HOSTILE[1]}
+    file = outcome.folder / outcome.runs[0].data_file
+    file.unlink()
+    write_groups(file, run, segments, friction)
+    changed = replace(outcome.runs[0], files=tuple(HOSTILE), kept=HOSTILE[0])
+    sources = tuple((name, "", 0) for name in HOSTILE)
+    write_report(replace(outcome, runs=(changed, outcome.runs[1]), sources=sources))
     return outcome.folder
 
 
@@ -69,7 +93,7 @@ def test_page_opens_without_a_word_and_asks_nothing_of_the_network(browser, resu
     with browser.page(address) as page:
         page.run("document.querySelectorAll('details').forEach(one => { one.open = true })")
         page.wait("document.querySelectorAll('.plot canvas').length === 6")
-        assert page.console == []
+        assert page.console == page.stopped == []
         assert page.requests == [address]
         assert "3 of 4 runs done; 1 failed" in page.run("document.body.textContent")
         widths = page.run(
@@ -105,6 +129,15 @@ def test_nothing_in_a_name_runs(browser, hostile, tmp_path):
             assert page.run("document.querySelectorAll('[onerror],[onload]').length") == 0
             running = "Array.from(document.scripts).filter(s => !s.type).length"
             assert page.run(running) == len(page_module._SCRIPTS)
+            assert page.run("document.querySelectorAll('style, link').length") == 1 + 1
+            assert page.stopped == []
+            # opened by themselves the figures are documents, whose scripts a browser would run
+            images = "Array.from(document.images, i => { i.loading = 'eager'; return i.decode() })"
+            page.run(f"Promise.all({images}).then(() => 0)")
+    for figure in (hostile / "figures").glob("*.svg"):
+        for element in ElementTree.parse(figure).iter():
+            assert not str(element.tag).endswith(("script", "}a", "foreignObject"))
+            assert not [name for name in element.attrib if name.lower().startswith("on")]
 
 
 @pytest.mark.slow
@@ -233,19 +266,68 @@ def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
         assert page.console == []
 
 
+@pytest.fixture
+def alone(results, tmp_path):
+    """The page as it is sent: one file in a folder of its own."""
+    file = tmp_path / "sent" / "report.html"
+    file.parent.mkdir()
+    file.write_text(page_of(results), encoding="utf-8")
+    return file
+
+
 @pytest.mark.slow
-def test_zooming_loads_the_finer_trace_from_beside_the_page(browser, results, tmp_path):
+def test_the_page_sent_alone_zooms_into_the_finer_trace(browser, alone):
     number = LONG[0] + 1
     state = f"document.querySelector('#run-{number} .state').textContent"
-    alone = tmp_path / "alone.html"
-    alone.write_text(page_of(results), encoding="utf-8")
-    for path, word in ((results / "report.html", "all 10100 samples"), (alone, "not beside")):
-        with browser.page(f"{path.as_uri()}#run-{number}") as page:
-            page.wait(f"document.querySelector('#run-{number} .plot canvas') !== null")
-            assert "extremes kept" in page.run(state)
-            for _ in range(2):
-                page.click(f"#run-{number} [data-act=in]")
-            page.wait(f"{state}.includes({json.dumps(word)})")
+    with browser.page(f"{alone.as_uri()}#run-{number}") as page:
+        page.wait(f"document.querySelector('#run-{number} .plot canvas') !== null")
+        assert "extremes kept" in page.run(state)
+        page.run("window.saved = []; report.save = (...file) => saved.push(file)")
+        for _ in range(2):
+            page.click(f"#run-{number} [data-act=in]")
+        page.wait(f"{state}.includes('all 10100 samples')")
+        page.click(f"#run-{number} [data-act=csv]")
+        rows = page.run("saved[0][2]").splitlines()[1:]
+        assert page.requests == [alone.as_uri()] and page.console == page.stopped == []
+        low, high = span_of(page, number)
+    # what is drawn is what was measured
+    index, samples = LONG
+    _, _, _, load, mu = RUNS[index]
+    run, _, _ = made_run([1e-3, 1e-2], load, mu, seed=9, samples=samples)
+    shown = np.array([row.split(",")[2:] for row in rows if row.startswith("friction_")], float)
+    time = run.time.values
+    inside = (time >= low) & (time <= high)
+    assert abs(len(shown) - inside.sum()) <= 2 and len(shown) > 2000
+    ratio = (run.friction_force / run.normal_force).values
+    found = np.interp(shown[:, 0], time, ratio)
+    np.testing.assert_allclose(shown[:, 1], found, atol=1e-3 * np.ptp(ratio))
+
+
+@pytest.mark.slow
+def test_a_browser_that_cannot_unpack_keeps_the_trace_it_has(browser, alone):
+    number = LONG[0] + 1
+    state = f"document.querySelector('#run-{number} .state').textContent"
+    address = f"{alone.as_uri()}#run-{number}"
+    with browser.page(address, before="delete window.DecompressionStream") as page:
+        page.wait(f"document.querySelector('#run-{number} .plot canvas') !== null")
+        for _ in range(2):
+            page.click(f"#run-{number} [data-act=in]")
+        page.wait(f"{state}.includes('cannot unpack')")
+        assert "extremes kept" in page.run(state) and page.console == []
+
+
+@pytest.mark.slow
+def test_the_page_sent_alone_hands_out_figures_with_their_numbers(browser, results, alone):
+    with browser.page(alone) as page:
+        page.run("window.saved = []; report.save = (...file) => saved.push(file)")
+        for kind in ("svg", "csv"):
+            page.click(f"#curves a[data-copy={kind}]")
+        page.wait("saved.length === 2")
+        name, _, svg = page.run("saved[0]")
+        assert svg.startswith("<svg") and (results / "figures" / name).is_file()
+        text = page.run("new TextDecoder().decode(saved[1][2])")
+        assert text == (results / "figures" / page.run("saved[1][0]")).read_bytes().decode()
+        assert page.requests == [alone.as_uri()] and page.console == page.stopped == []
 
 
 @pytest.mark.slow
@@ -293,18 +375,28 @@ def test_page_prints_with_its_traces(browser, results, tmp_path):
 
 
 @pytest.mark.slow
-def test_details_of_very_many_runs_come_from_beside_the_page(
-    browser, results, tmp_path, monkeypatch
+def test_details_of_very_many_runs_are_unpacked_when_they_are_opened(
+    browser, results, hostile, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(page_module, "_MOST_INSIDE", 1)
-    document = json.loads((results / "report.json").read_text())
-    (tmp_path / "figures").symlink_to(results / "figures")
-    page_module.write_page(document, tmp_path)
-    assert "<h3>Segments</h3>" not in page_of(tmp_path)
-    with browser.page(f"{(tmp_path / 'report.html').as_uri()}#run-1") as page:
-        page.wait("document.querySelector('#run-1 table') !== null")
-        assert page.run("document.querySelectorAll('#run-1 tbody tr').length") == 6
-        assert page.console == []
+    monkeypatch.setattr(page_module, "_MOST_OPEN", 1)
+    for folder, rows in ((results, 6), (hostile, 2)):
+        document = json.loads((folder / "report.json").read_text())
+        html = page_module.render(document, folder)
+        assert "<h3>Segments</h3>" not in html
+        file = tmp_path / str(rows) / "report.html"
+        file.parent.mkdir()
+        (file.parent / "figures").symlink_to(folder / "figures")
+        file.write_text(html, encoding="utf-8")
+        address = f"{file.as_uri()}#run-1"
+        with browser.page(address) as page:
+            page.wait("document.querySelector('#run-1 table') !== null")
+            assert page.run("document.querySelectorAll('#run-1 tbody tr').length") == rows
+            assert page.run("document.querySelectorAll('[onerror],[onload]').length") == 0
+            assert page.console == page.stopped == []
+            assert [url for url in page.requests if not url.endswith(".svg")] == [file.as_uri()]
+        with browser.page(address, before="delete window.DecompressionStream") as page:
+            page.wait("document.querySelector('#run-1').textContent.includes('report.json')")
+            assert page.console == []
 
 
 def test_page_points_only_to_itself_and_to_what_lies_beside_it(results, hostile):
@@ -354,7 +446,28 @@ def test_policy_allows_the_page_and_nothing_else(results):
         for attrs in Reader(page_of(results)).all("meta")
         if attrs.get("http-equiv") == "Content-Security-Policy"
     )
-    assert "default-src 'none'" in policy and "unsafe" not in policy and "http" not in policy
+    assert "unsafe" not in policy and "http" not in policy
+    allowed = {name: rest for name, *rest in (part.split() for part in policy.split(";"))}
+    for name in ("default-src", "connect-src", "base-uri", "form-action"):
+        assert allowed[name] == ["'none'"]
+    for name, count in (("script-src", len(page_module._SCRIPTS)), ("style-src", 1)):
+        assert len(allowed[name]) == count
+        assert all(re.fullmatch(r"'sha256-[\w+/]{43}='", source) for source in allowed[name])
+
+
+@pytest.mark.slow
+def test_no_script_is_taken_from_beside_the_page(browser, alone):
+    (alone.parent / "beside.js").write_text("document.title = 'broken into'")
+    with browser.page(alone) as page:
+        title = page.run("document.title")
+        page.run(
+            "new Promise(done => { const s = document.createElement('script');"
+            "s.onload = s.onerror = () => done(0); s.src = 'beside.js'; document.head.append(s) })"
+        )
+        page.run("fetch('beside.js').then(() => 0, () => 0)")
+        assert page.run("document.title") == title
+        assert [word.split()[0] for word in page.stopped] == ["script-src-elem", "connect-src"]
+        assert page.requests == [alone.as_uri()]
 
 
 def test_campaign_file_and_checksums_stand_on_the_page(results):

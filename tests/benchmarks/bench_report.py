@@ -5,7 +5,7 @@ as asked for, and opens the page in headless Chromium:
 
     python tests/benchmarks/bench_report.py 200 2000
 
-Prints, for each number of runs, how large the page is and what lies beside it for zooming, how long
+Prints, for each number of runs, how large the page is and what of it are finer traces, how long
 until it had loaded and was painted (the best of three), and how long sorting, searching and opening
 a run took. The time of drawing every run's figures is not in it.
 """
@@ -25,7 +25,7 @@ from tribolab import rig  # noqa: E402 - as above
 from tribolab.io.netcdf import read_netcdf  # noqa: E402 - as above
 from tribolab.report.page import PageTrace, write_page  # noqa: E402 - as above
 from tribolab.report.run import run_campaign  # noqa: E402 - as above
-from tribolab.report.traces import as_text, trace, trace_points  # noqa: E402 - as above
+from tribolab.report.traces import as_text, finer_trace, trace, trace_size  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("
@@ -47,21 +47,17 @@ def repeated(document, count):
     return document | {"runs": runs, "findings": findings, "sources": sources}
 
 
-def traces(document, outcome, folder, count):
-    """Return the traces of the document's runs, with the points that so many runs may have."""
-    points, fine_points = trace_points(count)
-    packed, fine_bytes = [], 0
+def traces(document, outcome, count):
+    """Return the traces of the document's runs, with what so many runs may have."""
+    points, size = trace_size(count)
+    packed = []
     for number, run in enumerate(outcome.runs):
         groups = ("run", "segments", "friction")
         data = [read_netcdf(outcome.folder / run.data_file, group=group) for group in groups]
-        fine = f"traces/{number}.js"
-        text = f"report.receive({as_text(str(number))}, {as_text(trace(*data, fine_points))});\n"
-        (folder / fine).write_text(text, encoding="utf-8")
-        fine_bytes += len(text)
+        fine = Markup(finer_trace(*data, points, size))
         packed.append(PageTrace(str(number), Markup(as_text(trace(*data, points))), fine))
     runs = document["runs"]
-    chosen = {run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)}
-    return chosen, fine_bytes * count / len(packed)
+    return {run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)}
 
 
 def measure(page_file, profile):
@@ -98,18 +94,18 @@ def main(counts):
         document = json.loads((outcome.folder / "report.json").read_text(encoding="utf-8"))
         for count in counts:
             folder = place / f"results{count}"
-            (folder / "traces").mkdir(parents=True)
+            folder.mkdir()
             (folder / "figures").symlink_to(outcome.folder / "figures")
             many = repeated(document, count)
-            chosen, fine = traces(many, outcome, folder, count)
+            chosen = traces(many, outcome, count)
+            fine = sum(len(one.fine) for one in chosen.values()) / 1e6
             write_page(many, folder, chosen)
             size = (folder / "report.html").stat().st_size / 1e6
-            details = sum(f.stat().st_size for f in (folder / "traces").glob("run-*")) / 1e6
             load, spent = measure(folder / "report.html", place / f"profile{count}")
             acts = ", ".join(f"{name} {took:.2f} s" for name, took in spent.items())
             print(
-                f"{count} runs: page {size:.1f} MB; beside it details {details:.0f} MB, finer "
-                f"traces {fine / 1e6:.0f} MB; shown after {load:.2f} s; {acts}",
+                f"{count} runs: page {size:.1f} MB, {fine:.1f} MB of it finer traces before the "
+                f"details of very many are packed; shown after {load:.2f} s; {acts}",
                 flush=True,
             )
 
