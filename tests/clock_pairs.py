@@ -154,6 +154,7 @@ def make_pair(seed: int, kind: str, protocol: str | None = None, dated: bool = F
 def play(position: np.ndarray, half: float) -> np.ndarray:
     """Follow `position` with slack: what is driven stays within `half` of the driver.
 
+    >>> import numpy as np
     >>> play(np.array([0.0, 3.0, 1.0, -3.0]), 1.0).tolist()
     [0.0, 2.0, 2.0, -2.0]
     """

@@ -175,9 +175,9 @@ def test_sound_exports_of_other_instruments_pass(shared_data, path):
     assert objections(verdict(shared_data, path)[1]) == one_way
 
 
-def test_the_optical_trap_has_a_force_of_one_sign_both_ways_and_no_other_fault(shared_data):
+def test_the_optical_trap_holds_its_speed_one_way_only_and_has_no_other_fault(shared_data):
     (file,) = (shared_data / "tdms_force_MIT").glob("*.tdms")
-    assert objections(verdict(shared_data, file)[1]) == {"rectified": "suspect"}
+    assert objections(verdict(shared_data, file)[1]) == {"zero_reference": "suspect"}
 
 
 # --- command line

@@ -119,7 +119,9 @@ def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
         )
-    error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
+    # of the mean over the strokes of a direction
+    strokes = min(forward.size, backward.size)
+    error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
     differ = high - low > max(CLEAR * error, 1e-6 * high)
     if seen and dips < 1 - MOST and differ and straight >= MOST:
         return SIGNED

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import stats
+from scipy import special
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.slip_table import ringing
@@ -203,7 +203,7 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
     slope = float(weight @ ((x - x0) * y)) / spread
     rest = y - weight @ y - slope * (x - x0)
     variance = max(float(weight @ rest**2) * count / (count - 2), _LEAST_ERROR**2)
-    student = stats.t.ppf(0.8413, count - 2)
+    student = special.stdtrit(count - 2, 0.8413)
     error = float(np.sqrt(variance / count / spread)) * float(student)
     fixed_wavelength, fixed_frequency = abs(slope - 1) < 2 * error, abs(slope) < 2 * error
     if fixed_wavelength and fixed_frequency:

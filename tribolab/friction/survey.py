@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from tribolab.friction.background import false_alarm, red_noise
 from tribolab.friction.mains import Mains, find_mains
@@ -134,7 +134,7 @@ def above_lower(
     below = count[np.maximum(last, first)] - count[first]
     usual = (sums[np.maximum(last, first)] - sums[first]) / np.maximum(below, 1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        chance = stats.f.sf(power / usual, freedom, below / 1.5)
+        chance = special.fdtrc(freedom, below / 1.5, power / usual)
     return np.where((below > 0) & (usual > 0), np.nan_to_num(chance, nan=1.0), 1.0)
 
 

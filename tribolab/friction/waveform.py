@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from tribolab.friction.events import Events
 from tribolab.friction.oscillation import Oscillation
@@ -67,8 +67,9 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.n
         return Waveform(np.nan, 1.0, skewness, np.nan, np.nan, 0)
     longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())
     p_value = 1.0
-    if longer + shorter:
-        p_value = float(stats.binomtest(longer, longer + shorter).pvalue)
+    if longer + shorter:  # the exact sign test, from both sides
+        tail = float(special.bdtr(min(longer, shorter), longer + shorter, 0.5))
+        p_value = min(1.0, 2 * tail)
     return Waveform(
         fall_share=float(np.median(fall / (rise + fall))),
         asymmetry_p_value=p_value,

@@ -241,5 +241,26 @@ _ALL = (
         surface="Smooth",
         medium="dry",
     ),
+    Fault(
+        "ramps",
+        "The motor never holds its speed: it rises along every stroke.",
+        "suspect",
+        "segments",
+        strikes.ramps,
+    ),
+    Fault(
+        "one_way",
+        "One loaded stroke is all that was logged: nothing tells the zero of the force.",
+        "suspect",
+        "zero_reference",
+        strikes.one_way,
+    ),
+    Fault(
+        "rectifier",
+        "The amplifier hands on the magnitude of the friction force.",
+        "suspect",
+        "rectified",
+        strikes.rectifier,
+    ),
 )
 FAULTS: dict[str, Fault] = {fault.name: fault for fault in _ALL}

@@ -305,3 +305,38 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     every = max(2, round(min(per_period) / wanted))
     keep = np.arange(interval.size) % every == 0
     return _kept(run, keep, {"every": every, "samples_per_period": min(per_period) / every})
+
+
+def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Record the magnitude of the friction force, zeroed before."""
+    values = run.force_log.friction_force.values
+    load = np.abs(run.force_log.normal_force.values)
+    rest = load < _UNLOADED * load.max()
+    zero = float(np.median(values[rest]))
+    return _force(run, np.abs(values - zero), {"zero_N": zero})
+
+
+def one_way(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Log one loaded stroke only: nothing tells the zero of the friction force."""
+    row = run.segments.iloc[int(rng.integers(len(run.segments)))]
+    first, last = float(row.start_s) - 1.0, float(row.stop_s) + 1.0
+    shift = float(run.facts["clock_shift_at_middle_s"])
+
+    def within(log: xr.Dataset, later: float) -> xr.Dataset:
+        time = log.time.values + later
+        return log.isel(time=(time >= first) & (time <= last))
+
+    facts = {"start_s": first, "stop_s": last}
+    return within(run.force_log, 0.0), within(run.motion_log, shift), facts
+
+
+def ramps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+    """Let the speed of every stroke rise from a fifth of its mean to nearly twice as much."""
+    low = float(rng.uniform(0.1, 0.3))
+    motion, shift = run.motion_log, float(run.facts["clock_shift_s"])
+    time, velocity = motion.time.values + shift, motion.sliding_velocity.values.copy()
+    for row in run.segments.itertuples():
+        inside = (time >= row.start_s) & (time <= row.stop_s)
+        share = (time[inside] - row.start_s) / (row.stop_s - row.start_s)
+        velocity[inside] *= low + 2 * (1 - low) * share
+    return run.force_log, motion.assign(sliding_velocity=("time", velocity)), {"lowest": low}
