@@ -228,7 +228,11 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
         segments=segments,
         quality=str(attrs.get(QUALITY, "")),
     )
-    return checksums(attrs), outcome, zero_of(friction, str(attrs.get("instrument", "")))
+    return (
+        checksums(attrs),
+        outcome,
+        zero_of(friction, str(attrs.get("instrument", "")), run.instrument),
+    )
 
 
 def _checksums(files: Iterable[Path]) -> list[Source]:

@@ -108,7 +108,7 @@ def process_run(task: RunTask) -> RunRecord:
         segments=segments.sizes["segment"],
         quality=quality,
     )
-    zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")))
+    zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
     return RunRecord(outcome, sources_of(run, signals.attrs), zero)
 
 

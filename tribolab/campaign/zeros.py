@@ -22,7 +22,7 @@ class RunZero(NamedTuple):
     Parameters
     ----------
     instrument
-        What recorded it.
+        What recorded it; "" where that is not known, and then nothing is lent.
     own
         Its own zero [N], or None.
     lent
@@ -47,8 +47,19 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, Any]:
     return {}
 
 
-def zero_of(attrs: Mapping[str, Any], instrument: str) -> RunZero:
-    """Return what the attributes of a friction result say of its zero."""
+def zero_of(attrs: Mapping[str, Any], recorded: str, stated: str | None) -> RunZero:
+    """Return what the attributes of a friction result say of its zero.
+
+    Parameters
+    ----------
+    attrs
+        Of the friction result.
+    recorded
+        Name of the instrument that the file was read as.
+    stated
+        Dialect that the campaign names: two files of one name may be two instruments.
+    """
+    instrument = stated if stated and stated.endswith(".toml") else recorded
     own = attrs.get(OWN)
     lent = attrs.get(LENT)
     return RunZero(instrument, None if own is None else float(own), lent)
@@ -72,6 +83,9 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
     >>> one, two = RunZero("rig", 0.5, None), RunZero("rig", 0.7, None)
     >>> to_lend({"a": one, "b": two, "c": RunZero("rig", None, ""), "d": RunZero("x", None, "")})
     {'c': (0.5, 0.7)}
+    >>> unknown = RunZero("", None, "")
+    >>> to_lend({"a": one._replace(instrument=""), "b": two._replace(instrument=""), "c": unknown})
+    {}
     """
     again = {}
     for name, zero in zeros.items():
@@ -80,7 +94,8 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
         others = tuple(
             other.own
             for other in zeros.values()
-            if other and other.own is not None and other.instrument == zero.instrument
+            # what no dialect names may be any instrument
+            if other and other.own is not None and zero.instrument == other.instrument != ""
         )
         others = others if len(others) >= FEWEST else ()
         if as_text(others) != zero.lent:

@@ -32,7 +32,7 @@ def as_campaign(trials: Mapping[str, Trial], folder: Path) -> dict[str, Ran]:
     for name, trial in trials.items():
         place = folder / "raw" / name
         place.mkdir(parents=True)
-        filed = trial if not isinstance(trial.data, xr.Dataset) else _as_file(trial.data)
+        filed = trial if not isinstance(trial.data, xr.Dataset) else _as_file(trial.data, name)
         for file, text in filed.data.items():
             (place / file).write_text(text, "utf-8")
         try:
@@ -56,14 +56,14 @@ def as_campaign(trials: Mapping[str, Trial], folder: Path) -> dict[str, Ran]:
     return ran
 
 
-def _as_file(run: xr.Dataset) -> Trial:
+def _as_file(run: xr.Dataset, name: str) -> Trial:
     """Write a dataset as a table that loses no digit."""
     columns = [
         Column(str(name), str(name), run[name].attrs["units"], run[name].values, ".17g")
         for name in ("time", *run.data_vars)
     ]
     speed = "" if "sliding_velocity" in run else 'source = "position"'
-    return Trial({"run.csv": table(columns)}, None, {"lab": dialect("lab", columns, speed=speed)})
+    return Trial({"run.csv": table(columns)}, None, {name: dialect(name, columns, speed=speed)})
 
 
 def difference(verdict: Verdict, ran: Ran) -> str:
