@@ -91,8 +91,10 @@ def folded(trace: Trace) -> Fold:
     trace = trace._replace(
         force=turned * trace.force, mean=turned * trace.mean, rest=turned * trace.rest
     )
-    # a stroke below zero, beyond its error, has a sign
+    # a stroke below zero, beyond its error or with all of its readings, has a sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
+        return SIGNED
+    if any(np.nanmax(trace.force[trace.parts[i]]) < 0 for i in np.flatnonzero(known)):
         return SIGNED
     if (known & (trace.sign < 0)).any():
         return _both_ways(trace, known)
