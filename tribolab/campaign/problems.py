@@ -214,5 +214,5 @@ def _instrument(campaign: Campaign, name: str) -> str:
     try:
         load_dialect(instrument_of(campaign, name))
     except ConfigError as error:
-        return str(error)
+        return error.told("campaign")
     return ""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.errors import Cure, ReadError
 from tribolab.io.clock_shift import estimate_clock_shift
 from tribolab.quantities import stamp
 
@@ -61,11 +61,17 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     last = int(np.searchsorted(force_clock, shifted[-1], side="right"))
     names = f"{run.attrs['source']} and {motion.attrs['source']}"
     if last - first < 2:
-        cure = "correct" if clock_shift is not None else "give"
+        verb = "correct" if clock_shift is not None else "give"
         raise ReadError(
-            f"{names}: the logs do not overlap: on the force log's clock, one runs from "
+            f"the logs do not overlap: on the force log's clock, one runs from "
             f"{force_clock[0]:.6g} to {force_clock[-1]:.6g} s, the other from {shifted[0]:.6g} to "
-            f"{shifted[-1]:.6g} s (shift {shift:.6g} s, {source}); {cure} clock_shift="
+            f"{shifted[-1]:.6g} s (shift {shift:.6g} s, {source})",
+            where=names,
+            cure=Cure(
+                notebook=f"{verb} clock_shift=",
+                terminal=f"{verb} clock_shift in the [[run]] of a campaign file",
+                campaign=f"{verb} clock_shift in its [[run]]",
+            ),
         )
     merged = run.isel(time=slice(first, last))
     clock = force_clock[first:last]

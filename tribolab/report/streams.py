@@ -12,11 +12,18 @@ from collections.abc import Iterator
 from types import FrameType
 from typing import NoReturn
 
+from tribolab.errors import harmless
+
 _PLAIN = str.maketrans(
     {"–": "-", "−": "-", "±": "+-", "µ": "u", "μ": "u", "×": "x", "…": "...", "’": "'", "·": "*"}
     | {"²": "2", "³": "3", "η": "eta", "σ": "sigma", "°": " deg ", "≤": "<=", "≥": ">="}
 )
 _ERRORS = "tribolab_plain"
+
+
+def say(text: str, *, to_stderr: bool = False) -> None:
+    """Write a line for a person; what a file or its name holds cannot steer the terminal."""
+    print(harmless(text), file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
 
 class Terminated(KeyboardInterrupt):

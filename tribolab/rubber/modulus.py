@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, ReadError, UnitError
+from tribolab.errors import AnalysisError, Cure, ReadError, UnitError
 from tribolab.quantities import unit_conversion
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
@@ -253,8 +253,13 @@ def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:
     sweeps = np.split(data, np.flatnonzero(np.diff(data[0]) <= 0) + 1, axis=1)
     if sweep is None or not 0 <= sweep < len(sweeps):
         raise ReadError(
-            f"{name}: frequencies repeat, {len(sweeps)} sweeps are in it; name one with sweep=0 "
-            f"to {len(sweeps) - 1}, or give a master curve"
+            f"frequencies repeat, {len(sweeps)} sweeps are in it",
+            where=name,
+            cure=Cure(
+                notebook=f"name one with sweep=0 to {len(sweeps) - 1}, or give a master curve",
+                terminal="give a master curve",
+                campaign="give a master curve as modulus_file of [contact]",
+            ),
         )
     return sweeps[sweep]
 
