@@ -1,11 +1,17 @@
 """What is said to a reader names what he has before him: functions, options, or keys of a file."""
 
 import ast
+import functools
 import inspect
+import json
+import pickle
 import re
 from pathlib import Path
 
+import pytest
+
 import tribolab as tl
+from tribolab import errors
 
 PACKAGE = Path(tl.__file__).parent
 # Who reads a docstring, or what `notebook=` and `function=` say, has Python before him.
@@ -13,13 +19,20 @@ FOR_NOTEBOOKS = {"notebook", "function"}
 CALL = re.compile(r"\b[A-Za-z_][\w.]*\(\)")
 ARGUMENT = re.compile(r"(?<![\w\"'<\-/.?&])[a-z][a-z0-9_]*=(?![=\s])|(?<![\w\-])[a-z]+_[a-z_]+=")
 
+BARE = re.compile(r"(?<![\w\"'\[.])[a-z]\w*(?![\w\"'\]])")  # not a name of a variable in quotes
 
+
+@functools.cache
+def parsed(path):
+    return ast.parse(path.read_text())
+
+
+@functools.cache
 def functions():
     """Names of public functions that no word of the field or key of a file shares."""
     public = {name for name in tl.__all__ if inspect.isfunction(getattr(tl, name, None))}
     for path in PACKAGE.rglob("*.py"):
-        tree = ast.parse(path.read_text())
-        public |= {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+        public |= {node.name for node in parsed(path).body if isinstance(node, ast.FunctionDef)}
     return {name for name in public if "_" in name.strip("_") and not name.startswith("_")}
 
 
@@ -44,5 +57,81 @@ def sentences(path):
         for child in ast.iter_child_nodes(node):
             visit(child)
 
-    visit(ast.parse(path.read_text()))
+    visit(parsed(path))
     return [(line, text) for line, text in found if " " in text.strip()]
+
+
+def words_of_the_field():
+    """Names that are quantities, keys of a campaign or dialect: everyone may read them."""
+    from tribolab.campaign.config import Campaign
+    from tribolab.io.dialects import json_schema
+    from tribolab.quantities import QUANTITIES
+
+    schemas = json.dumps([Campaign.model_json_schema(), json_schema()])
+    keys = set(re.findall(r'"(\w+)"', schemas))
+    return keys | set(QUANTITIES) | {"contact_width"}
+
+
+# Modules whose strings are programs, pages or files, not sentences.
+NO_SENTENCES = {"io/seal.py", "io/draft_show.py", "plot/style.py"}
+
+
+def test_no_sentence_for_all_readers_names_a_python_function_or_argument():
+    names = (functions() - words_of_the_field()) | {"psd_1d", "psd_2d"}
+    assert {"read_scans", "remove_form"} <= names
+    told = 0
+    for path in sorted(PACKAGE.rglob("*.py")):
+        module = path.relative_to(PACKAGE).as_posix()
+        if module in NO_SENTENCES:
+            continue
+        for line, text in sentences(path):
+            told += 1
+            found = [
+                *CALL.findall(text),
+                *ARGUMENT.findall(text),
+                *names.intersection(BARE.findall(text)),
+            ]
+            assert not found, f"{module}:{line} names {found[0]} to every reader: {text!r}"
+    assert told > 1500
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["say which with instrument=", "use read_scans()", "take form='circle'", "see psd_1d for it"],
+)
+def test_the_search_for_such_names_finds_them(text):
+    bare = functions().intersection(BARE.findall(text))
+    assert CALL.search(text) or ARGUMENT.search(text) or bare
+
+
+def test_every_cure_has_words_of_its_own_for_the_terminal_and_the_campaign():
+    from tribolab.io import cures
+
+    said = [one for one in vars(cures).values() if isinstance(one, errors.Cure)]
+    said += [cures.name_instrument(), cures.draft_dialect(Path("a b.txt"), cures.RUN)]
+    assert len(said) >= 7
+    for cure in said:
+        assert cure.notebook and cure.terminal and cure.campaign
+        for audience in ("terminal", "campaign"):
+            assert not (CALL.search(cure.told(audience)) or ARGUMENT.search(cure.told(audience)))
+
+
+def test_an_error_keeps_its_parts_between_processes():
+    cure = errors.Cure(notebook="say clock_shift=", terminal="see", campaign="say clock_shift")
+    inner = errors.ReadError("no overlap", where="a.csv", function="read", cure=cure)
+    outer = errors.AnalysisError(inner, where="varied speed")
+    again = pickle.loads(pickle.dumps(outer))
+    assert type(again) is errors.AnalysisError
+    for audience in errors.AUDIENCES:
+        assert again.told(audience) == outer.told(audience)
+    assert str(again) == "varied speed: a.csv: read: no overlap; say clock_shift="
+    assert again.told("campaign") == "varied speed: a.csv: no overlap; say clock_shift"
+
+
+@pytest.mark.parametrize("part", ["what", "where", "cure"])
+def test_no_part_of_a_message_steers_a_terminal(part):
+    steering = "\x1b[31mred\x07\x9b2J\x7f\u202e\ud800\r\x00"
+    parts = {"what": "x", "where": "x", "cure": "x"} | {part: steering}
+    said = str(errors.ReadError(parts.pop("what"), **parts))
+    assert all(letter.isprintable() for letter in said)
+    assert "red" in said
