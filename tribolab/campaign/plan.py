@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.campaign.problems import Problem
-from tribolab.errors import nearest
+from tribolab.errors import nearest, shown
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def _resolve(
         found = _matching(raw, pattern)
         if not found:
             problems.append(
-                Problem(where, f"nothing matches '{pattern}' in {raw}{_there(raw, pattern)}")
+                Problem(where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}")
             )
         files.update(dict.fromkeys(found))
     return list(files)

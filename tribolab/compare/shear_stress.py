@@ -15,7 +15,7 @@ from scipy.special import comb
 from tribolab.compare.residual_error import residual_error
 from tribolab.compare.shear_stress_fit import ShearStressFit
 from tribolab.contact.geometry import LineContact
-from tribolab.errors import AnalysisError, Cure, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.quantities import stamp
@@ -117,7 +117,9 @@ def fit_shear_stress(
     """
     unknown = [name for name in free if name not in FREE]
     if unknown:
-        raise AnalysisError(f"free: '{unknown[0]}' cannot be fitted{nearest(unknown[0], FREE)}")
+        raise AnalysisError(
+            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], FREE)}"
+        )
     eta = positive(viscosity, "Pa s", "viscosity")
     force = positive(load, "N/m", "load")
     enhancement = positive(area_enhancement, "1", "area_enhancement")
@@ -266,7 +268,9 @@ def _points(
             continue
         error = measured[name].values.astype(float)
         if np.any(error < 0):
-            raise AnalysisError(f"measured: '{name}' is negative at {speed[error < 0][0]:g} m/s")
+            raise AnalysisError(
+                f"measured: '{shown(name)}' is negative at {speed[error < 0][0]:g} m/s"
+            )
         known = np.isfinite(error) & (error > 0)
         if np.any(known & used):
             error = np.where(known, error, np.median(error[known & used]))

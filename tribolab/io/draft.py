@@ -68,7 +68,9 @@ class Draft(NamedTuple):
         if self.layout is None or self.understood is None:
             return ()
         columns = [
-            f"column {column.place}" + (f" '{column.label}': " if column.label else ": ") + guess
+            f"column {column.place}"
+            + (f" '{shown(column.label)}': " if column.label else ": ")
+            + guess
             for column in self.understood.columns
             for guess in column.guessed
         ]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.patterns import guarded
@@ -131,8 +131,8 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     for name in empty:
         if name not in optional:
             raise ReadError(
-                f"{content.path}: column '{content.labels[name]}' ({name}) has no value in any "
-                "row; if that is so in good files too, say optional = true in the dialect "
+                f"{content.path}: column '{shown(content.labels[name])}' ({name}) has no value "
+                "in any row; if that is so in good files too, say optional = true in the dialect "
                 f"'{dialect.name}'"
             )
     pieces = [
@@ -160,8 +160,8 @@ def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
         return dt.datetime.strptime(stamp, time.start_format)
     except ValueError as error:
         raise ReadError(
-            f"{path}: '{stamp}' is no date and time of the form '{time.start_format}' "
-            f"(instrument '{dialect.name}', time.start_format)"
+            f"{path}: '{shown(stamp)}' is no date and time of the form "
+            f"'{shown(time.start_format)}' (instrument '{dialect.name}', time.start_format)"
         ) from error
 
 
@@ -171,4 +171,4 @@ def _whole_number(path: Path, text: str | None) -> int | None:
     try:
         return int(text)
     except ValueError as error:
-        raise ReadError(f"{path}: '{text}' is no number of a step (header.step)") from error
+        raise ReadError(f"{path}: '{shown(text)}' is no number of a step (header.step)") from error

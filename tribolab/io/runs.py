@@ -361,9 +361,9 @@ def _check_normal_force(
     if force is None or np.nanmax(force) > 0:
         return
     raise ReadError(
-        f"{where}: the normal force ('{content.labels['normal_force']}') is nowhere above zero "
-        f"(greatest {np.nanmax(force):.4g} N); if the instrument counts pressing as negative, say "
-        f"sign = -1 for the column in the dialect '{dialect.name}'"
+        f"{where}: the normal force ('{shown(content.labels['normal_force'])}') is nowhere above "
+        f"zero (greatest {np.nanmax(force):.4g} N); if the instrument counts pressing as negative, "
+        f"say sign = -1 for the column in the dialect '{dialect.name}'"
     )
 
 

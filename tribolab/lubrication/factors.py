@@ -15,7 +15,7 @@ from scipy.special import erfinv
 from tribolab.contact.gap import COMPLETE, gap_distributions
 from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.errors import AnalysisError, Cure, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.quantities import labelled, stamp
 from tribolab.surface.moments import cumulative, rms_roughness, spectrum_arrays
 from tribolab.units import positive
@@ -367,4 +367,6 @@ def check_rough_body(rough_body: str) -> None:
     """Raise an AnalysisError unless it is a `RoughBody`."""
     known = ["stationary", "moving"]
     if rough_body not in known:
-        raise AnalysisError(f"rough_body: '{rough_body}' is none{nearest(rough_body, known)}")
+        raise AnalysisError(
+            f"rough_body: '{shown(rough_body)}' is none{nearest(rough_body, known)}"
+        )

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, ConfigError, Cure, nearest
+from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
@@ -62,7 +62,9 @@ def check_scans(
     """
     for name in skip:
         if name not in SCAN_CHECKS:
-            raise ConfigError(f"[qc] skip: no check is called '{name}'{nearest(name, SCAN_CHECKS)}")
+            raise ConfigError(
+                f"[qc] skip: no check is called '{shown(name)}'{nearest(name, SCAN_CHECKS)}"
+            )
     if "height" not in scans or "x" not in scans.height.dims or scans.sizes["x"] < 2:
         raise AnalysisError(
             "scans with 'height' (scan, x) are wanted",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface.level import rounding_only
@@ -115,7 +115,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     """
     if form not in FORMS:
         raise AnalysisError(
-            f"there is no form '{form}'{nearest(form, FORMS)}", function="remove_form"
+            f"there is no form '{shown(form)}'{nearest(form, FORMS)}", function="remove_form"
         )
     if not 0 <= degree <= 12:
         raise AnalysisError(
