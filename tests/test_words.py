@@ -9,9 +9,11 @@ import re
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import tribolab as tl
-from tribolab import errors
+from tribolab import cli, errors
+from tribolab.io.dialects import load_dialect
 
 PACKAGE = Path(tl.__file__).parent
 # Who reads a docstring, or what `notebook=` and `function=` say, has Python before him.
@@ -135,3 +137,61 @@ def test_no_part_of_a_message_steers_a_terminal(part):
     said = str(errors.ReadError(parts.pop("what"), **parts))
     assert all(letter.isprintable() for letter in said)
     assert "red" in said
+
+
+LONG = "\x1b[31m" + "Q" * 5000
+LOG = "# Linear slider, force log\n"
+ROWS = "\n0,1,31\n1,2,31\n"
+SPOILT = {
+    "unit": f"{LOG}Time [s],Fx [{LONG}],Fz [N]{ROWS}",
+    "name": f"{LOG}Time [s],{LONG} [N],Fz [N]{ROWS}",
+    "cell": f"{LOG}Time [s],Fx [N],Fz [N]{ROWS}2,{LONG},31\n",
+    "row": f"{LOG}Time [s],Fx [N],Fz [N]{ROWS}2,{LONG},31,4,5\n",
+    "unknown": f"{LONG}\n1,2\n",
+    "result": f"// Header\nMode;RES\n// CalcResult\nRa;{LONG};{LONG};;\n",
+}
+
+
+@pytest.mark.parametrize("kind", SPOILT)
+@pytest.mark.parametrize("command", ["info", "check", "dialect"])
+def test_what_a_file_holds_is_cut_short_and_cannot_steer_the_terminal(tmp_path, kind, command):
+    file = tmp_path / "a\x1b[2Jb.csv"
+    file.write_text(SPOILT[kind])
+    options = ["-o", str(tmp_path / "a.toml")] if command == "dialect" else []
+    done = CliRunner().invoke(cli.app, [command, str(file), *options])
+    said = [*done.stdout.splitlines(), *done.stderr.splitlines()]
+    assert said and "\x1b" not in done.stdout + done.stderr
+    assert all(len(line) < 800 for line in done.stderr.splitlines())
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '[[run]]\nfiles = "{}"',
+        '[[run]]\nfiles = "a.csv"\nsurface = "{}"',
+        '[[run]]\nfiles = "a.csv"\nmedium = "{}"',
+        '[[run]]\nfiles = "a.csv"\ninstrument = "{}"',
+        '[[run]]\nfiles = "a.csv"\nnormal_force = "{}"',
+        '[[run]]\nfiles = "a.csv"\n"{}" = 1',
+        '[[run]]\nfiles = "a.csv"\ncycles = "{}"',
+        '[[run]]\nfiles = "a.csv"\n[friction]\noffset = "{}"',
+        '[[run]]\nfiles = "a.csv"\n[qc.limits."{}"]\na = 1',
+    ],
+)
+def test_what_a_campaign_file_holds_is_cut_short(tmp_path, line):
+    written = line.format(LONG.replace("\x1b", "\\u001b"))
+    (tmp_path / "raw").mkdir()
+    (tmp_path / "raw/a.csv").write_text(SPOILT["name"])
+    (tmp_path / "campaign.toml").write_text(f'[campaign]\nname = "a"\n{written}\n')
+    done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml"), "-q", "-j", "1"])
+    assert done.exit_code == 2, done.stderr
+    assert "\x1b" not in done.stderr and "Q" * 81 not in done.stderr
+
+
+def test_a_dialect_with_many_long_mistakes_is_answered_in_a_line(tmp_path):
+    keys = "\n".join(f"{'k' * 3000}{number} = 1" for number in range(40))
+    (tmp_path / "a.toml").write_text(f'name = "a"\n{keys}\n')
+    with pytest.raises(errors.ConfigError, match="and 37 more") as error:
+        load_dialect(tmp_path / "a.toml")
+    assert len(str(error.value)) < 1200

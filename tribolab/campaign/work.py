@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.campaign.zeros import RunZero, attributes, zero_of
-from tribolab.errors import ConfigError, OutputError, TribolabError, brief, harmless
+from tribolab.errors import ConfigError, OutputError, TribolabError, brief, shown
 from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
 
@@ -161,7 +161,7 @@ def explain(error: BaseException) -> tuple[str, str]:
         return " ".join(error.told("campaign").split()), name
     text = brief(error) if str(error) else ""
     if isinstance(error, OSError) and error.strerror and error.filename:
-        return f"{harmless(Path(str(error.filename)).name)}: {error.strerror.lower()}", name
+        return f"{shown(Path(str(error.filename)).name)}: {error.strerror.lower()}", name
     where = ""
     if frames := traceback.extract_tb(error.__traceback__):
         ours = [frame for frame in frames if Path(frame.filename).is_relative_to(_PACKAGE)]

@@ -27,6 +27,9 @@ __all__ = [
 ]
 
 
+_SHOWN = 5  # mistakes of a dialect that are told at once
+
+
 def known_dialects() -> dict[str, Path]:
     """Names of the instruments that are described, and the TOML file of each.
 
@@ -154,11 +157,13 @@ def _parse(path: Path) -> Dialect:
     try:
         return Dialect.model_validate(content)
     except ValidationError as error:
-        raise ConfigError(f"{path}: " + "; ".join(_explain(e) for e in error.errors())) from error
+        said = [_explain(one) for one in error.errors()]
+        more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
+        raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
 
 
 def _explain(problem: Any) -> str:
-    where = ".".join(str(part) for part in problem["loc"])
+    where = ".".join(shown(str(part)) for part in problem["loc"])
     if problem["type"] != "extra_forbidden":
         return f"{where}: {problem['msg'].removeprefix('Value error, ')}".removeprefix(": ")
     model = _model_at(problem["loc"][:-1])

@@ -230,8 +230,8 @@ class _Parser:
                 if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
                     return (
                         f"{where}, column '{shown(signal.label)}': '{cell[:40]}' is not a number; "
-                        f"if it stands for a missing value, say so in the dialect: [text] missing = "
-                        f"['{cell[:40]}']"
+                        f"if it stands for a missing value, say so in the dialect: [text] "
+                        f"missing = ['{cell[:40]}']"
                     )
         return (
             f"{path}: the rows after line {before} cannot be read: {brief(error, 150)}; is a "
