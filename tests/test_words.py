@@ -8,12 +8,15 @@ import pickle
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli, errors
+from tribolab.friction.stick_slip import stick_slip
 from tribolab.io.dialects import load_dialect
+from tribolab.qc.run_checks import check_run
 
 PACKAGE = Path(tl.__file__).parent
 # Who reads a docstring, or what `notebook=` and `function=` say, has Python before him.
@@ -78,6 +81,7 @@ def words_of_the_field():
 NO_SENTENCES = {"io/seal.py", "io/draft_show.py", "plot/style.py"}
 
 
+@pytest.mark.slow
 def test_no_sentence_for_all_readers_names_a_python_function_or_argument():
     names = (functions() - words_of_the_field()) | {"psd_1d", "psd_2d"}
     assert {"read_scans", "remove_form"} <= names
@@ -126,7 +130,7 @@ def test_an_error_keeps_its_parts_between_processes():
     assert type(again) is errors.AnalysisError
     for audience in errors.AUDIENCES:
         assert again.told(audience) == outer.told(audience)
-    assert str(again) == "varied speed: a.csv: read: no overlap; say clock_shift="
+    assert str(again) == "varied speed: read: a.csv: no overlap; say clock_shift="
     assert again.told("campaign") == "varied speed: a.csv: no overlap; say clock_shift"
 
 
@@ -195,3 +199,52 @@ def test_a_dialect_with_many_long_mistakes_is_answered_in_a_line(tmp_path):
     with pytest.raises(errors.ConfigError, match="and 37 more") as error:
         load_dialect(tmp_path / "a.toml")
     assert len(str(error.value)) < 1200
+
+
+@pytest.mark.parametrize("column", ["t", "fx", "fz", "v"])
+@pytest.mark.parametrize("wrong", [1e306, -1.7e308, 1e160, 1e-310, 0.0])
+@pytest.mark.parametrize("rows", [slice(None), slice(150, 151), slice(200, None)])
+def test_numbers_that_nothing_measures_raise_no_warning_of_arithmetic(
+    tmp_path, column, wrong, rows
+):
+    rng = np.random.default_rng(5)
+    t = 0.1 * np.arange(400)
+    direction = np.where((t // 10).astype(int) % 2 == 0, 1.0, -1.0)
+    table = {
+        "t": t,
+        "fx": 20 * direction + rng.normal(0, 0.1, t.size),
+        "fz": 31 + rng.normal(0, 0.1, t.size),
+        "v": direction,
+    }
+    table[column] = table[column].copy()
+    table[column][rows] = wrong
+    lines = [",".join(f"{x:.9g}" for x in row) for row in zip(*table.values(), strict=True)]
+    (tmp_path / "own.csv").write_text("\n".join(["t,fx,fz,v", *lines, ""]))
+    (tmp_path / "own.toml").write_text(OWN)
+    try:  # a warning is an error here
+        run = tl.read(tmp_path / "own.csv", tmp_path / "own.toml")
+        segments = tl.find_segments(run)
+        friction = tl.friction_coefficient(run, segments)
+        stick_slip(run, segments)
+        check_run(run, segments, friction)
+        tl.measured_stribeck_curve([friction])
+    except tl.TribolabError as refused:
+        assert len(str(refused)) < 500
+
+
+OWN = """
+name = "own"
+title = "an instrument of our own"
+[header]
+line = 1
+[text]
+delimiter = ","
+""" + "".join(
+    f'[[column]]\nquantity = "{quantity}"\nname = "{name}"\nunit = "{unit}"\n'
+    for quantity, name, unit in [
+        ("time", "t", "s"),
+        ("friction_force", "fx", "N"),
+        ("normal_force", "fz", "N"),
+        ("sliding_velocity", "v", "mm/s"),
+    ]
+)

@@ -86,7 +86,7 @@ class TribolabError(Exception):
         what = self.what.told(audience) if isinstance(self.what, TribolabError) else str(self.what)
         first = self.function if audience == "notebook" else ""
         cure = self.cure.told(audience) if isinstance(self.cure, Cure) else self.cure
-        message = ": ".join(part for part in (self.where, first, what) if part)
+        message = ": ".join(part for part in (first, self.where, what) if part)
         return harmless("; ".join(part for part in (message, cure) if part))
 
     def __str__(self) -> str:

@@ -16,6 +16,8 @@ from tribolab.io.patterns import guarded
 from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
+_LARGEST = 1e60  # of any quantity in SI; its fourth power is a number still
+
 
 class Piece(NamedTuple):
     """One table: arrays in SI by quantity, and what the text before it says."""
@@ -114,8 +116,27 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     return Content(file.path, sha256, pieces, labels, tuple(unused), left_out)
 
 
+def measurable(values: np.ndarray) -> np.ndarray:
+    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
+
+    So whatever stands in a file, squares and ratios of its numbers are numbers, too.
+
+    >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
+    [1.0, nan, 0.0]
+    """
+    if values.dtype.kind != "f":
+        return values
+    size = np.abs(values)
+    beyond, nothing = size > _LARGEST, (size < 1 / _LARGEST) & (size > 0)
+    if not (beyond.any() or nothing.any()):
+        return values
+    return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
+
+
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
+    for piece in content.pieces:
+        piece.columns.update({name: measurable(v) for name, v in piece.columns.items()})
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")

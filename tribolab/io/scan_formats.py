@@ -14,6 +14,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io import cures
+from tribolab.io.pieces import measurable
 from tribolab.io.scan_grid import even
 from tribolab.io.scan_safety import formats_to_try
 from tribolab.io.signature import peek
@@ -82,8 +83,10 @@ def read_foreign(
         ) from error
     attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
     vertical = lateral if vertical is None else vertical
-    heights = heights * vertical
+    with np.errstate(over="ignore", invalid="ignore"):
+        heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
+    heights = measurable(heights)
     if sizes is None or len(sizes) != len(points):
         raise ReadError(f"{path}: the file does not say how large the scan is in each direction")
     if len(points) == 2:
