@@ -67,11 +67,7 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
             f"{force_clock[0]:.6g} to {force_clock[-1]:.6g} s, the other from {shifted[0]:.6g} to "
             f"{shifted[-1]:.6g} s (shift {shift:.6g} s, {source})",
             where=names,
-            cure=Cure(
-                notebook=f"{verb} clock_shift=",
-                terminal=f"{verb} clock_shift in the [[run]] of a campaign file",
-                campaign=f"{verb} clock_shift in its [[run]]",
-            ),
+            cure=_say_shift(verb),
         )
     merged = run.isel(time=slice(first, last))
     clock = force_clock[first:last]
@@ -89,6 +85,14 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     return stamp(merged)
 
 
+def _say_shift(say: str) -> Cure:
+    return Cure(
+        notebook=f"{say} clock_shift=",
+        terminal=f"{say} clock_shift in the [[run]] of a campaign file",
+        campaign=f"{say} clock_shift in its [[run]]",
+    )
+
+
 def _shift(
     run: xr.Dataset,
     motion: xr.Dataset,
@@ -104,7 +108,8 @@ def _shift(
         raise ReadError(
             f"{run.attrs['source']} was recorded at {run.attrs['recorded_at']}, its companion "
             f"{motion.attrs['source']} at {motion.attrs['recorded_at']}: another run's log; put "
-            "the right one beside it, or if the dates are wrong, give clock_shift="
+            "the right one beside it",
+            cure=_say_shift("if the dates are wrong, give"),
         )
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]
     velocity = _velocity(motion, motion_clock)
