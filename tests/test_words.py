@@ -248,3 +248,13 @@ delimiter = ","
         ("sliding_velocity", "v", "mm/s"),
     ]
 )
+
+
+@pytest.mark.parametrize(
+    "command", [c.name or c.callback.__name__ for c in cli.app.registered_commands]
+)
+def test_the_help_of_a_command_names_no_function_or_argument(command):
+    said = CliRunner().invoke(cli.app, [command, "--help"]).stdout
+    assert "Usage" in said
+    assert not (CALL.search(said) or ARGUMENT.search(said))
+    assert not (functions() - words_of_the_field()).intersection(BARE.findall(said))

@@ -58,7 +58,8 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
             " and there are none",
             where=name,
             cure=Cure(
-                notebook="use offset='auto', or widen pair_tolerance", campaign=_OFFSET_OF_ITSELF
+                notebook="use offset='auto', or widen pair_tolerance",
+                campaign=f"{_OFFSET_OF_ITSELF}, or widen pair_tolerance there",
             ),
         )
     if wanted == "zero load" and known.rests is None:

@@ -8,6 +8,7 @@ import io
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Iterator
 from types import FrameType
 from typing import NoReturn
@@ -78,6 +79,8 @@ def prepared() -> Iterator[None]:
     Does nothing to streams that somebody else put in place, as tests and notebooks do.
     """
     codecs.register_error(_ERRORS, _plain)
+    # what arithmetic does with damaged numbers is found by checks, and told in words
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
     for name, number in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)
         if stream is getattr(sys, f"__{name}__") and stream is not None:
