@@ -118,7 +118,7 @@ def _signal(
     if unit is None and wanted not in ("", "1"):
         raise ReadError(
             f"{where}: column '{shown(label)}' has no unit; say it in the dialect "
-            f"'{dialect.name}', e.g. unit = \"{wanted}\" in its [[column]]"
+            f"'{dialect.name}' or a copy of it, e.g. unit = \"{wanted}\" in its [[column]]"
         )
     try:
         scale, offset = unit_conversion(unit or "", column.quantity)
