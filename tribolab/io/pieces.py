@@ -17,6 +17,7 @@ from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
 _LARGEST = 1e60  # of any quantity in SI; its fourth power is a number still
+_PLACES = {"x", "y"}  # of a scan: `scan_grid` says which cannot be
 
 
 class Piece(NamedTuple):
@@ -119,7 +120,8 @@ def _read_text(file: File, dialect: Dialect) -> Content:
 def measurable(values: np.ndarray) -> np.ndarray:
     """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
 
-    So whatever stands in a file, squares and ratios of its numbers are numbers, too.
+    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
+    infinite stays so: it is refused or left out where it is met.
 
     >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
     [1.0, nan, 0.0]
@@ -127,7 +129,7 @@ def measurable(values: np.ndarray) -> np.ndarray:
     if values.dtype.kind != "f":
         return values
     size = np.abs(values)
-    beyond, nothing = size > _LARGEST, (size < 1 / _LARGEST) & (size > 0)
+    beyond, nothing = (size > _LARGEST) & np.isfinite(size), (size < 1 / _LARGEST) & (size > 0)
     if not (beyond.any() or nothing.any()):
         return values
     return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
@@ -136,7 +138,8 @@ def measurable(values: np.ndarray) -> np.ndarray:
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
     for piece in content.pieces:
-        piece.columns.update({name: measurable(v) for name, v in piece.columns.items()})
+        signals = {k: v for k, v in piece.columns.items() if k not in _PLACES}
+        piece.columns.update({name: measurable(values) for name, values in signals.items()})
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
