@@ -255,6 +255,7 @@ def test_a_quotation_mark_left_open_is_told_in_a_short_message(tmp_path):
     ("rows", "told"),
     [
         ("0,1\n0.001,2\n1e308,3\n", "x reaches 1e\\+305 m"),
+        ("0,1\n1e-310,2\n2e-310,3\n", r"x spans .* no profile is so short"),
         ("0,1\n0.001,2\ninf,3\n", "x does not proceed"),
     ],
 )
