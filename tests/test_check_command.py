@@ -10,10 +10,12 @@ import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli, rig
+from tribolab.errors import ReadError
 from tribolab.io.kinds import kind_of
+from tribolab.io.runs import read
+from tribolab.io.scans import read_scans
 from tribolab.qc import run_checks, scan_checks
 from tribolab.qc.register import Check
-from tribolab.report.typed import as_in_campaign, as_typed
 from tribolab.rig.files import scan_file
 
 
@@ -179,7 +181,9 @@ def test_the_terminal_names_options_and_not_arguments_of_functions(scans, tmp_pa
     squeezed.write_bytes(b"PK\x03\x04")
     done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])
     assert done.exit_code == 3
-    assert "say which with --instrument, one of" in done.stderr
+    assert f"'tribolab dialect {unknown}' drafts a description of it" in done.stderr
+    assert "name it with --instrument" in done.stderr
+    assert all(len(line) < 300 for line in done.stderr.splitlines())
     assert not re.search(r"\w=[ ,;]|\w\(\)", done.stderr)
 
 
@@ -193,15 +197,12 @@ def headless_map(file):
 
 
 @pytest.mark.parametrize("command", ["info", "check"])
-def test_of_a_map_without_units_the_terminal_names_the_dialects_of_maps(tmp_path, command):
+def test_of_a_map_without_units_the_terminal_says_how_to_describe_it(tmp_path, command):
     file = headless_map(tmp_path / "map.txt")
     done = CliRunner().invoke(cli.app, [command, file])
     assert done.exit_code == 3
-    said = re.search(r"or one of ([a-z_, 0-9]+) for a profile or map of heights,", done.stderr)
-    assert "nanovea_map" in said[1].split(", ") and "pcs_mtm" not in said[1]
-    assert done.stderr.rstrip().endswith(
-        "taken for a profile or map, the file states no units (xyz)"
-    )
+    assert "taken for a profile or map, the file states no units (xyz); " in done.stderr
+    assert f"'tribolab dialect {file}' drafts a description of it" in done.stderr
     assert not re.search(r"\w=|\w\(\)", done.stderr)
     assert CliRunner().invoke(cli.app, [command, file, "-i", "nanovea_map"]).exit_code == 0
 
@@ -217,23 +218,23 @@ def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_
     done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml"), "-q", "-j", "1"])
     assert done.exit_code == 3
     of_run, of_surface = done.stderr.splitlines()[:2]
-    assert 'say which with instrument = "..." in its [[run]], one of' in of_run
-    assert "pcs_mtm" in of_run and "nanovea_map" not in of_run
-    assert 'says them with instrument = "..." in its [[surface]], one of' in of_surface
-    assert "nanovea_map" in of_surface
+    assert "'tribolab dialect odd.txt' drafts a description of it" in of_run
+    assert of_run.endswith('name it with instrument = "..." in its [[run]]')
+    assert 'says them with instrument = "..." in its [[surface]]' in of_surface
+    page = (tmp_path / "results/report.html").read_text()
+    said = (tmp_path / "results/tables/findings.csv").read_text()
+    assert "drafts a description of it" in page and "drafts a description of it" in said
+    assert "instrument=" not in page + said and "read_scans" not in page + said
     assert "--instrument" not in done.stderr
 
 
-def test_a_file_in_the_wrong_table_of_a_campaign_is_told_the_right_one():
-    run = as_in_campaign("a: this looks like a profile (x): use read_scans", "[[run]]")
-    assert run == "a: this looks like a profile (x); it belongs under scans of a [[surface]]"
-    scan = as_in_campaign("a: this looks like a run (x): use read", "[[surface]]")
-    assert scan == "a: this looks like a run (x); it belongs in a [[run]]"
-
-
-def test_what_is_skipped_is_explained_in_words_of_the_campaign_file():
-    said = as_typed("the contact width is not known (contact_width=)")
-    assert said == "the contact width is not known (a campaign knows it from [contact])"
-    assert as_typed("a: this looks like a profile (x): use read_scans").endswith("[[surface]]")
-    units = "say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name"
-    assert "=" not in as_typed(f"a: no units (x); {units} a dialect with instrument=")
+def test_a_file_in_the_wrong_table_of_a_campaign_is_told_the_right_one(scans, tmp_path):
+    log = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n5.0,1.0,31.0\n5.1,2.0,31.0\n"
+    (tmp_path / "run.csv").write_text(log)
+    with pytest.raises(ReadError) as error:
+        read_scans(tmp_path / "run.csv")
+    assert error.value.told("campaign").endswith("; it belongs in a [[run]]")
+    with pytest.raises(ReadError) as error:
+        read(scans / "sb-r_1.csv")
+    assert error.value.told("campaign").endswith("; it belongs under scans of a [[surface]]")
+    assert "a campaign under scans of a [[surface]]" in error.value.told("terminal")

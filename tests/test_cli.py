@@ -149,7 +149,7 @@ def test_a_mistake_in_the_campaign_file_is_one_line(campaign):
     line = 1 + text.splitlines().index('viscosity = "1.4 Pa s"')
     assert done.stderr == (
         f"tribolab: {campaign}, line {line}: medium.glycerol.viscosty: unknown key; "
-        "did you mean 'viscosity'?\n"
+        "did you mean 'viscosity' or 'viscosity_range'?\n"
     )
 
 

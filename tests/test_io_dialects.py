@@ -193,7 +193,10 @@ def test_a_step_that_states_its_speed_gives_it_along_time(tmp_path):
 def test_nothing_and_too_much_recognised_name_the_way_out(tmp_path, monkeypatch):
     file = tmp_path / "odd.csv"
     file.write_text("a,b\n1,2\n")
-    with pytest.raises(ReadError, match="instrument=, one of .*linear_slider"):
+    with pytest.raises(
+        ReadError,
+        match="'tribolab dialect .*' drafts a description of it: name it with instrument=",
+    ):
         recognise(file)
     file.write_text("# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n0,1,1\n")
     twin = (
@@ -208,9 +211,13 @@ def test_nothing_and_too_much_recognised_name_the_way_out(tmp_path, monkeypatch)
         recognise(file)
 
 
+# less than a trace of nothing is read as nothing
+MEASURED = st.floats(-1e6, 1e6, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-60)
+
+
 @settings(deadline=None, max_examples=40)
 @given(
-    st.lists(st.floats(-1e6, 1e6, allow_nan=False), min_size=1, max_size=50),
+    st.lists(MEASURED, min_size=1, max_size=50),
     st.sampled_from(["\n", "\r\n", "\r", "\r\r\n"]),
     st.sampled_from([".", ","]),
     st.booleans(),

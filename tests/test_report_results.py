@@ -36,7 +36,7 @@ RUNS = [
     ("sb-s_dry", "Sb-S", "dry", 31.0, 1.4),
     ("nameless", "", "", None, 0.5),
 ]
-REASON = "bad.csv: column 'Fx' has no unit; name it in the header, e.g. 'Fx [N]'"
+REASON = "bad.csv: column 'Fx' has no unit; say it in the dialect"
 
 
 @pytest.fixture(scope="module")

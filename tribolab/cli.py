@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.report.progress import progress_bars
-from tribolab.report.streams import Terminated, prepared
+from tribolab.report.streams import Terminated, prepared, say
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -56,7 +56,7 @@ def _version(asked: bool) -> None:
     if asked:
         from tribolab import __version__
 
-        typer.echo(f"tribolab {__version__}")
+        say(f"tribolab {__version__}")
         raise typer.Exit
 
 
@@ -96,7 +96,7 @@ def demo(
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
         code = _show(outcome, debug)
         for line in truth_lines(compared, outcome):
-            typer.echo(line)
+            say(line)
     raise typer.Exit(code)
 
 
@@ -124,7 +124,7 @@ def reproduce(
 
         with progress_bars(quiet) as progress:
             made = reproduce_paper(output, jobs=jobs, progress=progress)
-        typer.echo("\n".join(paper_lines(made.folder, made.table)))
+        say("\n".join(paper_lines(made.folder, made.table)))
 
 
 @app.command()
@@ -161,7 +161,7 @@ def run(
 
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
-    with _reported(debug):
+    with _reported(debug, audience="campaign"):
         from tribolab.report.run import run_campaign
 
         with progress_bars(quiet) as progress:
@@ -217,7 +217,7 @@ def simulate(
                 jobs=jobs or default_jobs(),
                 progress=progress,
             )
-        typer.echo(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
+        say(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
 
 
 @app.command()
@@ -255,7 +255,7 @@ def check(
         checked = checks.check_files(files, instrument, repeats=repeats)
         code = checks.code_of(checked, fail_on)
         if as_json:
-            typer.echo(checks.as_json(checked, fail_on))
+            say(checks.as_json(checked, fail_on))
         else:
             checks.show(checked, everything)
     raise typer.Exit(code)
@@ -276,15 +276,14 @@ def info(
     with _reported(debug):
         from tribolab.errors import ReadError
         from tribolab.report.file_info import file_lines
-        from tribolab.report.typed import as_typed
 
         unreadable = 0
         for file in files:
             try:
-                typer.echo("\n".join(file_lines(file, instrument)))
+                say("\n".join(file_lines(file, instrument)))
             except ReadError as error:  # the other files want to be seen too
                 unreadable += 1
-                typer.echo(f"tribolab: {as_typed(str(error))}", err=True)
+                say(f"tribolab: {error.told('terminal')}", to_stderr=True)
     raise typer.Exit(UNREADABLE if unreadable else 0)
 
 
@@ -338,16 +337,16 @@ def dialect(
 
 
 @contextlib.contextmanager
-def _reported(debug: bool) -> Iterator[None]:
-    """Turn an error into one short message on stderr and an exit code."""
+def _reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
+    """Turn an error into one short message on stderr, for who reads it, and an exit code."""
     from tribolab.errors import ConfigError, TribolabError, UnitError
 
     try:
         yield
     except (ConfigError, UnitError) as error:
-        _fail(str(error), USAGE, debug)
+        _fail(error.told(audience), USAGE, debug)
     except TribolabError as error:
-        _fail(str(error), UNREADABLE, debug)
+        _fail(error.told(audience), UNREADABLE, debug)
     except KeyboardInterrupt as stop:
         code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
         _fail("interrupted; results of before are as they were", code, debug)
@@ -362,9 +361,7 @@ def _reported(debug: bool) -> Iterator[None]:
 def _fail(message: str, code: int, debug: bool) -> None:
     if debug:
         raise
-    from tribolab.report.typed import as_typed
-
-    typer.echo(f"tribolab: {as_typed(message)}", err=True)
+    say(f"tribolab: {message}", to_stderr=True)
     raise typer.Exit(code) from None
 
 
@@ -377,16 +374,16 @@ def _show(outcome: Outcome, debug: bool) -> int:
     if table.row_count:
         terminal.console().print(table)
     for line in terminal.outcome_lines(outcome):
-        typer.echo(line)
+        say(line)
     for line in terminal.foreign_lines(outcome):
-        typer.echo(line)
+        say(line)
     for line in terminal.failure_lines(outcome):
-        typer.echo(f"tribolab: {line}", err=True)
+        say(f"tribolab: {line}", to_stderr=True)
     crashes = [curve.crash for curve in outcome.curves if curve.crash]
     for crash in crashes if debug else ():
-        typer.echo(crash, err=True)
+        say(crash, to_stderr=True)
     if not outcome.segments:
-        typer.echo("tribolab: no segment of constant speed was found in any run", err=True)
+        say("tribolab: no segment of constant speed was found in any run", to_stderr=True)
     spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
     if spoilt or outcome.kept or crashes or not outcome.segments:
         return UNREADABLE

@@ -2,12 +2,54 @@
 
 from __future__ import annotations
 
+import copyreg
 import difflib
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+AUDIENCES = ("notebook", "terminal", "campaign")
+
+
+@dataclass(frozen=True)
+class Cure:
+    """How to mend something, in words for each who may read it; "" where there is nothing to say.
+
+    Parameters
+    ----------
+    notebook
+        Names functions and arguments of Python.
+    terminal
+        Names commands and their options.
+    campaign
+        Names keys of the campaign file; stands in the report of a campaign, too.
+    """
+
+    notebook: str = ""
+    terminal: str = ""
+    campaign: str = ""
+
+    def told(self, audience: str) -> str:
+        """Return the words for one audience."""
+        return str(getattr(self, audience))
 
 
 class TribolabError(Exception):
     """Base of every error that tribolab raises on purpose.
+
+    It holds the parts of a message. Who catches it knows who reads, and asks for the words:
+    `told("terminal")`. As text it is for a notebook. No part can steer a terminal.
+
+    Parameters
+    ----------
+    what
+        What is wrong; another error, to say more of where it happened.
+    where
+        The file, key or quantity.
+    function
+        The Python function or argument that complains: told in notebooks only.
+    cure
+        How to mend it: the same words for everyone, or a `Cure`.
 
     Examples
     --------
@@ -17,7 +59,43 @@ class TribolabError(Exception):
     ... except tl.TribolabError as error:
     ...     print(error)
     nothing.csv: there is no such file
+    >>> cure = Cure(notebook="say instrument=", terminal="say --instrument")
+    >>> error = ReadError("two instruments fit", where="a.csv", cure=cure)
+    >>> print(error)
+    a.csv: two instruments fit; say instrument=
+    >>> error.told("terminal"), error.told("campaign")
+    ('a.csv: two instruments fit; say --instrument', 'a.csv: two instruments fit')
     """
+
+    def __init__(
+        self,
+        what: str | TribolabError = "",
+        *,
+        where: object = "",
+        function: str = "",
+        cure: str | Cure = "",
+    ) -> None:
+        super().__init__(what)
+        self.what = what
+        self.where = str(where)
+        self.function = function
+        self.cure = cure
+
+    def told(self, audience: str) -> str:
+        """Return the message in words for a "notebook", the "terminal" or a "campaign"."""
+        what = self.what.told(audience) if isinstance(self.what, TribolabError) else str(self.what)
+        first = self.function if audience == "notebook" else ""
+        cure = self.cure.told(audience) if isinstance(self.cure, Cure) else self.cure
+        message = ": ".join(part for part in (first, self.where, what) if part)
+        return harmless("; ".join(part for part in (message, cure) if part))
+
+    def __str__(self) -> str:
+        """Return the message in words for a notebook."""
+        return self.told("notebook")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Have every part travel between processes."""
+        return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class ReadError(TribolabError):
@@ -38,6 +116,26 @@ class AnalysisError(TribolabError):
 
 class OutputError(TribolabError):
     """Results could not be written."""
+
+
+def told(error: BaseException, audience: str) -> str:
+    """Return what an error says to one audience; of other libraries' errors, briefly.
+
+    >>> told(ReadError("empty", where="a.csv"), "terminal"), told(ValueError("no"), "campaign")
+    ('a.csv: empty', 'no')
+    """
+    return error.told(audience) if isinstance(error, TribolabError) else brief(error)
+
+
+def harmless(text: str) -> str:
+    r"""Return text without what steers a terminal; line ends stay.
+
+    >>> harmless("\x1b[31mred\tline\nnext")
+    '?[31mred line\nnext'
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else " " if c.isspace() else "?" for c in text)
 
 
 def brief(error: BaseException, most: int = 300) -> str:

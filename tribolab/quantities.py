@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, TribolabError, UnitError, nearest
+from tribolab.errors import AnalysisError, TribolabError, UnitError, nearest, shown
 from tribolab.turns import Counted, reciprocal
 from tribolab.units import conversion, to_si
 
@@ -318,7 +318,7 @@ def quantity(name: str) -> Quantity:
         base = QUANTITIES.get(name.removesuffix(ending))
         if name.endswith(ending) and base:
             return Quantity(name, base.symbol, base.unit, text.format(base.long_name), base.bare)
-    raise TribolabError(f"no quantity is called '{name}'{nearest(name, QUANTITIES)}")
+    raise TribolabError(f"no quantity is called '{shown(name)}'{nearest(name, QUANTITIES)}")
 
 
 def unit_conversion(unit: str, name: str) -> tuple[float, float]:
@@ -400,7 +400,8 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
         ]
     except (TypeError, ValueError) as error:
         raise UnitError(
-            f"{name}: numbers in {unit}, or text such as '1 {unit}', are wanted; got {value!r:.60}"
+            f"{name}: numbers in {unit}, or text such as '1 {unit}', are wanted; got "
+            f"{shown(repr(value), 60)}"
         ) from error
     return np.array(numbers, dtype=float).reshape(entries.shape)
 

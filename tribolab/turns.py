@@ -12,7 +12,7 @@ import math
 import re
 from typing import Literal, NamedTuple
 
-from tribolab.errors import UnitError
+from tribolab.errors import UnitError, shown
 
 Counted = Literal["cycles", "radians", "nothing", "ask"]
 
@@ -134,11 +134,11 @@ def scale_of_reciprocal(unit: str, si_unit: str, bare: Counted) -> float | None:
     if counts == "ask":
         per = re.sub(r"[^A-Za-z]", "", unit) or "s"
         raise UnitError(
-            f"'{unit}' may count cycles or radians, a factor of 2 pi apart; write 'cycles/{per}' "
-            f"or 'rad/{per}'"
+            f"'{shown(unit)}' may count cycles or radians, a factor of 2 pi apart; "
+            f"write 'cycles/{per}' or 'rad/{per}'"
         )
     if "nothing" in (counts, into) and counts != into:
-        raise UnitError(f"'{unit}' counts {counts}, but what is wanted counts {into}")
+        raise UnitError(f"'{shown(unit)}' counts {counts}, but what is wanted counts {into}")
     turn = {("cycles", "radians"): 2 * math.pi, ("radians", "cycles"): 0.5 / math.pi}
     return given.scale * turn.get((counts, into), 1.0)
 

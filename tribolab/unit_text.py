@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tribolab.errors import UnitError
+from tribolab.errors import UnitError, shown
 
 LONGEST = 80  # letters of a unit; those of rheology need some 30
 _DEEPEST = 4
@@ -60,7 +60,7 @@ def parse_unit(text: str) -> Parsed:
     reader = _Reader(text)
     found = reader.unit(0)
     if reader.kind:
-        raise reader.error(f"'{reader.value}' does not belong there")
+        raise reader.error(f"'{shown(reader.value)}' does not belong there")
     return found
 
 
@@ -85,7 +85,7 @@ class _Reader:
         self.at += match.end()
 
     def error(self, why: str) -> UnitError:
-        return UnitError(f"'{self.text}' is not a unit: {why}")
+        return UnitError(f"'{shown(self.text)}' is not a unit: {why}")
 
     def unit(self, depth: int) -> Parsed:
         if depth > _DEEPEST:
@@ -97,7 +97,7 @@ class _Reader:
             if self.kind == "operator":
                 self.step()
             elif self.kind == "number":  # "ch 1" is a channel
-                raise self.error(f"'{self.value}' does not belong there")
+                raise self.error(f"'{shown(self.value)}' does not belong there")
             more, names = self.factor(depth)
             if over and more == 0:
                 raise self.error("it divides by zero")
@@ -122,7 +122,7 @@ class _Reader:
             if self.value != ")":
                 raise self.error("a bracket is not closed")
         else:
-            raise self.error(f"after '{self.text[: self.at]}' a name is wanted")
+            raise self.error(f"after '{shown(self.text[: self.at])}' a name is wanted")
         self.step()
         power = self.power(kind)
         if power is None:

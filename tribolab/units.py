@@ -149,7 +149,9 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         return float(f"{turning:.15g}"), 0.0
     counted = reciprocal(si_unit)
     if (si_unit in ("", "1") or counted) and holds_an_angle(unit):
-        raise UnitError(f"unit '{unit}' counts an angle or cycles, and cannot become '{si_unit}'")
+        raise UnitError(
+            f"unit '{shown(unit)}' counts an angle or cycles, and cannot become '{si_unit}'"
+        )
     if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
@@ -161,7 +163,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         zero = ureg.Quantity(0.0, source.units).to(target.units).magnitude
         one = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
-        raise UnitError(f"unit '{unit}' cannot be turned into '{si_unit}'") from error
+        raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
     except Exception as error:  # pint raises many kinds on text that is no unit
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
@@ -221,7 +223,8 @@ def to_si(
             return float(value)
         except (TypeError, ValueError) as error:
             raise UnitError(
-                f"{name}: one number, or text such as '1 {si_unit}', is wanted; got {value!r:.60}"
+                f"{name}: one number, or text such as '1 {si_unit}', is wanted; got "
+                f"{shown(repr(value), 60)}"
             ) from error
     said = shown(value)
     match = _NUMBER.match(value) if len(value) <= _LONGEST else None

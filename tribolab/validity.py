@@ -87,7 +87,7 @@ LIMITS = {
         1.0,
         3.0,
         "beyond it the roughness is pressed flat and p(u) is extrapolated",
-        "take a smaller load, or smooth surfaces (psd=None)",
+        "take a smaller load, or smooth surfaces",
     ),
 }
 
@@ -131,7 +131,9 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
         found = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
         if largest > limit.refuse:
             raise AnalysisError(
-                f"{who}: {found}, far above {limit.suspect:g}: {limit.because}; {limit.cure}"
+                f"{found}, far above {limit.suspect:g}: {limit.because}",
+                function=who,
+                cure=limit.cure,
             )
         reasons.append(f"{found}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
     return {

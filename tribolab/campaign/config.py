@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from tribolab.errors import ConfigError, TribolabError, UnitError, nearest
+from tribolab.errors import ConfigError, TribolabError, UnitError, nearest, shown
 from tribolab.units import to_si
 
 SCHEMA_FILE = "campaign.schema.json"
@@ -32,7 +32,7 @@ def _si(unit: str, example: str) -> Any:
     def convert(value: Any, info: ValidationInfo) -> float:
         in_file = bool(info.context and info.context.get("in_file"))
         if in_file and not isinstance(value, str):
-            raise ValueError(f"{value!r} has no unit; write e.g. {example!r}")
+            raise ValueError(f"{shown(repr(value))} has no unit; write e.g. {example!r}")
         try:
             return to_si(value, unit, name="")
         except UnitError as error:
@@ -293,7 +293,7 @@ class Qc(Table):
             resolve_limits(known, self.limits)
             for name in self.skip:
                 if name not in known:
-                    raise ConfigError(f"no check is called '{name}'{nearest(name, known)}")
+                    raise ConfigError(f"no check is called '{shown(name)}'{nearest(name, known)}")
         except TribolabError as error:
             raise ValueError(str(error)) from error
         return self

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
@@ -384,6 +385,8 @@ def _begin_worker() -> None:
     import multiprocessing
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # what arithmetic does with damaged numbers is found by checks, and told in words
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
     parent = multiprocessing.parent_process()
 
     def follow() -> None:

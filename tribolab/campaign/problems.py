@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.toml_lines import line_of
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -53,7 +53,8 @@ def _key(where: tuple[str | int, ...]) -> str:
         if isinstance(part, int):
             text += f" {part + 1}"
         else:
-            text += f", {part}" if text[-1:].isdigit() else f".{part}" if text else part
+            name = shown(part)
+            text += f", {name}" if text[-1:].isdigit() else f".{name}" if text else name
     return text
 
 
@@ -63,7 +64,7 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
     if match := re.search(r"\(at line (\d+), column \d+\)", said):
         number = int(match[1])
         line = text.splitlines()[number - 1].strip() if number <= len(text.splitlines()) else ""
-        return f"line {number}: {said[: match.start()].strip()} in: {line}"
+        return f"line {number}: {said[: match.start()].strip()} in: {shown(line)}"
     if said.endswith("(at end of document)"):
         return f"line {len(text.splitlines())}: {said}"
     return said
@@ -103,15 +104,15 @@ def _words(item: Any, table: type[BaseModel] | None) -> str:
     if kind == "literal_error":
         known = re.findall(r"'([^']*)'", item["ctx"]["expected"])
         hint = nearest(str(value), known)
-        return f"{value!r} is not one of {', '.join(map(repr, known))}" + (
+        return f"{shown(repr(value))} is not one of {', '.join(map(repr, known))}" + (
             hint if "did you mean" in hint else ""
         )
     if kind == "model_type":
-        return f"a table is wanted, not {value!r}"
+        return f"a table is wanted, not {shown(repr(value))}"
     if kind == "too_short":
         return "is empty"
     text = item["msg"][0].lower() + item["msg"][1:]
-    return f"{text}; got {value!r}"
+    return f"{text}; got {shown(repr(value))}"
 
 
 def _walk(
@@ -162,7 +163,9 @@ def of_names(campaign: Campaign) -> list[Problem]:
     for number, name in enumerate(surfaces):
         if name in surfaces[:number]:
             found.append(
-                Problem(("surface", number, "name"), f"'{name}' is the name of a surface before")
+                Problem(
+                    ("surface", number, "name"), f"'{shown(name)}' is the name of a surface before"
+                )
             )
     for number, surface in enumerate(campaign.surface):
         if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
@@ -179,17 +182,17 @@ def of_names(campaign: Campaign) -> list[Problem]:
             found.append(Problem((*where, f"{name}_range"), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
-            what = f"no [[surface]] is called '{entry.surface}'" + _hint(
+            what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(
                 entry.surface,
                 surfaces,
-                f'add [[surface]] with name = "{entry.surface}" (its scans may be left out)',
+                f'add [[surface]] with name = "{shown(entry.surface)}" (its scans may be left out)',
             )
             found.append(Problem(("run", number, "surface"), what))
         if entry.medium is not None and entry.medium not in campaign.medium:
-            what = f"there is no [medium.{entry.medium}]" + _hint(
+            what = f"there is no [medium.{shown(entry.medium)}]" + _hint(
                 entry.medium,
                 campaign.medium,
-                f"add [medium.{_toml_key(entry.medium)}] (its keys may be left out)",
+                f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
             )
             found.append(Problem(("run", number, "medium"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
@@ -214,5 +217,5 @@ def _instrument(campaign: Campaign, name: str) -> str:
     try:
         load_dialect(instrument_of(campaign, name))
     except ConfigError as error:
-        return str(error)
+        return error.told("campaign")
     return ""

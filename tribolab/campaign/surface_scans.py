@@ -108,7 +108,7 @@ def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding
             [scan] = read_scans([path], surface.instrument, stack=False)
             fill_dropouts(scan)
         except TribolabError as error:
-            reason = _without_folder(str(error), path)
+            reason = _without_folder(error.told("campaign"), path)
             findings.append(Finding("fail", f"scan {label} is left out: {reason}"))
             continue
         if "tip_radius" in surface.roughness and "tip_radius_m" not in scan.attrs:

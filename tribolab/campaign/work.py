@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.campaign.zeros import RunZero, attributes, zero_of
-from tribolab.errors import ConfigError, OutputError, TribolabError
+from tribolab.errors import ConfigError, OutputError, TribolabError, brief, shown
 from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
 
@@ -153,14 +153,15 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
 def explain(error: BaseException) -> tuple[str, str]:
     """Return one line that says what went wrong, and the class name of the error.
 
+    It is for the records of a campaign, whose readers have a campaign file before them.
     An error that nobody raised on purpose also says where it happened.
     """
     name = type(error).__name__
-    text = " ".join(str(error).split())
     if isinstance(error, TribolabError):
-        return text, name
+        return " ".join(error.told("campaign").split()), name
+    text = brief(error) if str(error) else ""
     if isinstance(error, OSError) and error.strerror and error.filename:
-        return f"{Path(str(error.filename)).name}: {error.strerror.lower()}", name
+        return f"{shown(Path(str(error.filename)).name)}: {error.strerror.lower()}", name
     where = ""
     if frames := traceback.extract_tb(error.__traceback__):
         ours = [frame for frame in frames if Path(frame.filename).is_relative_to(_PACKAGE)]
@@ -290,5 +291,5 @@ def write_data(groups: dict[str | None, xr.Dataset], path: Path) -> None:
                 f"{path.name}: the disk is full; make room or choose another folder with --output"
             ) from error
         if number in _NO_ROOM or not path.parent.is_dir():
-            raise OutputError(f"{path.name}: cannot be written ({error})") from error
+            raise OutputError(f"{path.name}: cannot be written ({brief(error)})") from error
         raise

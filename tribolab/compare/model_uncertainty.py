@@ -216,7 +216,7 @@ def _all_ends(
             try:
                 changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
             except AnalysisError as error:
-                raise AnalysisError(f"varied {one.name} ({one.texts[j]}): {error}") from error
+                raise AnalysisError(error, where=f"varied {one.name} ({one.texts[j]})") from error
             fluid = sum(changed[part].values for part in _PARTS)
             area = changed["friction_per_shear_stress"].values
             solid = float(area @ area)
@@ -243,7 +243,9 @@ def _range(
 def _error_of_stress(given: str | float) -> float:
     error = to_si(given, "Pa", name="shear_stress_error")
     if not 0 <= error < np.inf:
-        raise AnalysisError(f"shear_stress_error: finite, not negative is wanted; got {error:g} Pa")
+        raise AnalysisError(
+            f"finite, not negative is wanted; got {error:g} Pa", function="shear_stress_error"
+        )
     return error
 
 

@@ -15,7 +15,7 @@ from scipy.special import comb
 from tribolab.compare.residual_error import residual_error
 from tribolab.compare.shear_stress_fit import ShearStressFit
 from tribolab.contact.geometry import LineContact
-from tribolab.errors import AnalysisError, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.quantities import stamp
@@ -117,14 +117,16 @@ def fit_shear_stress(
     """
     unknown = [name for name in free if name not in FREE]
     if unknown:
-        raise AnalysisError(f"free: '{unknown[0]}' cannot be fitted{nearest(unknown[0], FREE)}")
+        raise AnalysisError(
+            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], FREE)}"
+        )
     eta = positive(viscosity, "Pa s", "viscosity")
     force = positive(load, "N/m", "load")
     enhancement = positive(area_enhancement, "1", "area_enhancement")
     if not 0 <= area_enhancement_error < np.inf:
         raise AnalysisError(
-            "area_enhancement_error: a standard error, finite and not negative, is wanted; got "
-            f"{area_enhancement_error:g}"
+            f"a standard error, finite and not negative, is wanted; got {area_enhancement_error:g}",
+            function="area_enhancement_error",
         )
     speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
 
@@ -141,7 +143,8 @@ def fit_shear_stress(
     least = _ATOM / (force * contact.length)
     if not np.any(_parts(found)[1][used] > least):
         raise AnalysisError(
-            "fit_shear_stress: at none of these speeds do the bodies touch; take lower speeds"
+            "at none of these speeds do the bodies touch; take lower speeds",
+            function="fit_shear_stress",
         )
     if free:
         best = _profiled(computed, start, mu[used], error[used], used)
@@ -239,8 +242,11 @@ def _points(
             "is not in it" if mu is None else f"is over {', '.join(map(repr, mu.dims)) or 'none'}"
         )
         raise AnalysisError(
-            f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}; "
-            "tl.measured_stribeck_curve makes such a curve from the results of friction_coefficient"
+            f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
+            cure=Cure(
+                notebook="tl.measured_stribeck_curve makes such a curve from the results of "
+                "friction_coefficient"
+            ),
         )
     measured = measured.sortby("sliding_speed")
     speed = measured["sliding_speed"].values.astype(float)
@@ -262,7 +268,9 @@ def _points(
             continue
         error = measured[name].values.astype(float)
         if np.any(error < 0):
-            raise AnalysisError(f"measured: '{name}' is negative at {speed[error < 0][0]:g} m/s")
+            raise AnalysisError(
+                f"measured: '{shown(name)}' is negative at {speed[error < 0][0]:g} m/s"
+            )
         known = np.isfinite(error) & (error > 0)
         if np.any(known & used):
             error = np.where(known, error, np.median(error[known & used]))
@@ -289,7 +297,9 @@ def _profiled(computed, start: np.ndarray, mu, error, used) -> np.ndarray:
 
     found = least_squares(residual, start, diff_step=_STEP, x_scale=1.0, xtol=1e-6, ftol=1e-8)
     if not found.success:
-        raise AnalysisError(f"fit_shear_stress: no least squares ({found.message}); free fewer")
+        raise AnalysisError(
+            f"no least squares ({found.message}); free fewer", function="fit_shear_stress"
+        )
     return found.x
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 
 _FEW = 30  # degrees of freedom under which Student's t is worth a word
 
@@ -110,9 +110,12 @@ class ShearStressFit:
         """
         if self.spectrum_scanned and self.spectrum_error is None:
             raise AnalysisError(
-                "interval: the spectrum was measured, and its error is not in this fit; give "
-                "fit_shear_stress the argument spectrum_error=shear_stress_shift("
-                "model_uncertainty(...)), or take statistical_half_interval and say so"
+                "the spectrum was measured, and its error is not in this fit",
+                where="interval",
+                cure=Cure(
+                    notebook="give fit_shear_stress the argument spectrum_error=shear_stress_shift("
+                    "model_uncertainty(...)), or take statistical_half_interval and say so"
+                ),
             )
         parts = np.abs(self.spectrum_error or (0.0, 0.0)) * abs(self.shear_stress)
         low, high = np.hypot(self.statistical_half_interval, parts)

@@ -324,8 +324,9 @@ def _measured_to(base: Base) -> float | None:
     if base.measured_to is not None:
         if not q[0] < base.measured_to < q[-1]:
             raise AnalysisError(
-                f"measured_to: {base.measured_to:.4g} 1/m lies outside the spectrum, which reaches "
-                f"from {q[0]:.4g} to {q[-1]:.4g} 1/m"
+                f"{base.measured_to:.4g} 1/m lies outside the spectrum, which reaches "
+                f"from {q[0]:.4g} to {q[-1]:.4g} 1/m",
+                function="measured_to",
             )
         return base.measured_to
     guessed = _origin(base.psd) == TO_LARGE

@@ -195,7 +195,9 @@ def rough_interface(
     if not 0 <= kappa <= 1:
         raise AnalysisError(f"kappa: a value from 0 to 1 is wanted; got {kappa:g}")
     if not 0 <= c_a < np.inf:
-        raise AnalysisError(f"c_a: a value of about 1, zero or above, is wanted; got {c_a:g}")
+        raise AnalysisError(
+            f"a value of about 1, zero or above, is wanted; got {c_a:g}", function="c_a"
+        )
     if nodes < 50:
         raise AnalysisError(f"nodes: at least 50 are needed, 200 are usual; got {nodes}")
     modulus = positive(effective_modulus, "Pa", "effective_modulus")

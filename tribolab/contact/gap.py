@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.special import erf
 
 from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
-from tribolab.errors import AnalysisError, nearest
+from tribolab.errors import AnalysisError, nearest, shown
 from tribolab.quantities import labelled, stamp
 from tribolab.surface.moments import cumulative_at, rms_slope
 from tribolab.units import positive
@@ -115,7 +115,7 @@ def gap_distributions(
     for variant in variants:
         if variant not in ("flow", "plain"):
             known = nearest(variant, ["flow", "plain"])
-            raise AnalysisError(f"variant: '{variant}' is none{known}")
+            raise AnalysisError(f"variant: '{shown(variant)}' is none{known}")
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     over = labelled(pressure, "pressure")
     values = pressure_values(over).ravel()

@@ -11,7 +11,7 @@ from tribolab.contact.hertz import hertz_half_width, hertz_pressure
 from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.quantities import stamp
 from tribolab.units import positive
 
@@ -186,7 +186,8 @@ def _newton(
     if table.separation(float(p.max())) < _FLAT * table.rms_roughness:
         raise AnalysisError(
             f"load: at {force:g} N/m the roughness is pressed flat, u is below {_FLAT:g} h_rms at "
-            f"the Hertz pressure of {p.max():.4g} Pa; use hertz_pressure"
+            f"the Hertz pressure of {p.max():.4g} Pa",
+            cure=Cure(notebook="use hertz_pressure"),
         )
     p *= force / (p.sum() * cell)
     shape = gap + kernel @ p
@@ -206,8 +207,9 @@ def _newton(
             found = table.pressure(u)
             return found, u, step, float(np.max(np.abs(p - found)) / found.max())
     raise AnalysisError(
-        f"rough_line_contact: no convergence in {_STEPS} steps at {force:g} N/m; "
-        f"the last changed the pressure by {np.max(np.abs(dp)) / p.max():.1e} of its maximum"
+        f"no convergence in {_STEPS} steps at {force:g} N/m; "
+        f"the last changed the pressure by {np.max(np.abs(dp)) / p.max():.1e} of its maximum",
+        function="rough_line_contact",
     )
 
 

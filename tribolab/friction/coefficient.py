@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.rests import unloaded_rests
 from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
 from tribolab.friction.steadiness import judged
@@ -113,7 +113,7 @@ def friction_coefficient(
     ([0.3, 0.3], 'half loop')
     """
     if offset not in OFFSETS:
-        raise AnalysisError(f"offset: '{offset}' is not known{nearest(offset, OFFSETS)}")
+        raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, OFFSETS)}")
     belong(run, segments)
     settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
     if "friction_force" in run:
@@ -148,8 +148,9 @@ def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
         )
     if outside or (mine and theirs and mine != theirs):
         raise AnalysisError(
-            f"{_name(run)}: the segments lie outside this run or come from another file;"
-            " find them in the same run with find_segments(run)"
+            "the segments lie outside this run or come from another file",
+            where=_name(run),
+            cure=Cure(notebook="find them in the same run with find_segments(run)"),
         )
 
 

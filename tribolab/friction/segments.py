@@ -7,7 +7,7 @@ from numbers import Real
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, shown
 from tribolab.friction.loaded import loaded
 from tribolab.friction.locate import Limits
 from tribolab.friction.slopes import line
@@ -112,7 +112,8 @@ def find_segments(
     """
     if not isinstance(trim, Real) or not 0 <= trim < 0.5:
         raise AnalysisError(
-            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got {trim!r}"
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
+            f"{shown(repr(trim))}"
         )
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")

@@ -199,9 +199,10 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
         normal = run["normal_force"].values if "normal_force" in run else None
         zero = 0.0
         if normal is not None and "omitted_reason" in segments and len(parts):
-            usual = float(np.nanmedian(np.concatenate([normal[s][:1000] for s in parts])))
-            rests = unloaded_rests(run, segments, usual)[1]
-            zero = float(rests.value.mean()) if rests else 0.0
+            first = np.concatenate([normal[s][:1000] for s in parts])
+            if np.isfinite(first).any():
+                rests = unloaded_rests(run, segments, float(np.nanmedian(first)))[1]
+                zero = float(rests.value.mean()) if rests else 0.0
         for part, sign in zip(parts, direction, strict=True):
             raw = force[part]
             if normal is None:

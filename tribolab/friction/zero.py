@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.middles import Middles, error_of_rows, interpolated, middles
 from tribolab.friction.rectified import Fold
 from tribolab.friction.rests import Zeros
@@ -17,6 +17,8 @@ from tribolab.friction.zero_words import of_speeds, words_of
 
 ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
 MISSED = 3.0  # standard errors of the same
+
+_OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 
 
 def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name: str) -> Reference:
@@ -52,13 +54,20 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
         loops = None
     if wanted == "half loop" and loops is None:
         raise AnalysisError(
-            f"{name}: offset 'half loop' needs two neighbouring strokes of one speed and opposite"
-            " direction, and there are none; use offset='auto', or widen pair_tolerance"
+            "offset 'half loop' needs two neighbouring strokes of one speed and opposite direction,"
+            " and there are none",
+            where=name,
+            cure=Cure(
+                notebook="use offset='auto', or widen pair_tolerance",
+                campaign=f"{_OFFSET_OF_ITSELF}, or widen pair_tolerance there",
+            ),
         )
     if wanted == "zero load" and known.rests is None:
         raise AnalysisError(
-            f"{name}: offset 'zero load' needs a rest without load, and there is none (or no"
-            " velocity or normal force that would show it); use offset='auto'"
+            "offset 'zero load' needs a rest without load, and there is none (or no velocity or"
+            " normal force that would show it)",
+            where=name,
+            cure=Cure(notebook="use offset='auto'", campaign=_OFFSET_OF_ITSELF),
         )
     nothing = np.full(strokes.size, np.nan)
     if not strokes.size:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.clock_faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.pieces import Content, Piece, last_match
@@ -42,7 +42,7 @@ def set_time(content: Content, dialect: Dialect) -> None:
         found = last_match(dialect.time.rate_pattern, content.pieces[0].before)
         if found is None:
             raise ReadError(
-                f"{content.path}: no sample rate matches '{dialect.time.rate_pattern}' "
+                f"{content.path}: no sample rate matches '{shown(dialect.time.rate_pattern)}' "
                 f"(instrument '{dialect.name}', time.rate_pattern)"
             )
         step = 1.0 / to_si(f"{found} {dialect.time.rate_unit}", "Hz", str(content.path))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.errors import ReadError, UnitError, nearest
+from tribolab.errors import ReadError, UnitError, nearest, shown
 from tribolab.io.dialect_model import Column, Dialect
 from tribolab.quantities import quantity, unit_conversion
 
@@ -88,18 +88,18 @@ def _index(
         if not column.optional:
             raise ReadError(
                 f"{where}: the header names {len(names)} columns, but the first row of numbers "
-                f"has {width}: column '{column.name}' ({column.quantity}) has no values"
+                f"has {width}: column '{shown(column.name)}' ({column.quantity}) has no values"
             )
         return None
     if column.optional:
         return None
     if places:
         raise ReadError(
-            f"{where}: column '{column.name}' ({column.quantity}) should stand there "
+            f"{where}: column '{shown(column.name)}' ({column.quantity}) should stand there "
             f"{column.occurrence} times, it stands {len(places)} times"
         )
     raise ReadError(
-        f"{where}: column '{column.name}' ({column.quantity}) is missing (instrument "
+        f"{where}: column '{shown(column.name)}' ({column.quantity}) is missing (instrument "
         f"'{dialect.name}'){nearest(column.name or '', [name for name in names if name])}"
     )
 
@@ -117,14 +117,14 @@ def _signal(
     unit = column.unit if column.unit is not None else (units[index] if units else None)
     if unit is None and wanted not in ("", "1"):
         raise ReadError(
-            f"{where}: column '{label}' has no unit; name it in the header, e.g. "
-            f"'{label} [{wanted}]', or in the dialect '{dialect.name}': unit = \"{wanted}\""
+            f"{where}: column '{shown(label)}' has no unit; say it in the dialect "
+            f"'{dialect.name}' or a copy of it, e.g. unit = \"{wanted}\" in its [[column]]"
         )
     try:
         scale, offset = unit_conversion(unit or "", column.quantity)
     except UnitError as error:
         raise ReadError(
-            f"{where}: column '{label}' ({column.quantity}): {error}; the right unit can be "
+            f"{where}: column '{shown(label)}' ({column.quantity}): {error}; the right unit can be "
             f"given in the dialect '{dialect.name}'"
         ) from error
     # sign * (scale * x + offset), then the unit

@@ -39,7 +39,7 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
             return {}
         attrs = read(path, instrument).attrs
     except ReadError as error:
-        return {"refused": str(error)}
+        return {"refused": error.told("terminal")}
     if "companion_missing" in attrs:
         return {"missing": attrs["companion_missing"]}
     told: dict[str, Any] = {

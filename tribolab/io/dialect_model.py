@@ -40,7 +40,9 @@ def _is_encoding(text: str) -> str:
     try:
         codecs.lookup(text)
     except LookupError as error:
-        raise ValueError(f"'{text}' is not an encoding; write e.g. 'utf-8' or 'latin-1'") from error
+        raise ValueError(
+            f"'{shown(text)}' is not an encoding; write e.g. 'utf-8' or 'latin-1'"
+        ) from error
     return text
 
 
@@ -241,7 +243,9 @@ class Value(_Strict):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         if guarded(self.pattern).groups < 1:
-            raise ValueError(f"value '{self.name}': the pattern needs a group ( ) for the value")
+            raise ValueError(
+                f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
+            )
         if self.unit is not None:
             _check_unit(self.unit, self.si_unit, self.bare)
         return self
@@ -262,7 +266,8 @@ class Value(_Strict):
             hint = nearest(self.name, QUANTITIES)
             hint = f"{hint[:-1]}, or " if "did you mean" in hint else "; "
             raise ValueError(
-                f"value '{self.name}' is no known quantity{hint}add to = '{self._own_unit()}', the "
+                f"value '{shown(self.name)}' is no known quantity{hint}add "
+                f"to = '{self._own_unit()}', the "
                 f"SI unit to keep it in"
             ) from error
 
@@ -352,7 +357,9 @@ class Dialect(_Strict):
                         "position and unit"
                     )
         if self.speed.radius_value and self.speed.radius_value not in {v.name for v in self.value}:
-            raise ValueError(f"speed.radius_value: there is no value '{self.speed.radius_value}'")
+            raise ValueError(
+                f"speed.radius_value: there is no value '{shown(self.speed.radius_value)}'"
+            )
         return self
 
 

@@ -9,9 +9,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tribolab.errors import ConfigError, ReadError, nearest
+from tribolab.errors import ConfigError, ReadError, brief, nearest, shown
+from tribolab.io import cures
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.schema_folder import schema_folder
+from tribolab.io.signature import File, peek
 
 __all__ = [
     "Dialect",
@@ -21,7 +23,11 @@ __all__ = [
     "load_dialect",
     "recognise",
     "scan_dialects",
+    "unknown",
 ]
+
+
+_SHOWN = 5  # mistakes of a dialect that are told at once
 
 
 def known_dialects() -> dict[str, Path]:
@@ -62,7 +68,7 @@ def load_dialect(name_or_path: str | Path) -> Dialect:
             raise ConfigError(f"{path}: there is no such dialect file")
         return _parse(path)
     raise ConfigError(
-        f"no instrument is called '{name_or_path}'{nearest(str(name_or_path), known)}; "
+        f"no instrument is called '{shown(str(name_or_path))}'{nearest(str(name_or_path), known)}; "
         "a description of your own is given by its path, ending in .toml"
     )
 
@@ -73,12 +79,11 @@ def recognise(path: str | Path) -> Dialect:
     Raises
     ------
     ReadError
-        If no dialect fits, or more than one; the message names the candidates and the option
-        ``instrument=``.
+        If no dialect fits, or more than one; the message names the candidates and how to say
+        which.
     """
     from tribolab.io.recognise import mismatch
     from tribolab.io.scan_results import is_results
-    from tribolab.io.signature import peek
 
     file = peek(path)
     every = [load_dialect(name) for name in known_dialects()]
@@ -88,23 +93,27 @@ def recognise(path: str | Path) -> Dialect:
     if fitting:
         names = ", ".join(repr(dialect.name) for dialect in fitting)
         raise ReadError(
-            f"{file.path}: more than one instrument fits: {names}; say which with instrument="
+            f"more than one instrument fits: {names}",
+            where=file.path,
+            cure=cures.name_instrument(cures.RUN),
         )
     if is_results(file.head):
         raise ReadError(
-            f"{file.path}: this looks like the results of a roughness tester: use read_results()"
+            "this looks like the results of a roughness tester",
+            where=file.path,
+            cure=cures.TESTER_RESULTS,
         )
-    alike = [dialect for dialect in every if dialect.format == file.format]
-    runs = ", ".join(dialect.name for dialect in alike if not is_scan(dialect))
-    scans = ", ".join(dialect.name for dialect in alike if is_scan(dialect))
-    ways = [f"one of {runs} for a run"] if runs else []
-    ways += [f"one of {scans} for a profile or map of heights (read_scans())"] if scans else []
-    ways.append("the path of a TOML description of your own (see raw_data_schema/README.md)")
-    raise ReadError(
-        f"{file.path}: no known instrument writes such a file ({file.format}); say which with "
-        f"instrument=, {', or '.join(ways)}"
-        + ("" if scans else "; a profile or map of heights is read by read_scans()")
-    )
+    raise unknown(file, cures.RUN)
+
+
+def unknown(file: File, table: str) -> ReadError:
+    """Return what is said of a file that no dialect fits."""
+    what = f"no known instrument writes such a file ({file.format})"
+    if file.format != "text":
+        folder = "describe it as raw_data_schema/README.md says"
+        cure = cures.name_instrument(table, say=f"{folder}, and name that with")
+        return ReadError(what, where=file.path, cure=cure)
+    return ReadError(what, where=file.path, cure=cures.draft_dialect(file.path, table))
 
 
 def is_scan(dialect: Dialect) -> bool:
@@ -144,15 +153,17 @@ def _parse(path: Path) -> Dialect:
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(f"{path}: the dialect cannot be read: {error}") from error
+        raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
     try:
         return Dialect.model_validate(content)
     except ValidationError as error:
-        raise ConfigError(f"{path}: " + "; ".join(_explain(e) for e in error.errors())) from error
+        said = [_explain(one) for one in error.errors()]
+        more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
+        raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
 
 
 def _explain(problem: Any) -> str:
-    where = ".".join(str(part) for part in problem["loc"])
+    where = ".".join(shown(str(part)) for part in problem["loc"])
     if problem["type"] != "extra_forbidden":
         return f"{where}: {problem['msg'].removeprefix('Value error, ')}".removeprefix(": ")
     model = _model_at(problem["loc"][:-1])

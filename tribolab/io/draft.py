@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError
+from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.dialects import recognise
 from tribolab.io.draft_columns import Kind, Understood, first_cells_of, understand
@@ -68,7 +68,9 @@ class Draft(NamedTuple):
         if self.layout is None or self.understood is None:
             return ()
         columns = [
-            f"column {column.place}" + (f" '{column.label}': " if column.label else ": ") + guess
+            f"column {column.place}"
+            + (f" '{shown(column.label)}': " if column.label else ": ")
+            + guess
             for column in self.understood.columns
             for guess in column.guessed
         ]
@@ -231,17 +233,17 @@ def _answer(file: File, understood: Understood) -> str:
                 scan = read_foreign(file.path)
         except TribolabError:
             return (
-                "numbers without names, of which no column proceeds like time or a position; give "
-                "the columns names in a first line, then draft again"
+                "numbers without names, of which no column proceeds like time or a position; say "
+                "in a dialect what stands at which position: raw_data_schema/README.md shows how"
             )
         sizes = " x ".join(str(size) for size in scan.sizes.values())
         return (
-            f"heights of a scan ({sizes} points, {scan.attrs['instrument']}); read_scans() reads "
-            "it without a dialect"
+            f"heights of a scan ({sizes} points, {scan.attrs['instrument']}); it is read without "
+            "a dialect, by 'tribolab check' and under scans of a [[surface]]"
         )
     return (
-        f"a table of {', '.join(labels[:8])}: no signals along time and no profile, so there is "
-        "nothing a dialect could describe; pandas.read_csv() reads it"
+        f"a table of {', '.join(map(shown, labels[:8]))}: no signals along time and no profile, "
+        "so there is nothing a dialect could describe"
     )
 
 
@@ -258,7 +260,7 @@ def _results(file: File, name: str) -> Draft:
         toml="",
         answer=(
             f"{len(rows)} results of a roughness tester (name, value, unit, condition), without "
-            "the profile; tribolab.read_results() reads it without a dialect"
+            "the profile; 'tribolab check' reads it without a dialect"
         ),
         cells=tuple(tuple(row) for row in rows[:_SHOWN]),
         known="",

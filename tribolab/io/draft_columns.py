@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import pandas as pd
 
+from tribolab.errors import shown
 from tribolab.io.draft_header import converts, is_unit
 from tribolab.io.draft_layout import Layout
 from tribolab.io.draft_words import Match, matches, split_unit
@@ -85,7 +86,10 @@ def understand(layout: Layout) -> Understood:
         kind, columns, guesses = by_behaviour(columns, numbers)
     columns = [
         column._replace(
-            used=False, guessed=(), fill_in="", note=f"not a number: '{text[column.place - 1]}'"
+            used=False,
+            guessed=(),
+            fill_in="",
+            note=f"not a number: '{shown(text[column.place - 1])}'",
         )
         if text[column.place - 1]
         else column
@@ -267,7 +271,7 @@ def _column(
     written = unit if say_unit else None
     if option.unit:
         written = option.unit
-        guessed.append(f"'{unit}' means {option.unit}")
+        guessed.append(f"'{shown(unit)}' means {option.unit}")
     fill_in = ""
     if unit is None and si_unit not in ("", "1"):
         if option.quantity == "time":
@@ -277,7 +281,7 @@ def _column(
             written = "mm" if option.quantity in ("x", "y") else "um"
             guessed.append(f"{option.quantity} is in {written}")
         else:
-            fill_in = f"the unit of '{column.label}' ({option.quantity}), e.g. \"{si_unit}\""
+            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
     finite = values[np.isfinite(values)]
     sign = 1
     if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():

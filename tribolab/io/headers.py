@@ -8,7 +8,8 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
+from tribolab.io import cures
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.patterns import Guarded
 from tribolab.io.signature import File, peek
@@ -177,8 +178,10 @@ def _header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> 
         ]
         if not starts:
             raise ReadError(
-                f"{file.path}: no line matches '{header.pattern}', which begins the table in "
-                f"files of '{dialect.name}'; is it another instrument's file (instrument=)?"
+                f"no line matches '{shown(header.pattern)}', which begins the table in files of "
+                f"'{dialect.name}'",
+                where=file.path,
+                cure=cures.name_instrument(say="if another instrument wrote it, say so with"),
             )
         return starts
     position = first

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.mat5 import read_variables
@@ -47,7 +47,9 @@ def read_mat(path: Path, dialect: Dialect) -> Content:
     for signal in signals:
         numbers = content[names[signal.index]]
         if numbers is None or numbers.size != max(numbers.shape):
-            raise ReadError(f"{path}: variable '{signal.label}' is not one column of numbers")
+            raise ReadError(
+                f"{path}: variable '{shown(signal.label)}' is not one column of numbers"
+            )
         values = numbers.ravel().astype(float)
         with np.errstate(over="ignore", invalid="ignore"):  # what is damaged is not a number
             columns[signal.quantity] = values * signal.scale + signal.offset

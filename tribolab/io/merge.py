@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.errors import Cure, ReadError
 from tribolab.io.clock_shift import estimate_clock_shift
 from tribolab.quantities import stamp
 
@@ -61,11 +61,13 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     last = int(np.searchsorted(force_clock, shifted[-1], side="right"))
     names = f"{run.attrs['source']} and {motion.attrs['source']}"
     if last - first < 2:
-        cure = "correct" if clock_shift is not None else "give"
+        verb = "correct" if clock_shift is not None else "give"
         raise ReadError(
-            f"{names}: the logs do not overlap: on the force log's clock, one runs from "
+            f"the logs do not overlap: on the force log's clock, one runs from "
             f"{force_clock[0]:.6g} to {force_clock[-1]:.6g} s, the other from {shifted[0]:.6g} to "
-            f"{shifted[-1]:.6g} s (shift {shift:.6g} s, {source}); {cure} clock_shift="
+            f"{shifted[-1]:.6g} s (shift {shift:.6g} s, {source})",
+            where=names,
+            cure=_say_shift(verb),
         )
     merged = run.isel(time=slice(first, last))
     clock = force_clock[first:last]
@@ -83,6 +85,14 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     return stamp(merged)
 
 
+def _say_shift(say: str) -> Cure:
+    return Cure(
+        notebook=f"{say} clock_shift=",
+        terminal=f"{say} clock_shift in the [[run]] of a campaign file",
+        campaign=f"{say} clock_shift in its [[run]]",
+    )
+
+
 def _shift(
     run: xr.Dataset,
     motion: xr.Dataset,
@@ -98,7 +108,8 @@ def _shift(
         raise ReadError(
             f"{run.attrs['source']} was recorded at {run.attrs['recorded_at']}, its companion "
             f"{motion.attrs['source']} at {motion.attrs['recorded_at']}: another run's log; put "
-            "the right one beside it, or if the dates are wrong, give clock_shift="
+            "the right one beside it",
+            cure=_say_shift("if the dates are wrong, give"),
         )
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]
     velocity = _velocity(motion, motion_clock)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError, brief
+from tribolab.errors import ReadError, TribolabError, brief, shown
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def _load(
                     found[name] = _group(file, group)
                 elif not optional:
                     raise ReadError(
-                        f"{path}: there is no group '{group}'; there are "
+                        f"{path}: there is no group '{shown(group)}'; there are "
                         f"{', '.join(there) or 'none'}"
                     )
         return found

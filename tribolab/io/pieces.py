@@ -9,12 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.patterns import guarded
 from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
+
+_LARGEST = 1e60  # of any quantity in SI; its fourth power is a number still
+_PLACES = {"x", "y"}  # of a scan: `scan_grid` says which cannot be
 
 
 class Piece(NamedTuple):
@@ -114,8 +117,29 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     return Content(file.path, sha256, pieces, labels, tuple(unused), left_out)
 
 
+def measurable(values: np.ndarray) -> np.ndarray:
+    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
+
+    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
+    infinite stays so: it is refused or left out where it is met.
+
+    >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
+    [1.0, nan, 0.0]
+    """
+    if values.dtype.kind != "f":
+        return values
+    size = np.abs(values)
+    beyond, nothing = (size > _LARGEST) & np.isfinite(size), (size < 1 / _LARGEST) & (size > 0)
+    if not (beyond.any() or nothing.any()):
+        return values
+    return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
+
+
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
+    for piece in content.pieces:
+        signals = {k: v for k, v in piece.columns.items() if k not in _PLACES}
+        piece.columns.update({name: measurable(values) for name, values in signals.items()})
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -131,8 +155,8 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     for name in empty:
         if name not in optional:
             raise ReadError(
-                f"{content.path}: column '{content.labels[name]}' ({name}) has no value in any "
-                "row; if that is so in good files too, say optional = true in the dialect "
+                f"{content.path}: column '{shown(content.labels[name])}' ({name}) has no value "
+                "in any row; if that is so in good files too, say optional = true in the dialect "
                 f"'{dialect.name}'"
             )
     pieces = [
@@ -160,8 +184,8 @@ def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
         return dt.datetime.strptime(stamp, time.start_format)
     except ValueError as error:
         raise ReadError(
-            f"{path}: '{stamp}' is no date and time of the form '{time.start_format}' "
-            f"(instrument '{dialect.name}', time.start_format)"
+            f"{path}: '{shown(stamp)}' is no date and time of the form "
+            f"'{shown(time.start_format)}' (instrument '{dialect.name}', time.start_format)"
         ) from error
 
 
@@ -171,4 +195,4 @@ def _whole_number(path: Path, text: str | None) -> int | None:
     try:
         return int(text)
     except ValueError as error:
-        raise ReadError(f"{path}: '{text}' is no number of a step (header.step)") from error
+        raise ReadError(f"{path}: '{shown(text)}' is no number of a step (header.step)") from error

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.dialect_model import Dialect, Recognise
 from tribolab.io.headers import find_tables, split_row
 from tribolab.io.patterns import guarded
@@ -49,7 +49,7 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
 
 def _names_missing(rules: Recognise, names: set[str]) -> str | None:
     missing = [name for name in rules.header if name not in names]
-    return f"it has no '{missing[0]}'" if missing else None
+    return f"it has no '{shown(missing[0])}'" if missing else None
 
 
 def _text_mismatch(file: File, dialect: Dialect) -> str | None:
@@ -58,7 +58,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
     text = _text(file.head[: 1 << 16], encoding)
     for pattern in rules.preamble:
         if not guarded(pattern).search(text[:_PREAMBLE]):
-            return f"nothing in it matches '{pattern}'"
+            return f"nothing in it matches '{shown(pattern)}'"
     try:
         raw = find_tables(file, dialect)
     except ReadError as error:

@@ -11,7 +11,8 @@ import pandas as pd
 import xarray as xr
 from xarray.indexes import PandasIndex
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
+from tribolab.io import cures
 from tribolab.io.clock import join_clocks, mended_time, set_time
 from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.pieces import Content, read_content
@@ -93,7 +94,8 @@ def read(
     dialects = _dialects(paths, instrument)
     for file, dialect in zip(paths, dialects, strict=True):
         if is_scan(dialect):
-            raise ReadError(f"{file}: this looks like a profile ({dialect.title}): use read_scans")
+            what = f"this looks like a profile ({shown(dialect.title)})"
+            raise ReadError(what, where=file, cure=cures.PROFILE)
     main, companions = _sorted_out(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
@@ -359,9 +361,9 @@ def _check_normal_force(
     if force is None or np.nanmax(force) > 0:
         return
     raise ReadError(
-        f"{where}: the normal force ('{content.labels['normal_force']}') is nowhere above zero "
-        f"(greatest {np.nanmax(force):.4g} N); if the instrument counts pressing as negative, say "
-        f"sign = -1 for the column in the dialect '{dialect.name}'"
+        f"{where}: the normal force ('{shown(content.labels['normal_force'])}') is nowhere above "
+        f"zero (greatest {np.nanmax(force):.4g} N); if the instrument counts pressing as negative, "
+        f"say sign = -1 for the column in the dialect '{dialect.name}'"
     )
 
 

@@ -13,7 +13,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
-from tribolab.io.dialects import scan_dialects
+from tribolab.io import cures
+from tribolab.io.pieces import measurable
 from tribolab.io.scan_grid import even
 from tribolab.io.scan_safety import formats_to_try
 from tribolab.io.signature import peek
@@ -21,11 +22,7 @@ from tribolab.units import conversion, to_si
 
 
 class NotSaidError(ReadError):
-    """A scan could be read, if its file said what `lacking` names."""
-
-    def __init__(self, path: Path, lacking: str, cure: str = "") -> None:
-        super().__init__(f"{path}: {lacking}{cure}")
-        self.lacking = lacking
+    """A scan could be read, if its file said what is lacking."""
 
 
 def read_foreign(
@@ -57,8 +54,9 @@ def read_foreign(
             from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:
         raise ReadError(
-            f"{path}: no dialect fits, and other formats need the package SurfaceTopography: "
-            "pip install 'tribolab[formats]'"
+            "no dialect fits, and other formats need the package SurfaceTopography: "
+            "pip install 'tribolab[formats]'",
+            where=path,
         ) from error
     with path.open("rb") as file:
         head = file.read(512)
@@ -85,8 +83,10 @@ def read_foreign(
         ) from error
     attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
     vertical = lateral if vertical is None else vertical
-    heights = heights * vertical
+    with np.errstate(over="ignore", invalid="ignore"):
+        heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
+    heights = measurable(heights)
     if sizes is None or len(sizes) != len(points):
         raise ReadError(f"{path}: the file does not say how large the scan is in each direction")
     if len(points) == 2:
@@ -135,9 +135,9 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
                 "damaged? Else export the profile as text"
             )
         raise ReadError(
-            f"{path}: neither a known dialect nor a format that SurfaceTopography reads{told}; "
-            f"name the dialect with instrument=, one of {_dialects()}, or describe the file in a "
-            "TOML dialect of your own"
+            f"neither a known dialect nor a format that SurfaceTopography reads{told}",
+            where=path,
+            cure=cures.draft_dialect(path, cures.SURFACE),
         )
     with reader:
         yield reader
@@ -152,16 +152,15 @@ def _topography(
     if channel.physical_sizes is None:
         if x_unit is None:
             raise NotSaidError(
-                path, f"the file does not say how large the scan is ({_name(reader)})"
+                f"the file does not say how large the scan is ({_name(reader)})",
+                where=path,
+                cure=cures.SIZE,
             )
         given["physical_sizes"] = tuple(float(n) for n in np.atleast_1d(channel.nb_grid_pts))
     if channel.unit is None:
         if x_unit is None or height_unit is None:
             raise NotSaidError(
-                path,
-                f"the file states no units ({_name(reader)})",
-                "; say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or "
-                f"name a dialect with instrument=, one of {_dialects()}",
+                f"the file states no units ({_name(reader)})", where=path, cure=cures.UNITS
             )
         given["unit"] = x_unit
     vertical = conversion(height_unit, "m")[0] if channel.unit is None else None
@@ -173,10 +172,6 @@ def _is_text(path: Path) -> bool:
         return peek(path).format == "text"
     except ReadError:
         return False
-
-
-def _dialects() -> str:
-    return ", ".join(dialect.name for dialect in scan_dialects())
 
 
 def _name(reader: Any) -> str:

@@ -9,6 +9,7 @@ from tribolab.errors import ReadError
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
 _LARGEST = 1e4  # m
+_SMALLEST = 1e-15  # m, a nucleus
 _ROUNDED = 0.6  # in units of the last digit
 
 
@@ -47,6 +48,8 @@ def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarr
     count = np.arange(x.size, dtype=float)
     if not max(abs(x[0]), abs(x[-1]), pitch, *np.abs([x.min(), x.max()])) < _LARGEST:
         raise ReadError(f"{where}: x reaches {np.abs(x).max():.3g} m, no profile is so long")
+    if x[-1] - x[0] < _SMALLEST:
+        raise ReadError(f"{where}: x spans {x[-1] - x[0]:.3g} m, no profile is so short")
     ideal = x[0] + pitch * count
     unevenness = float(np.abs(ideal - x).max()) / pitch
     if unevenness > _JITTER:

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.errors import Cure, ReadError, shown
+from tribolab.io import cures
 from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
 from tribolab.io.scan_formats import read_foreign
 from tribolab.io.scan_grid import even, gridded
@@ -23,6 +24,7 @@ PathLike = str | Path
 # where the scans of a surface differ, the one that shows least counts for all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
+_ONE_BY_ONE = Cure(notebook="read them with stack=False")
 
 
 def read_scans(
@@ -96,7 +98,7 @@ def read_scans(
 def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
     given = [paths] if isinstance(paths, str | Path) else list(paths)
     if not given:
-        raise ReadError("read_scans: no file is given")
+        raise ReadError("no file is given", function="read_scans")
     files: list[Path] = []
     for path in given:
         found = [str(path)]
@@ -148,16 +150,22 @@ def _recognised(path: Path) -> Dialect | None:
         return None
     if is_results(file.head):
         raise ReadError(
-            f"{path}: the file holds the results of a roughness tester, but no profile; read them "
-            "with read_results(), or export the profile too"
+            "the file holds the results of a roughness tester, but no profile",
+            where=path,
+            cure=cures.TESTER_RESULTS,
         )
     known = [d for d in _every_dialect() if mismatch(file, d) is None]
     fitting = [d for d in known if is_scan(d)]
     if known and not fitting:
-        raise ReadError(f"{path}: this looks like a run ({known[0].title}): use read")
+        what = f"this looks like a run ({shown(known[0].title)})"
+        raise ReadError(what, where=path, cure=cures.SIGNALS)
     if len(fitting) > 1:
         names = ", ".join(repr(d.name) for d in fitting)
-        raise ReadError(f"{path}: more than one dialect fits: {names}; say which with instrument=")
+        raise ReadError(
+            f"more than one dialect fits: {names}",
+            where=path,
+            cure=cures.name_instrument(cures.SURFACE),
+        )
     return fitting[0] if fitting else None
 
 
@@ -193,9 +201,7 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
     """
     maps = [file for file, scan in zip(files, scans, strict=True) if "y" in scan.dims]
     if maps and len(maps) < len(scans):
-        raise ReadError(
-            f"{maps[0]}: a map cannot be stacked with profiles; read them with stack=False"
-        )
+        raise ReadError("a map cannot be stacked with profiles", where=maps[0], cure=_ONE_BY_ONE)
     first = scans[0]
     if maps and len(scans) == 1:
         return stamp(first)
@@ -211,9 +217,10 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
                 for one in (scan, first)
             )
             raise ReadError(
-                f"{file}: {scan.sizes[dim]} points of {found:.6g} um, but "
-                f"{files[0].name} has {points} points of {usual:.6g} um; scans of different "
-                "pitch or length are read with stack=False"
+                f"{scan.sizes[dim]} points of {found:.6g} um, but {files[0].name} has {points} "
+                f"points of {usual:.6g} um: scans of different pitch or length do not stack",
+                where=file,
+                cure=_ONE_BY_ONE,
             )
     height = np.stack([scan.height.values for scan in scans])
     data = xr.Dataset(

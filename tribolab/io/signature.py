@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.errors import ReadError
+from tribolab.io import cures
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -17,13 +18,13 @@ _MAGIC = {
     b"CDF\x02": "netcdf",
 }
 _FOREIGN = {
-    b"PK\x03\x04": "a zip or Office file; export the table as text (csv), or, if it holds a "
-    "profile, use read_scans()",
+    b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
     b"MATLAB 7.3": "a MAT file of version 7.3; save it with '-v7'",
     b"\xd0\xcf\x11\xe0": "an old Office file; export the table as text (csv)",
     b"\x1f\x8b": "compressed (gzip); unpack it first",
     b"%PDF": "a PDF",
 }
+_PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -76,10 +77,14 @@ def _format(path: Path, head: bytes) -> str:
             return name
     for magic, name in _FOREIGN.items():
         if head.startswith(magic):
-            raise ReadError(f"{path}: this is {name}")
+            profile = magic in _PERHAPS_PROFILE
+            raise ReadError(
+                f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
+            )
     if b"\0" in head and not head.startswith(_UTF16):
         raise ReadError(
-            f"{path}: this is neither text nor a binary format that is known; if it holds a "
-            "profile or map, use read_scans()"
+            "this is neither text nor a binary format that is known",
+            where=path,
+            cure=cures.PERHAPS_PROFILE,
         )
     return "text"

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.errors import ConfigError, UnitError, nearest
+from tribolab.errors import ConfigError, UnitError, nearest, shown
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.table_violations import Broken, Violations
 from tribolab.units import conversion
@@ -42,8 +42,8 @@ def load_schema(schema: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
     path = Path(schema)
     if path.suffix != ".json":
         raise ConfigError(
-            f"no schema is called '{schema}'{nearest(str(schema), SCHEMAS)}; one of your own is "
-            "given by its path, ending in .json"
+            f"no schema is called '{shown(str(schema))}'{nearest(str(schema), SCHEMAS)}; one of "
+            "your own is given by its path, ending in .json"
         )
     return _load(path)
 
@@ -232,8 +232,8 @@ def _check_schema(schema: Mapping[str, Any], where: str) -> None:
         for constraint in field.get("constraints", {}):
             if constraint not in _CHECKS:
                 raise ConfigError(
-                    f"{where}: field '{field['name']}': the constraint '{constraint}' cannot be "
-                    f"checked{nearest(constraint, _CHECKS)}"
+                    f"{where}: field '{shown(field['name'])}': the constraint "
+                    f"'{shown(constraint)}' cannot be checked{nearest(constraint, _CHECKS)}"
                 )
 
 

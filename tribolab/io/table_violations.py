@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from tribolab.errors import shown
+
 _SCREEN = 20  # violations that are shown
 
 
@@ -23,8 +25,8 @@ class Violation(NamedTuple):
     def __str__(self) -> str:
         """Say what is wrong, in one line."""
         if self.constraint == "missing column":
-            return f"column '{self.column}' is missing"
-        where = f"column '{self.column}'" + ("" if self.row is None else f", row {self.row}")
+            return f"column '{shown(self.column)}' is missing"
+        where = f"column '{shown(self.column)}'" + ("" if self.row is None else f", row {self.row}")
         if self.constraint == "unique":
             return f"{where}: {_short(self.value)} stands there before"
         if self.constraint == "required":

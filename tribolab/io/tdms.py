@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError, brief
+from tribolab.errors import ReadError, brief, shown
 from tribolab.io.columns import resolve
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import split_name
@@ -58,7 +58,7 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     for signal in signals:
         numbers = np.asarray(channels[signal.index][:])
         if numbers.dtype.kind not in "fiu":
-            raise ReadError(f"{path}: channel '{signal.label}' holds no numbers")
+            raise ReadError(f"{path}: channel '{shown(signal.label)}' holds no numbers")
         with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
             columns[signal.quantity] = numbers * signal.scale + signal.offset
     lengths = {len(column) for column in columns.values()}
@@ -94,7 +94,9 @@ def _steps(
         else [c for c in group.channels() if split_name(c.name)[0] == marks.time]
     )
     if not found:
-        raise ReadError(f"{path}: there is no channel '{marks.time}' in a group '{marks.group}'")
+        raise ReadError(
+            f"{path}: there is no channel '{shown(marks.time)}' in a group '{shown(marks.group)}'"
+        )
     unit = marks.unit or split_name(found[0].name)[1]
     if unit is None:
         raise ReadError(

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from tribolab.errors import ReadError, brief
+from tribolab.errors import ReadError, brief, shown
 from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
@@ -229,9 +229,9 @@ class _Parser:
                 cell = cells[signal.index]
                 if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
                     return (
-                        f"{where}, column '{signal.label}': '{cell[:40]}' is not a number; if it "
-                        f"stands for a missing value, say so in the dialect: [text] missing = "
-                        f"['{cell[:40]}']"
+                        f"{where}, column '{shown(signal.label)}': '{cell[:40]}' is not a number; "
+                        f"if it stands for a missing value, say so in the dialect: [text] "
+                        f"missing = ['{cell[:40]}']"
                     )
         return (
             f"{path}: the rows after line {before} cannot be read: {brief(error, 150)}; is a "

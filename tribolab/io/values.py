@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.dialect_model import Dialect, Value
 from tribolab.io.patterns import guarded
 from tribolab.io.pieces import Content, last_match
@@ -67,8 +67,8 @@ def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> s
         number = float(text.replace(dialect.text.decimal, "."))
     except ValueError as error:
         raise ReadError(
-            f"{content.path}: '{text}' ({value.name}) is not a number; see the value's pattern in "
-            f"the dialect '{dialect.name}'"
+            f"{content.path}: '{shown(text)}' ({value.name}) is not a number; see the value's "
+            f"pattern in the dialect '{dialect.name}'"
         ) from error
     scale, offset = conversion(value.unit, value.si_unit, value.bare)
     return float(f"{value.sign * value.scale * number * scale + offset:.15g}")

@@ -15,7 +15,7 @@ from scipy.special import erfinv
 from tribolab.contact.gap import COMPLETE, gap_distributions
 from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.errors import AnalysisError, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.quantities import labelled, stamp
 from tribolab.surface.moments import cumulative, rms_roughness, spectrum_arrays
 from tribolab.units import positive
@@ -199,7 +199,9 @@ def flow_factors(
             f"percolation: a relative contact area between 0 and 1 is wanted; got {percolation:g}"
         )
     if rms_roughness(psd) == 0:
-        raise AnalysisError("psd: it has no roughness and so never percolates; use psd=None")
+        raise AnalysisError(
+            "psd: it has no roughness and so never percolates", cure=Cure(notebook="use psd=None")
+        )
     q, spectrum = rough_band(psd)
     smallest = positive(cutoff, "m", "cutoff")
     return replace(
@@ -227,8 +229,8 @@ def _tabulated(
     if lowest > closing / 2:
         raise AnalysisError(
             f"psd: with h_rms = {height:.2g} m its channels close at a mean separation of "
-            f"{closing:.2g} m, which a cut-off of {cutoff:.2g} m cannot resolve: take the surface "
-            "for smooth, psd=None, or a smaller cut-off"
+            f"{closing:.2g} m, which a cut-off of {cutoff:.2g} m cannot resolve",
+            cure=Cure(notebook="take the surface for smooth, psd=None, or a smaller cut-off"),
         )
     below = np.geomspace(lowest, closing, _POINTS // 3)
     conductance, entrained, correction, inverse = _averages(
@@ -365,4 +367,6 @@ def check_rough_body(rough_body: str) -> None:
     """Raise an AnalysisError unless it is a `RoughBody`."""
     known = ["stationary", "moving"]
     if rough_body not in known:
-        raise AnalysisError(f"rough_body: '{rough_body}' is none{nearest(rough_body, known)}")
+        raise AnalysisError(
+            f"rough_body: '{shown(rough_body)}' is none{nearest(rough_body, known)}"
+        )

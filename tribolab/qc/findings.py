@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.qc.register import STATUSES, Check, Count, Result
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
     (0, 1, 3)
     """
     if fail_on not in FAIL_ON:
-        raise ConfigError(f"fail_on: '{fail_on}' is not a level{nearest(fail_on, FAIL_ON)}")
+        raise ConfigError(f"fail_on: '{shown(fail_on)}' is not a level{nearest(fail_on, FAIL_ON)}")
     if "error" in statuses:
         return 3
     if fail_on == "never":

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.errors import shown
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT
 from tribolab.qc.register import Check, Count, Limit, Result, Skip, sample_result
@@ -18,7 +19,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     run = subject.run
     results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
     for name, unit in schema.wrong_units(run).items():
-        results.append(Result("fail", name, f"{name} is in '{unit}', not in SI"))
+        results.append(Result("fail", name, f"{name} is in '{shown(unit)}', not in SI"))
     for name, span in schema.ranges().items():
         if name not in run:
             continue

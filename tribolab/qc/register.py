@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.units import to_si
 
@@ -100,11 +100,13 @@ def resolve_limits(
     resolved = {n: {k: limit.value for k, limit in c.limits.items()} for n, c in checks.items()}
     for name, values in settings.items():
         if name not in checks:
-            raise ConfigError(f"[qc]: no check is called '{name}'{nearest(name, checks)}")
+            raise ConfigError(f"[qc]: no check is called '{shown(name)}'{nearest(name, checks)}")
         for key, value in values.items():
             if key not in checks[name].limits:
                 known = checks[name].limits
-                raise ConfigError(f"[qc.{name}]: no limit is called '{key}'{nearest(key, known)}")
+                raise ConfigError(
+                    f"[qc.{name}]: no limit is called '{shown(key)}'{nearest(key, known)}"
+                )
             unit = checks[name].limits[key].unit
             resolved[name][key] = to_si(value, unit, name=f"[qc.{name}] {key}")
     return resolved

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
 from tribolab.qc.reading_checks import READING_CHECKS
@@ -86,7 +86,9 @@ def check_run(
     """
     for name in skip:
         if name not in checks:
-            raise ConfigError(f"[qc] skip: no check is called '{name}'{nearest(name, checks)}")
+            raise ConfigError(
+                f"[qc] skip: no check is called '{shown(name)}'{nearest(name, checks)}"
+            )
     resolved = resolve_limits(checks, limits or {})
     unknown = float("nan")
     subject = RunSubject(

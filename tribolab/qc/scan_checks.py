@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, ConfigError, nearest
+from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
@@ -62,10 +62,14 @@ def check_scans(
     """
     for name in skip:
         if name not in SCAN_CHECKS:
-            raise ConfigError(f"[qc] skip: no check is called '{name}'{nearest(name, SCAN_CHECKS)}")
+            raise ConfigError(
+                f"[qc] skip: no check is called '{shown(name)}'{nearest(name, SCAN_CHECKS)}"
+            )
     if "height" not in scans or "x" not in scans.height.dims or scans.sizes["x"] < 2:
         raise AnalysisError(
-            "check_scans: scans with 'height' (scan, x) are wanted; read them with read_scans()"
+            "scans with 'height' (scan, x) are wanted",
+            cure=Cure(notebook="read them with read_scans()"),
+            function="check_scans",
         )
     resolved = resolve_limits(SCAN_CHECKS, limits or {})
     given = [results] if isinstance(results, xr.Dataset) else list(results or ())
@@ -245,7 +249,7 @@ PROFILE_CHECKS = (
         "dropouts",
         1,
         "Are heights missing?",
-        "Clean the surface or coat it; fill_dropouts() bridges short gaps by straight lines.",
+        "Clean the surface or coat it; short gaps are bridged by straight lines.",
         {
             "suspect": Limit(1e-3, "1", "bridged singly, they change no spectrum"),
             "in_a_row": Limit(8.0, "1", "a bridge this long takes waves of its length away"),

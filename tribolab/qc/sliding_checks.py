@@ -205,7 +205,7 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     distance = subject.segments["sliding_distance"].values
     if not np.isfinite(subject.contact_width):
-        text = "the contact width is not known (contact_width=)"
+        text = "the contact width is not known (a campaign knows it from [contact])"
         results.append(Result("skipped", "sliding_distance", text))
     elif np.isfinite(distance).any():
         share = distance / subject.contact_width

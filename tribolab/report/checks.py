@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.errors import ConfigError, TribolabError
+from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
 from tribolab.io.scan_results import read_tester_results
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.run_checks import check_run
 from tribolab.report.file_info import read_scan
-from tribolab.report.typed import as_typed
+from tribolab.report.streams import say
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,7 +101,7 @@ def check_files(
         except ConfigError:
             raise  # a wrong instrument is wrong for every file
         except (TribolabError, OSError) as error:
-            checked[group] = Checked(group, None, str(error), kind="file")
+            checked[group] = Checked(group, None, told(error, "terminal"), kind="file")
     every = list(scans)
     sets = (
         [every] if repeats else repeats_by_name(every) if repeats is None else [[p] for p in every]
@@ -140,7 +139,7 @@ def findings_table(findings: Findings, everything: bool = False) -> Table:
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     for status, check, message, cure in findings.told(everything):
-        text = escape(as_typed(message)) + (f"\n[dim]{escape(cure)}[/dim]" if cure else "")
+        text = escape(message) + (f"\n[dim]{escape(cure)}[/dim]" if cure else "")
         table.add_row(status, check, text, style=_STYLES[status])
     return table
 
@@ -151,12 +150,12 @@ def show(checked: Sequence[Checked], everything: bool = False) -> None:
 
     for one in checked:
         if one.findings is None:
-            print(f"{one.name}: unreadable", flush=True)
-            print(f"tribolab: {as_typed(one.error)}", file=sys.stderr)
+            say(f"{one.name}: unreadable")
+            say(f"tribolab: {one.error}", to_stderr=True)
             continue
         # a run of two logs is called by the first, not by both
         head = one.findings.summary.removeprefix(one.findings.name)
-        print(f"{one.name}{head}", flush=True)
+        say(f"{one.name}{head}")
         table = findings_table(one.findings, everything)
         if table.row_count:
             terminal.console().print(table)

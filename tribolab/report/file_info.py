@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.io.companion import describe_companion
 from tribolab.io.dialects import known_dialects, load_dialect
 from tribolab.io.kinds import kind_of
@@ -15,9 +15,10 @@ from tribolab.io.scan_results import read_tester_results
 from tribolab.io.signature import peek
 from tribolab.qc.register import Count
 from tribolab.quantities import quantity
-from tribolab.report.typed import range_of
+from tribolab.report.ranges import range_of
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+_LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 
 
@@ -51,8 +52,8 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
                 read(path)  # says which instruments there are
             except ReadError as as_run:
                 if isinstance(error, NotSaidError):
-                    what = f"{as_run}; taken for a profile or map, {error.lacking}"
-                    raise ReadError(what) from error
+                    what = f"{as_run.what}; taken for a profile or map, {error.what}"
+                    raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
                 raise
         raise
     return scan
@@ -97,7 +98,7 @@ def _results_lines(path: Path) -> list[str]:
 
 def _attribute_lines(attrs: Mapping[str, Any]) -> list[str]:
     told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
-    return [f"  {key}: {value}" for key, value in told.items()]
+    return [f"  {key}: {shown(str(value), _LONGEST)}" for key, value in told.items()]
 
 
 def _titled(name: str, instrument: str | Path | None) -> str:
@@ -127,11 +128,11 @@ def run_lines(description: Mapping[str, Any]) -> list[str]:
     for name, column in d["columns"].items():
         span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
         span += f" {column['unit']}" if column["unit"] != "1" else ""
-        label = f"   from '{column['label']}'" if column["label"] else ""
+        label = f"   from '{shown(column['label'])}'" if column["label"] else ""
         lines.append(f"  {name:<{width}}  {span}{label}")
     if d["not_used"]:
-        lines.append(f"  not used: {', '.join(d['not_used'])}")
-    lines += [f"  {key}: {value}" for key, value in d["metadata"].items()]
+        lines.append(f"  not used: {', '.join(map(shown, d['not_used']))}")
+    lines += _attribute_lines(d["metadata"])
     return lines
 
 

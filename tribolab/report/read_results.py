@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.errors import ReadError, nearest
+from tribolab.errors import ReadError, nearest, shown
 from tribolab.report import tables
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         """Return a table, text as it was before it was made harmless for spreadsheets."""
         if name not in self._files:
             raise ReadError(
-                f"{self.folder}: there is no table '{name}'{nearest(name, self._files)}"
+                f"{self.folder}: there is no table '{shown(name)}'{nearest(name, self._files)}"
             )
         return tables.read(self._files[name])
 
@@ -55,7 +55,9 @@ class Results(Mapping[str, "pd.DataFrame"]):
 
         known = {path.stem: path for path in sorted((self.folder / "data").glob("*.nc"))}
         if name not in known:
-            raise ReadError(f"{self.folder}: there are no data of '{name}'{nearest(name, known)}")
+            raise ReadError(
+                f"{self.folder}: there are no data of '{shown(name)}'{nearest(name, known)}"
+            )
         return read_netcdf(known[name], group=group)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.campaign.work import explain
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, told
 from tribolab.friction.segments import why_no_segment
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
@@ -364,7 +364,7 @@ def _traces(
         coarse = as_text(trace(run, segments, friction, task.points))
         return coarse, finer_trace(run, segments, friction, task.points, task.fine_size)
     except AnalysisError as error:  # recorded, as above
-        text = f"no trace to show: {error}"
+        text = f"no trace to show: {told(error, 'campaign')}"
         findings.append(
             {"severity": "error", "run": task.run.name, "where": "trace", "message": text}
         )

@@ -8,15 +8,23 @@ import io
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Iterator
 from types import FrameType
 from typing import NoReturn
+
+from tribolab.errors import harmless
 
 _PLAIN = str.maketrans(
     {"–": "-", "−": "-", "±": "+-", "µ": "u", "μ": "u", "×": "x", "…": "...", "’": "'", "·": "*"}
     | {"²": "2", "³": "3", "η": "eta", "σ": "sigma", "°": " deg ", "≤": "<=", "≥": ">="}
 )
 _ERRORS = "tribolab_plain"
+
+
+def say(text: str, *, to_stderr: bool = False) -> None:
+    """Write a line for a person; what a file or its name holds cannot steer the terminal."""
+    print(harmless(text), file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
 
 class Terminated(KeyboardInterrupt):
@@ -71,6 +79,8 @@ def prepared() -> Iterator[None]:
     Does nothing to streams that somebody else put in place, as tests and notebooks do.
     """
     codecs.register_error(_ERRORS, _plain)
+    # what arithmetic does with damaged numbers is found by checks, and told in words
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
     for name, number in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)
         if stream is getattr(sys, f"__{name}__") and stream is not None:

@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, ConsoleRenderable, RenderHook, RenderResult
+from rich.segment import Segment
 from rich.table import Table
 
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.errors import harmless
 from tribolab.qc.register import Count
-from tribolab.report.typed import as_in_campaign, range_of
+from tribolab.report.ranges import range_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,9 +27,29 @@ _NONE = "–"
 
 
 def console() -> Console:
-    """Return a console on stdout; a pipe has no width of its own."""
+    """Return a console on stdout that no text can steer; a pipe has no width of its own."""
     out = Console(highlight=False)
-    return out if out.is_terminal else Console(highlight=False, width=_PIPED_WIDTH)
+    if not out.is_terminal:
+        out = Console(highlight=False, width=_PIPED_WIDTH)
+    out.push_render_hook(_Harmless())
+    return out
+
+
+class _Harmless(RenderHook):
+    """What is printed, with the marks of the console's own styles only."""
+
+    def process_renderables(self, renderables: list[ConsoleRenderable]) -> list[ConsoleRenderable]:
+        return [_Cleaned(one) for one in renderables]
+
+
+class _Cleaned:
+    def __init__(self, inner: ConsoleRenderable) -> None:
+        self.inner = inner
+
+    def __rich_console__(self, out: Console, options: ConsoleOptions) -> RenderResult:
+        for segment in out.render(self.inner, options):
+            text = segment.text if segment.control else harmless(segment.text)
+            yield Segment(text, segment.style, segment.control)
 
 
 def outcome_table(outcome: Outcome) -> Table:
@@ -144,17 +166,10 @@ def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     from tribolab.report.sliding import condition
 
-    failed = [
-        f"{run.name} failed: {as_in_campaign(run.reason, '[[run]]')}" for run in outcome.failed
-    ]
+    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
     for surface in outcome.surfaces:
-        failed += [
-            f"surface {surface.name}: {as_in_campaign(finding.message, '[[surface]]')}"
-            for finding in surface.unreadable
-        ]
-    failed += [
-        f"{run.name}: {as_in_campaign(run.kept, '[[run]]')}" for run in outcome.runs if run.kept
-    ]
+        failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+    failed += [f"{run.name}: {run.kept}" for run in outcome.runs if run.kept]
     failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:

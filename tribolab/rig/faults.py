@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.rig import strikes
 from tribolab.rig.runs import SimulatedRun
 
@@ -102,7 +102,7 @@ def inject(
 def known_fault(name: str) -> Fault:
     """Return the fault of this name; an unknown one is an error that names the nearest."""
     if name not in FAULTS:
-        raise ConfigError(f"the rig has no fault '{name}'{nearest(name, FAULTS, most=None)}")
+        raise ConfigError(f"the rig has no fault '{shown(name)}'{nearest(name, FAULTS, most=None)}")
     return FAULTS[name]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.rig.faults import FAULTS, Fault
 from tribolab.rig.files import scan_file
 from tribolab.rig.scan_faults import SCAN_FAULTS, ScanFault, exported
@@ -35,7 +35,7 @@ def fault_of_campaign(name: str) -> Fault | ScanFault:
     """
     every: dict[str, Fault | ScanFault] = {**FAULTS, **SCAN_FAULTS_BY_NAME}
     if name not in every:
-        raise ConfigError(f"the rig has no fault '{name}'{nearest(name, every, most=None)}")
+        raise ConfigError(f"the rig has no fault '{shown(name)}'{nearest(name, every, most=None)}")
     return every[name]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
 # The set speeds themselves, so that the truth there is the model's and not an interpolation's.
@@ -57,7 +57,8 @@ class MixedLaw:
         if np.any(v > high * (1 + 1e-9)):
             raise AnalysisError(
                 f"the rig's friction law of {self.surface} ends at {high:g} m/s; got {v.max():g} "
-                "m/s: take slower strokes, or give simulate_run a law of your own"
+                "m/s",
+                cure=Cure(notebook="take slower strokes, or give simulate_run a law of your own"),
             )
         curve = PchipInterpolator(np.log(self.speeds), self.friction)
         return curve(np.log(np.clip(v, low, high)))

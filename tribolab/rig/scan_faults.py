@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ConfigError, nearest
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.io.scan_grid import even
 from tribolab.quantities import stamp
 from tribolab.rig.profiles import scans as simulate
@@ -112,7 +112,9 @@ def strike(scans: xr.Dataset, faults: str | Iterable[str], rng: int | np.random.
     rng = np.random.default_rng(rng)
     for name in [faults] if isinstance(faults, str) else faults:
         if name not in SCAN_FAULTS:
-            raise ConfigError(f"the rig has no fault of scans '{name}'{nearest(name, SCAN_FAULTS)}")
+            raise ConfigError(
+                f"the rig has no fault of scans '{shown(name)}'{nearest(name, SCAN_FAULTS)}"
+            )
         scans = SCAN_FAULTS[name].strike(scans, rng)
     return scans
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, ReadError, UnitError
+from tribolab.errors import AnalysisError, Cure, ReadError, UnitError, shown
 from tribolab.quantities import unit_conversion
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
@@ -222,7 +222,8 @@ def read_modulus(
             scale = _to_angular(name, unit) if role == "frequency" else conversion(unit, "Pa")[0]
         except UnitError as error:
             raise ReadError(
-                f"{path.name}: column '{name}': {error}; a row of units must follow the names"
+                f"{path.name}: column '{shown(name)}': {error}; units are read from the row "
+                "below the names"
             ) from error
         numbers = pd.to_numeric(table[name].iloc[1:], errors="coerce").to_numpy(dtype=float)
         columns[role] = numbers * scale
@@ -242,8 +243,8 @@ def _to_angular(name: str, unit: str) -> float:
     known = reciprocal(unit)
     if known is not None and known.counts == "cycles":
         raise UnitError(
-            f"the name says radians, the unit '{unit}' cycles, a factor of 2 pi apart; write "
-            f"'rad/s' as the unit, or 'f' as the name"
+            f"the name says radians, the unit '{shown(unit)}' cycles, a factor of 2 pi apart; "
+            f"write 'rad/s' as the unit, or 'f' as the name"
         )
     return scale
 
@@ -253,8 +254,13 @@ def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:
     sweeps = np.split(data, np.flatnonzero(np.diff(data[0]) <= 0) + 1, axis=1)
     if sweep is None or not 0 <= sweep < len(sweeps):
         raise ReadError(
-            f"{name}: frequencies repeat, {len(sweeps)} sweeps are in it; name one with sweep=0 "
-            f"to {len(sweeps) - 1}, or give a master curve"
+            f"frequencies repeat, {len(sweeps)} sweeps are in it",
+            where=name,
+            cure=Cure(
+                notebook=f"name one with sweep=0 to {len(sweeps) - 1}, or give a master curve",
+                terminal="give a master curve",
+                campaign="give a master curve as modulus_file of [contact]",
+            ),
         )
     return sweeps[sweep]
 

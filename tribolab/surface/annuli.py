@@ -105,8 +105,9 @@ def join(found: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, n
         ends.append(first)
     if len(ends) == 1:
         raise AnalysisError(
-            "psd_2d: no isotropic surface has such profiles, the inverse Abel transform of their "
-            "spectrum is negative; average more scans, or check that the surface is isotropic"
+            "no isotropic surface has such profiles, the inverse Abel transform of their "
+            "spectrum is negative; average more scans, or check that the surface is isotropic",
+            function="psd_2d",
         )
     ends[-1] = number  # what is left at the end has no power of its own
     joined, typical = (_joined(one, ends) for one in (found, behind))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.quantities import stamp
 from tribolab.surface.annuli import confidence_band
 from tribolab.surface.binning import correlation, log_bins, window
@@ -56,9 +56,15 @@ def psd_2d_of_map(
     size = height.shape[-2:]
     height = height.reshape(-1, *size)
     if min(size) < _FEWEST:
-        raise AnalysisError(f"psd_2d: a map of {size} points is too small for a spectrum")
+        raise AnalysisError(
+            f"a map of {size} points is too small for a spectrum", function="psd_2d"
+        )
     if not np.isfinite(height).all():
-        raise AnalysisError("psd_2d: the map holds NaN; fill the dropouts with fill_dropouts()")
+        raise AnalysisError(
+            "the map holds NaN",
+            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
+            function="psd_2d",
+        )
     refuse_level("psd_2d", scan, [level_map(one) for one in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     taper = np.outer(window(size[0]), window(size[1]))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface.moments import at_wavenumber, spectrum_arrays
@@ -107,10 +107,10 @@ def extrapolate(
     high = to_si(q_high, "1/m", "q_high")
     if not 0 < low < high:
         raise AnalysisError(
-            f"extrapolate: q_low must lie below q_high; got {low:.4g} and {high:.4g} 1/m"
+            f"q_low must lie below q_high; got {low:.4g} and {high:.4g} 1/m", function="extrapolate"
         )
     if not (c > 0).any():
-        raise AnalysisError("extrapolate: the spectrum is zero everywhere")
+        raise AnalysisError("the spectrum is zero everywhere", function="extrapolate")
     law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
     measured = _Part(q, c, _relative_band(psd, c), MEASURED)
     parts = [measured.between(low, high)]
@@ -226,9 +226,12 @@ def _regress(
     number = int(chosen.sum())
     if number < 3:
         raise AnalysisError(
-            f"extrapolate: {number} points lie between {low:.4g} and {high:.4g} 1/m, three are the "
-            f"least for a power law; the spectrum reaches from {q[0]:.4g} to {q[-1]:.4g} 1/m: give "
-            "another fit_decade"
+            f"{number} points lie between {low:.4g} and {high:.4g} 1/m, three are the "
+            f"least for a power law; the spectrum reaches from {q[0]:.4g} to {q[-1]:.4g} 1/m",
+            cure=Cure(
+                notebook="give another fit_decade", campaign="say another fit_decade in [roughness]"
+            ),
+            function="extrapolate",
         )
     x, y = np.log(q[chosen]), np.log(c[chosen])
     sigma = np.ones(number) if error is None else error[chosen]
@@ -239,8 +242,12 @@ def _regress(
     slope = float(np.sum(weight * (x - centre) * y) / norm)
     if not slope < -1e-9:
         raise AnalysisError(
-            f"extrapolate: C(q) does not fall between {low:.4g} and {high:.4g} 1/m (exponent "
-            f"{slope:.2f}); choose a decade where it does with fit_decade=(from, to)"
+            f"C(q) does not fall between {low:.4g} and {high:.4g} 1/m (exponent {slope:.2f})",
+            cure=Cure(
+                notebook="choose a decade where it does with fit_decade=(from, to)",
+                campaign="choose a decade where it does with fit_decade in [roughness]",
+            ),
+            function="extrapolate",
         )
     misfit = np.sum(weight * (y - level - slope * (x - centre)) ** 2) / max(number - 2, 1)
     growth = np.sqrt(misfit) if error is None else np.sqrt(max(1.0, misfit))

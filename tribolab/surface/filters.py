@@ -68,8 +68,9 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     pitch = float((x[-1] - x[0]) / (x.size - 1))
     if not 2 * pitch <= cutoff <= x.size * pitch:
         raise AnalysisError(
-            f"gaussian_filter: the cut-off {cutoff:.3g} m must lie between two points "
-            f"({2 * pitch:.3g} m) and the length of the profile ({x.size * pitch:.3g} m)"
+            f"the cut-off {cutoff:.3g} m must lie between two points "
+            f"({2 * pitch:.3g} m) and the length of the profile ({x.size * pitch:.3g} m)",
+            function="gaussian_filter",
         )
     height = scans.height.transpose(..., "x")
     reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)  # weight 5e-14 of its middle there

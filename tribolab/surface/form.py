@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, nearest
+from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface.level import rounding_only
@@ -13,6 +13,11 @@ from tribolab.surface.level import rounding_only
 # Polynomial order that a form uses up: so many of the longest waves go with it.
 FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
+_NO_CIRCLE = Cure(
+    notebook="check the unit of x, or take form='polynomial'",
+    terminal="check the unit of x",
+    campaign='check the unit of x, or say form = "polynomial" in [roughness]',
+)
 _CHUNK = 1 << 20  # heights that are worked on at a time
 
 
@@ -52,8 +57,9 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     present = int((~missing).sum("x").min())
     if present < 2:
         raise AnalysisError(
-            f"fill_dropouts: a profile has {present} heights that are numbers, two are the least; "
-            "leave that scan out"
+            f"a profile has {present} heights that are numbers, two are the least; "
+            "leave that scan out",
+            function="fill_dropouts",
         )
     rows = height.values.reshape(-1, height.sizes["x"]).copy()
     holes = missing.values.reshape(rows.shape)
@@ -108,21 +114,33 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     (0.07, True)
     """
     if form not in FORMS:
-        raise AnalysisError(f"remove_form: there is no form '{form}'{nearest(form, FORMS)}")
+        raise AnalysisError(
+            f"there is no form '{shown(form)}'{nearest(form, FORMS)}", function="remove_form"
+        )
     if not 0 <= degree <= 12:
-        raise AnalysisError(f"remove_form: a degree from 0 to 12 is wanted, got {degree}")
+        raise AnalysisError(
+            f"a degree from 0 to 12 is wanted, got {degree}", function="remove_form"
+        )
     order = FORMS[form]
     order = degree if order is None else order
     attrs = {"form_removed": form, "form_order": order}
     if "y" in scans.height.dims:
         if form == "circle":
-            raise AnalysisError("remove_form: a map has no circle; take 'polynomial', degree=2")
+            raise AnalysisError(
+                "a map has no circle",
+                function="remove_form",
+                cure=Cure(
+                    notebook="take 'polynomial', degree=2",
+                    campaign='say form = "polynomial" in [roughness]',
+                ),
+            )
         return stamp(_flatten_map(scans, order), **attrs)
     height = scans.height.transpose(..., "x")
     points = height.sizes["x"]
     if points < order + 2:
         raise AnalysisError(
-            f"remove_form: {points} points are too few to take away a {form} of order {order}"
+            f"{points} points are too few to take away a {form} of order {order}",
+            function="remove_form",
         )
     x = scans.x.values - scans.x.values.mean()
     scale = max(float(np.abs(x).max()), 1e-300)
@@ -171,8 +189,9 @@ def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
     present = np.isfinite(rows)
     if present.sum(1).min() < basis.shape[1] + 1:
         raise AnalysisError(
-            f"remove_form: a profile has {present.sum(1).min()} heights that are numbers, too few "
-            "for the form; leave that scan out"
+            f"a profile has {present.sum(1).min()} heights that are numbers, too few "
+            "for the form; leave that scan out",
+            function="remove_form",
         )
     weight = present.astype(float)
     normal = np.einsum("rx,xi,xj->rij", weight, basis, basis, optimize=True)
@@ -204,8 +223,9 @@ def _circle(
         end = sine + curvature * x
         if np.abs(end).max() >= 1:
             raise AnalysisError(
-                "remove_form: no circle fits; its radius would be smaller than half the scan. "
-                "Check the unit of x, or take form='polynomial'"
+                "no circle fits; its radius would be smaller than half the scan",
+                function="remove_form",
+                cure=_NO_CIRCLE,
             )
         arc = x * (2 * sine + curvature * x) / (np.sqrt(1 - sine**2) + np.sqrt(1 - end**2))
         residual = rows - offset - arc
@@ -215,8 +235,10 @@ def _circle(
             break
     else:
         raise AnalysisError(
-            "remove_form: the fit of a circle does not settle; its radius is hardly larger than "
-            "the scan is long. Check the unit of x, or take form='polynomial'"
+            "the fit of a circle does not settle; its radius is hardly larger than "
+            "the scan is long",
+            function="remove_form",
+            cure=_NO_CIRCLE,
         )
     tilt = known[:, 1] / np.sqrt(1 - known[:, 1] ** 2)
     return residual, np.stack([tilt, known[:, 2]], axis=-1)

@@ -268,12 +268,13 @@ def band(psd: xr.Dataset, q_low: float, q_high: float) -> xr.Dataset:
     q, spectrum = spectrum_arrays(psd)
     if not q_low < q_high:
         raise AnalysisError(
-            f"band: q_low = {q_low:.4g} 1/m must lie below q_high = {q_high:.4g} 1/m"
+            f"q_low = {q_low:.4g} 1/m must lie below q_high = {q_high:.4g} 1/m", function="band"
         )
     if q_low < q[0] * (1 - 1e-12) or q_high > q[-1] * (1 + 1e-12):
         raise AnalysisError(
-            f"band: the spectrum reaches from {q[0]:.4g} to {q[-1]:.4g} 1/m only, and "
-            f"{q_low:.4g} to {q_high:.4g} 1/m were asked for: extrapolate it first"
+            f"the spectrum reaches from {q[0]:.4g} to {q[-1]:.4g} 1/m only, and "
+            f"{q_low:.4g} to {q_high:.4g} 1/m were asked for: extrapolate it first",
+            function="band",
         )
     inside = q[(q > q_low) & (q < q_high)]
     nodes = np.concatenate([[q_low], inside, [q_high]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface import abel
@@ -95,7 +95,9 @@ def psd_1d(
     power = binned_power(heights.data, window(points, flanks), bins, length, workers)
     if not np.isfinite(power.heights):
         raise AnalysisError(
-            "psd_1d: the heights hold NaN or infinity; fill the dropouts with fill_dropouts()"
+            "the heights hold NaN or infinity",
+            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
+            function="psd_1d",
         )
     refuse_level("psd_1d", scans, level_rows(heights.data))
     spacing = 2 * np.pi / (length * pitch)
@@ -195,10 +197,11 @@ def psd_2d(
     if profile.wavenumber.size < 4:
         at = scans.attrs
         raise AnalysisError(
-            f"psd_2d: {profile.wavenumber.size} wavenumbers can be trusted, four are the least; "
+            f"{profile.wavenumber.size} wavenumbers can be trusted, four are the least; "
             f"{at['trusted_low_limited_by']} allows those above {at['trusted_low_1_m']:.3g} 1/m, "
             f"{at['trusted_high_limited_by']} those below {at['trusted_high_1_m']:.3g} 1/m: take "
-            "longer or finer scans"
+            "longer or finer scans",
+            function="psd_2d",
         )
     fitted = fitted_law(
         profile.wavenumber.values,
@@ -218,25 +221,35 @@ def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
     """One dimension ``scan``, form removed, and a clear word about what cannot be used."""
     if not isinstance(scans, xr.Dataset):
         raise AnalysisError(
-            "psd_1d: one dataset with scans of equal pitch and length is wanted, got a "
-            f"{type(scans).__name__}; scans that differ have a spectrum each"
+            "one dataset with scans of equal pitch and length is wanted, got a "
+            f"{type(scans).__name__}; scans that differ have a spectrum each",
+            function="psd_1d",
         )
     if "height" not in scans or "x" not in scans.height.dims:
         raise AnalysisError(
-            "psd_1d: scans with 'height' (scan, x) are wanted; read them with read_scans()"
+            "scans with 'height' (scan, x) are wanted",
+            cure=Cure(notebook="read them with read_scans()"),
+            function="psd_1d",
         )
     if "y" in scans.height.dims:
         raise AnalysisError(
-            "psd_1d: this is a map (y, x); psd_2d() takes its spectrum, and a single row of it, "
-            "e.g. scans.isel(y=0), is a profile"
+            "this is a map (y, x)",
+            cure=Cure(
+                notebook="psd_2d() takes its spectrum, and a single row of it, e.g. "
+                "scans.isel(y=0), is a profile"
+            ),
+            function="psd_1d",
         )
     others = [d for d in scans.height.dims if d != "x"]
     if len(others) > 1:
-        raise AnalysisError(f"psd_1d: height has the dimensions {scans.height.dims}; one scan each")
+        raise AnalysisError(
+            f"height has the dimensions {scans.height.dims}; one scan each", function="psd_1d"
+        )
     points = scans.sizes["x"]
     if points < _FEWEST_POINTS:
         raise AnalysisError(
-            f"psd_1d: {points} points are too few for a spectrum; {_FEWEST_POINTS} are the least"
+            f"{points} points are too few for a spectrum; {_FEWEST_POINTS} are the least",
+            function="psd_1d",
         )
     if form == "auto":
         form = "none" if "form_removed" in scans.attrs else "circle"
@@ -250,8 +263,9 @@ def _pitch(scans: xr.Dataset) -> float:
     pitch = float((x[-1] - x[0]) / (x.size - 1))
     if not pitch > 0 or np.abs(steps - pitch).max() > 1e-3 * pitch:
         raise AnalysisError(
-            "psd_1d: x must increase in even steps; read the scans with read_scans(), which "
-            "evens out rounded steps"
+            "x must increase in even steps",
+            cure=Cure(notebook="read the scans with read_scans(), which evens out rounded steps"),
+            function="psd_1d",
         )
     return pitch
 

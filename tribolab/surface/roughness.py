@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface.filters import gaussian_filter
@@ -73,7 +73,9 @@ def roughness_parameters(
     pitch, points = float((x[-1] - x[0]) / (x.size - 1)), x.size
     if not np.isfinite(scans.height).all():
         raise AnalysisError(
-            "roughness_parameters: the heights hold NaN; fill the dropouts with fill_dropouts()"
+            "the heights hold NaN",
+            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
+            function="roughness_parameters",
         )
     cut, filtered = _long_cutoff(lambda_c, scans, pitch * points)
     profile = scans
@@ -85,8 +87,9 @@ def roughness_parameters(
         edge = int(round(0.5 * cut / pitch))
         if points - 2 * edge < cut / pitch:
             raise AnalysisError(
-                f"roughness_parameters: {pitch * points:.3g} m are shorter than two cut-offs "
-                f"lambda_c = {cut:.3g} m; give a smaller lambda_c"
+                f"{pitch * points:.3g} m are shorter than two cut-offs "
+                f"lambda_c = {cut:.3g} m; give a smaller lambda_c",
+                function="roughness_parameters",
             )
         rough = height - gaussian_filter(profile, cut).height
         height = rough.isel(x=slice(edge, points - edge))
@@ -104,8 +107,11 @@ def roughness_parameters(
     square = np.mean(deviation**2, -1)
     if not (square > 0).all():
         raise AnalysisError(
-            "roughness_parameters: a whole sampling length is level, its skewness is not defined; "
-            "cut the scan, or take sampling_lengths=False"
+            "a whole sampling length is level, its skewness is not defined",
+            cure=Cure(
+                notebook="cut the scan, or take sampling_lengths=False", campaign="cut the scan"
+            ),
+            function="roughness_parameters",
         )
     dims = height.dims[:-1]
     values = {
@@ -144,7 +150,7 @@ def _long_cutoff(
 def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
     """Local slope by the seven-point formula of ISO 4287 (4.4.1)."""
     if rows.shape[-1] < 7:
-        raise AnalysisError("roughness_parameters: seven points are the least")
+        raise AnalysisError("seven points are the least", function="roughness_parameters")
     ahead = 45 * rows[..., 4:-2] - 9 * rows[..., 5:-1] + rows[..., 6:]
     behind = 45 * rows[..., 2:-4] - 9 * rows[..., 1:-5] + rows[..., :-6]
     return (ahead - behind) / (60 * pitch)

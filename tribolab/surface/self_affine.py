@@ -50,7 +50,7 @@ class SelfAffine:
         if not 0 < self.low < self.rolloff < self.high:
             raise AnalysisError(
                 "self-affine spectrum: 0 < low < rolloff < high is wanted; got "
-                f"low={self.low:g}, rolloff={self.rolloff:g}, high={self.high:g} 1/m"
+                f"{self.low:g}, {self.rolloff:g} and {self.high:g} 1/m"
             )
         if self.plateau <= 0 or self.hurst <= 0:
             raise AnalysisError("self-affine spectrum: plateau and hurst must be positive")

@@ -57,7 +57,9 @@ def synthesise_profiles(
     (('profile', 'x'), (3, 4096))
     """
     if points < 4 or pitch <= 0:
-        raise AnalysisError("synthesise_profiles: at least 4 points and a positive pitch")
+        raise AnalysisError(
+            "at least 4 points and a positive pitch", function="synthesise_profiles"
+        )
     rng = np.random.default_rng(rng)
     step = 2 * np.pi / (points * pitch)
     k = step * np.arange(1, (points - 1) // 2 + 1)
@@ -122,7 +124,7 @@ def synthesise_map(
     (('y', 'x'), (256, 256))
     """
     if points < 4 or pitch <= 0:
-        raise AnalysisError("synthesise_map: at least 4 points and a positive pitch")
+        raise AnalysisError("at least 4 points and a positive pitch", function="synthesise_map")
     rng = np.random.default_rng(rng)
     k = 2 * np.pi * np.fft.fftfreq(points, pitch)
     q = np.hypot(k[:, None], np.abs(k[: points // 2 + 1]))

@@ -1,0 +1,78 @@
+"""How to mend what is said of raw files, in words for each who may read it."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+from tribolab.errors import Cure
+
+RUN, SURFACE = "[[run]]", "[[surface]]"
+
+
+def name_instrument(table: str = "", say: str = "say which with") -> Cure:
+    """Cure by naming the instrument of a file.
+
+    Parameters
+    ----------
+    table
+        The table of a campaign file that names the file; either of two if it is not known.
+    say
+        What comes before the option.
+
+    Examples
+    --------
+    >>> name_instrument(RUN).terminal, name_instrument(RUN).campaign
+    ('say which with --instrument', 'say which with instrument = "..." in its [[run]]')
+    """
+    place = table or f"{RUN} or {SURFACE}"
+    return Cure(
+        notebook=f"{say} instrument=",
+        terminal=f"{say} --instrument",
+        campaign=f'{say} instrument = "..." in its {place}',
+    )
+
+
+def draft_dialect(path: Path, table: str) -> Cure:
+    """Cure for a file of an instrument that is not known, and where to name what is drafted."""
+    command = "'tribolab dialect {}' drafts a description of it"
+    name = name_instrument(table, say="name it with")
+    bare = shlex.quote(path.name)
+    return Cure(
+        notebook=f"{command.format(bare)}: {name.notebook}",
+        terminal=f"{command.format(shlex.quote(str(path)))}: {name.terminal}",
+        campaign=f"{command.format(bare)}: {name.campaign}",
+    )
+
+
+PROFILE = Cure(
+    notebook="read it with read_scans()",
+    terminal="'tribolab check' takes it, a campaign under scans of a [[surface]]",
+    campaign="it belongs under scans of a [[surface]]",
+)
+PERHAPS_PROFILE = Cure(
+    notebook="if it holds a profile or map of heights, read it with read_scans()",
+    terminal="if it holds a profile or map of heights, try 'tribolab check'",
+    campaign="if it holds a profile or map of heights, it belongs under scans of a [[surface]]",
+)
+SIGNALS = Cure(
+    notebook="read it with read()",
+    terminal="a campaign takes it as a [[run]]",
+    campaign="it belongs in a [[run]]",
+)
+TESTER_RESULTS = Cure(
+    notebook="read_tester_results() of tribolab.io.scan_results reads them",
+    terminal="'tribolab check' takes them",
+    campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
+)
+UNITS = Cure(
+    notebook="say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name "
+    "the dialect that says them with instrument=",
+    terminal="name the dialect that says them with --instrument",
+    campaign=f'name the dialect that says them with instrument = "..." in its {SURFACE}',
+)
+SIZE = Cure(
+    notebook="say its unit with x_unit=, or name the dialect that says it with instrument=",
+    terminal="name the dialect that says it with --instrument",
+    campaign=f'name the dialect that says it with instrument = "..." in its {SURFACE}',
+)
