@@ -46,9 +46,10 @@ def read_own_run(path: Path) -> xr.Dataset:
     strange = [str(name) for name in run.variables if not _along_time(run[name])]
     for name in strange:
         if name == "time" or name in QUANTITIES:
+            dims = ", ".join(map(str, run[name].dims))
             raise ReadError(
-                f"{path}: variable '{name}' has the dimensions ({', '.join(map(str, run[name].dims))}"
-                f") and holds {_held(run[name])}; numbers along (time) are wanted: write it so"
+                f"{path}: variable '{name}' ({dims}) holds {_held(run[name])}; a run's quantities "
+                "are numbers along (time): write it so, or leave it out"
             )
     run = run.drop_vars(strange)
     run.attrs = _attributes(run.attrs)
