@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.campaign.problems import Problem
-from tribolab.errors import nearest
+from tribolab.errors import nearest, shown
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def _resolve(
         found = _matching(raw, pattern)
         if not found:
             problems.append(
-                Problem(where, f"nothing matches '{pattern}' in {raw}{_there(raw, pattern)}")
+                Problem(where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}")
             )
         files.update(dict.fromkeys(found))
     return list(files)
@@ -149,11 +149,11 @@ def _resolve(
 
 def _matching(raw: Path, pattern: str) -> list[Path]:
     exact = raw / pattern
-    if exact.is_file():  # brackets in a real name are no wildcards
-        return [exact]
     try:
+        if exact.is_file():  # brackets in a real name are no wildcards
+            return [exact]
         found = [path for path in raw.glob(pattern) if path.is_file()]
-    except (ValueError, NotImplementedError):  # an absolute or an empty pattern
+    except (OSError, ValueError, NotImplementedError):  # absolute, empty, or too long a name
         return []
     return sorted(found, key=lambda path: _natural(str(path)))
 
@@ -169,20 +169,29 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 def _there(raw: Path, pattern: str) -> str:
     """Say what is in the folder where the pattern stops to match, or that it names that folder."""
     parts = Path(pattern).parts
-    if len(parts) > 1 and parts[0] == raw.name and not (raw / parts[0]).is_dir():
+    if len(parts) > 1 and parts[0] == raw.name and not _is_folder(raw / parts[0]):
         return f"; patterns are relative to {raw.name}/: leave '{raw.name}/' out"
     folder = raw
     for part in Path(pattern).parts[:-1]:
-        if not (folder / part).is_dir():
+        if not _is_folder(folder / part):
             break
         folder /= part
     names = sorted(f"{p.name}/" if p.is_dir() else p.name for p in folder.iterdir())
     if not names:
         return f"; {folder} is empty"
     hint = nearest(Path(pattern).name, names)
-    listed = ", ".join(names[:5]) + (f", ... ({len(names)} in all)" if len(names) > 5 else "")
+    listed = ", ".join(map(shown, names[:5])) + (
+        f", ... ({len(names)} in all)" if len(names) > 5 else ""
+    )
     in_folder = "" if folder == raw else f" in {folder.relative_to(raw)}/"
     return f"; there is{in_folder} {listed}" + (hint if "did you mean" in hint else "")
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):  # no name that a folder could have
+        return False
 
 
 def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list[Path]]:

@@ -13,6 +13,7 @@ from tribolab.io.draft_header import converts, is_unit
 from tribolab.io.draft_layout import Layout
 from tribolab.io.draft_words import Match, matches, split_unit
 from tribolab.io.headers import split_name, split_row
+from tribolab.io.pieces import LARGEST
 from tribolab.quantities import QUANTITIES, quantity
 
 Kind = Literal["run", "scan", "table"]
@@ -142,6 +143,7 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
             text[index] = odd.iloc[0][:30]
         else:
             missing[index] = odd.unique()[:10].tolist()
+    numbers[np.abs(numbers) > LARGEST] = np.nan
     return numbers, text, missing
 
 

@@ -16,6 +16,8 @@ from tribolab.io.patterns import guarded
 from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
+LARGEST = 1e100  # [SI] beyond it a number is damage: its square is no number any more
+
 
 class Piece(NamedTuple):
     """One table: arrays in SI by quantity, and what the text before it says."""
@@ -116,6 +118,7 @@ def _read_text(file: File, dialect: Dialect) -> Content:
 
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
+    content = _possible(content)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -141,6 +144,25 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     ]
     without = tuple(f"{content.labels[name]} (no values)" for name in empty)
     return content._replace(pieces=pieces, not_used=content.not_used + without)
+
+
+def _possible(content: Content) -> Content:
+    """Take numbers that nothing measured can have for missing, and say how many they were."""
+    found: dict[str, int] = {}
+    pieces = []
+    for piece in content.pieces:
+        columns = dict(piece.columns)
+        for name, values in columns.items():
+            if values.size and not np.abs(values).max() <= LARGEST:  # NaN does not answer
+                odd = np.abs(values) > LARGEST
+                if odd.any():
+                    columns[name] = np.where(odd, np.nan, values)
+                    found[name] = found.get(name, 0) + int(odd.sum())
+        pieces.append(piece._replace(columns=columns))
+    if not found:
+        return content
+    told = "; ".join(f"{name}: {count}" for name, count in found.items())
+    return content._replace(pieces=pieces, notes={**content.notes, "numbers_beyond_range": told})
 
 
 def last_match(pattern: str, text: str) -> str | None:

@@ -70,7 +70,8 @@ def read(
     Notes
     -----
     Time has to increase strictly; what is done where it does not is stated in
-    `tribolab.io.clock`. Single values that are missing are NaN. An optional column without a
+    `tribolab.io.clock`. Single values that are missing are NaN, and so are numbers beyond
+    1e100, which ``numbers_beyond_range`` counts. An optional column without a
     value is left out and named in ``columns_not_used``.
 
     Examples

@@ -14,6 +14,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.dialects import scan_dialects
+from tribolab.io.pieces import LARGEST
 from tribolab.io.scan_grid import even
 from tribolab.io.scan_safety import formats_to_try
 from tribolab.io.signature import peek
@@ -86,7 +87,7 @@ def read_foreign(
     attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
     vertical = lateral if vertical is None else vertical
     heights = heights * vertical
-    heights[~np.isfinite(heights)] = np.nan
+    heights[~(np.abs(heights) <= LARGEST)] = np.nan
     if sizes is None or len(sizes) != len(points):
         raise ReadError(f"{path}: the file does not say how large the scan is in each direction")
     if len(points) == 2:
