@@ -20,7 +20,7 @@ from tribolab.io.scans import read_scans
 
 _QUICK = re.compile(
     r"units 6: (header|campaign)|patterns 7: \(a|large 8: dialect, (5000.*True, clock True)"
-    r"|large 8: info, xlsx with 100000|names 10: dialect, a name with not UTF-8, UTF-8"
+    r"|large 8: info, xlsx with 100000"
     r"|netcdf 10: check|sdf 10: check, scales (0|1e-6) and 0|quotes 10|links 10: \w+ of"
     r"|names 10: a dialect|toml 10|secrets 15: (as|parted|run|info)"
 )

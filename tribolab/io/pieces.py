@@ -155,7 +155,9 @@ def _possible(content: Content) -> Content:
         for name, values in columns.items():
             if values.size and not np.abs(values).max() <= LARGEST:  # NaN does not answer
                 odd = np.abs(values) > LARGEST
-                if odd.any():
+                if name == "time":  # whoever sets the clock refuses it
+                    columns[name] = np.where(odd, np.inf, values)
+                elif name not in ("x", "y") and odd.any():
                     columns[name] = np.where(odd, np.nan, values)
                     found[name] = found.get(name, 0) + int(odd.sum())
         pieces.append(piece._replace(columns=columns))

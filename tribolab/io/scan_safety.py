@@ -19,6 +19,7 @@ _RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 time
 _DEEPEST = 500  # elements of XML within one another; office files have a dozen
 _DAMAGE = (zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError)
 _DAMAGE += (ValueError,)
+_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
 _HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
 _LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
@@ -134,6 +135,7 @@ def _text_formats(path: Path) -> list[str]:
     content = path.read_bytes()
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         content = content.decode("utf-16", errors="replace").encode()
+    _no_endless_lines(path, content)
     lines = re.split(rb"\r\n|\r|\n", content)
     words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
     for number in words:
@@ -146,6 +148,22 @@ def _text_formats(path: Path) -> list[str]:
     widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
     columns = last < _HEADER_LINES and len(widths) == 1 and None not in widths
     return [name for name in _TEXT if columns or name != "xyz"]
+
+
+def _no_endless_lines(path: Path, content: bytes) -> None:
+    """Refuse text whose lines, or whose one line, would take all memory."""
+    ends = np.flatnonzero(np.isin(np.frombuffer(content, dtype=np.uint8), (10, 13)))
+    if ends.size > _MOST_LINES:
+        raise ReadError(
+            f"{path}: {ends.size} lines are more than a profile or map without a dialect may have "
+            f"({_MOST_LINES}); describe the file in a TOML dialect"
+        )
+    longest = int(np.diff(ends, prepend=-1, append=len(content)).max()) - 1
+    if longest > _LONGEST_ROW:
+        raise ReadError(
+            f"{path}: a line of {longest} characters is longer than any row of a map "
+            f"({_LONGEST_ROW}); is the file damaged?"
+        )
 
 
 def _width(line: bytes) -> int | None:
