@@ -375,3 +375,126 @@ def mutate(content: bytes, rng: Rng) -> tuple[bytes, str]:
         if len(content) == 0:
             break
     return content, "+".join(names)
+
+
+# ---- whole files of unusual kinds, made rather than damaged
+
+
+def _numbers(rng: Rng, rows: int, columns: int, mark: str) -> str:
+    values = rng.normal(size=(rows, columns)).round(4)
+    values[:, 0] = 0.1 * np.arange(rows)
+    return "\n".join(mark.join(map(str, row)) for row in values) + "\n"
+
+
+def wide(rng: Rng) -> bytes:
+    """Thousands of columns."""
+    columns, mark = int(rng.integers(500, 6000)), (",", ";", "\t", " ")[rng.integers(4)]
+    units = ("[N]", "(mm)", "", "[bla]", "[s]")
+    names = mark.join(f"c{n}{units[rng.integers(5)]}" for n in range(columns))
+    head = names + "\n" if rng.random() < 0.6 else ""
+    return (head + _numbers(rng, int(rng.integers(2, 40)), columns, mark)).encode()
+
+
+def deep(rng: Rng) -> bytes:
+    """Thousands of brackets, tags or lists in one another."""
+    depth = int(rng.integers(500, 300_000))
+    pairs = ("[]", "()", "{}", ("<a>", "</a>"), ('{"a":', "}"), ("<row>", "</row>"))
+    first, last = pairs[rng.integers(len(pairs))]
+    nested = first * depth + "1" + last * depth
+    kind = int(rng.integers(4))
+    if kind == 0:  # in a header
+        return f"Time [s],F{nested} [N]\n{_numbers(rng, 20, 2, ',')}".encode()
+    if kind == 1:  # a unit
+        return f"Time [s],Fx [{nested}]\n{_numbers(rng, 20, 2, ',')}".encode()
+    if kind == 2:
+        return nested.encode()
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("[Content_Types].xml", nested)
+        archive.writestr("xl/workbook.xml", nested)
+        archive.writestr("main.xml", nested)
+    return out.getvalue()
+
+
+def endless(rng: Rng) -> bytes:
+    """Lines without end, or ends without lines."""
+    pieces = (
+        "1.5,",
+        "7",
+        " ",
+        "\t",
+        "\n",
+        "\r",
+        "\r\n",
+        "a",
+        '"',
+        "'",
+        "1 ",
+        ";",
+        "#",
+        "\x0b",
+        "e+",
+    )
+    piece = pieces[rng.integers(len(pieces))]
+    head = "Time [s],Fx [N],Fz [N]\n" if rng.random() < 0.5 else ""
+    tail = "\n" + _numbers(rng, 20, 3, ",") if rng.random() < 0.5 else ""
+    return (head + piece * int(rng.integers(100_000, 12_000_000)) + tail).encode()
+
+
+def foreign(rng: Rng) -> bytes:
+    """A sound table in an encoding that labs abroad use."""
+    encodings = ("utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-7", "cp500", "cp037", "koi8-r")
+    encodings += ("shift_jis", "gb18030", "big5", "euc_kr", "iso2022_jp", "cp1251", "mac_roman")
+    words = ("Zeit [s]", "時間 [s]", "Время [с]", "시간", "Kraft [µN]", "Fx [N]", "Δx", "−5", "‰")
+    names = ",".join(words[rng.integers(len(words))] for _ in range(3))
+    text = f"{names}\n{_numbers(rng, 200, 3, ',')}"
+    content = text.encode(encodings[rng.integers(len(encodings))], errors="replace")
+    return mutate(content, rng)[0] if rng.random() < 0.5 else content
+
+
+def wild_cells(rng: Rng) -> bytes:
+    """Numbers beyond all numbers, in every place."""
+    wild = (
+        "1e999",
+        "-1e999",
+        "1e-999",
+        "9" * 4000,
+        "nan",
+        "inf",
+        "-inf",
+        "1e308",
+        "-1e308",
+        "5e-324",
+    )
+    share = float(rng.choice([0.01, 0.3, 1.0]))
+    cells = rng.normal(size=(300, 3)).round(3).astype(object)
+    cells[:, 0] = (0.1 * np.arange(300)).round(3)
+    for place in np.argwhere(rng.random(cells.shape) < share):
+        cells[tuple(place)] = wild[rng.integers(len(wild))]
+    heads = ("# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n", "", "x [mm],y [mm],z [um]\n")
+    heads += ("Time [1e999 s],Fx [9**9 N],Fz [N]\n", "x [mm],z [um],n\n")
+    rows = "\n".join(",".join(map(str, row)) for row in cells)
+    return (heads[rng.integers(len(heads))] + rows + "\n").encode()
+
+
+def long_header(rng: Rng) -> bytes:
+    """Ten thousand lines before the table, of several kinds."""
+    lines = (
+        "# key: value",
+        "Load = 31 N",
+        "",
+        "1;2",
+        "step 1",
+        "[section]",
+        "a,b,c",
+        "\t\t",
+        "12.5",
+    )
+    one = lines[rng.integers(len(lines))]
+    mixed = rng.random() < 0.5
+    header = [lines[rng.integers(len(lines))] if mixed else f"{one}{n}" for n in range(10_000)]
+    table = "Time [s],Fx [N],Fz [N]\n" + _numbers(rng, 100, 3, ",")
+    return ("\n".join(header) + "\n" + table * int(rng.integers(1, 4))).encode()
+
+
+MADE = (wide, deep, endless, foreign, wild_cells, long_header)

@@ -422,6 +422,8 @@ def load_campaign(path: str | Path) -> Campaign:
         raise ConfigError(f"{path}: cannot be read ({error}); it wants to be UTF-8") from error
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path}: not a TOML file: {problems.toml_error(error, text)}") from error
+    except (RecursionError, ValueError) as error:
+        raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
     try:
         campaign = Campaign.model_validate(content, context={"in_file": True})
     except ValidationError as error:

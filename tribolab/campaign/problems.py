@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
 
 _SHOWN = 5
+_HINTED = 100  # mistakes for which a key's likely name is looked for
+# blank lines and comments, then a key or the name of a table
+_FIRST_KEY = re.compile(r"""(?:[ \t]*(?:#.*)?\r?\n)*[ \t]*(?:\[|["'A-Za-z0-9_.-]+[ \t]*=)""")
 
 
 class Problem(NamedTuple):
@@ -58,9 +61,22 @@ def _key(where: tuple[str | int, ...]) -> str:
     return text
 
 
+def unreadable(error: Exception) -> str:
+    """Say why a TOML text is too much for its parser, though it may be right."""
+    if isinstance(error, RecursionError):
+        return "its lists or tables lie hundreds deep in one another; write them flat"
+    return "a number in it has thousands of digits; write it shorter"
+
+
 def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
-    """Return what the TOML parser says, with the line it means."""
+    """Return what the TOML parser says, with the line it means.
+
+    The line is shown only of a text that is a TOML file to its first key or table: of another
+    file nothing is told.
+    """
     said = str(error)
+    if not _FIRST_KEY.match(text):
+        return f"{said.split(' (at')[0]}; is it a campaign file?"
     if match := re.search(r"\(at line (\d+), column \d+\)", said):
         number = int(match[1])
         line = text.splitlines()[number - 1].strip() if number <= len(text.splitlines()) else ""
@@ -78,6 +94,8 @@ def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Proble
         if item["type"] == "too_short" and any(_within(item["loc"], o["loc"]) for o in items):
             continue  # a list whose only element is wrong is not empty
         where, table = _walk(model, item["loc"])
+        if len(found) >= _HINTED:
+            table = None
         found.setdefault(where, Problem(where, _words(item, table)))
     return list(found.values())
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*(.+?)\s*\]\]?\s*(?:#.*)?$")
 _KEY = re.compile(r"^\s*((?:[A-Za-z0-9_-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*[A-Za-z0-9_-]+)*)\s*=")
@@ -11,7 +12,7 @@ _PART = re.compile(r"\"([^\"]*)\"|'([^']*)'|([^\s.\"']+)")
 
 
 def _parts(dotted: str) -> tuple[str, ...]:
-    return tuple(next(text for text in match if text) for match in _PART.findall(dotted))
+    return tuple(next((text for text in match if text), "") for match in _PART.findall(dotted))
 
 
 def line_of(text: str, where: Sequence[str | int]) -> int | None:
@@ -34,6 +35,16 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
     >>> line_of('[[run]]\nfiles = "a"\n[[run]]\nfiles = "b"\n', ["run", 1, "files"])
     4
     """
+    found = _lines(text)
+    for length in range(len(where), 0, -1):
+        if tuple(where[:length]) in found:
+            return found[tuple(where[:length])]
+    return None
+
+
+@functools.lru_cache(maxsize=2)  # one text is asked for every mistake in it
+def _lines(text: str) -> Mapping[tuple[str | int, ...], int]:
+    """Lines of all tables and keys of a text."""
     found: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
     counts: dict[tuple[str | int, ...], int] = {}
@@ -57,7 +68,4 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
         elif key := _KEY.match(line):
             found.setdefault(table + _parts(key[1]), number)
         fence = next((f for f in ('"""', "'''") if line.count(f) % 2), "")
-    for length in range(len(where), 0, -1):
-        if tuple(where[:length]) in found:
-            return found[tuple(where[:length])]
-    return None
+    return found

@@ -98,9 +98,12 @@ def _index(
             f"{where}: column '{shown(column.name)}' ({column.quantity}) should stand there "
             f"{column.occurrence} times, it stands {len(places)} times"
         )
+    hint = nearest(column.name or "", [name for name in names if name])
+    if "did you mean" not in hint and not any(one.name in names for one in dialect.column):
+        hint = ""  # no column of this instrument is there: what the file holds is not told
     raise ReadError(
         f"{where}: column '{shown(column.name)}' ({column.quantity}) is missing (instrument "
-        f"'{dialect.name}'){nearest(column.name or '', [name for name in names if name])}"
+        f"'{dialect.name}'){hint}"
     )
 
 

@@ -152,7 +152,12 @@ def _load(path: Path) -> Dialect:
 def _parse(path: Path) -> Dialect:
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except RecursionError as error:
+        raise ConfigError(
+            f"{path}: the dialect cannot be read: its lists or tables lie hundreds deep in one "
+            "another; write them flat"
+        ) from error
+    except (OSError, ValueError) as error:
         raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
     try:
         return Dialect.model_validate(content)

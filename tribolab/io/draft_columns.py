@@ -8,11 +8,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 import pandas as pd
 
-from tribolab.errors import shown
+from tribolab.errors import ReadError, brief, shown
 from tribolab.io.draft_header import converts, is_unit
 from tribolab.io.draft_layout import Layout
 from tribolab.io.draft_words import Match, matches, split_unit
 from tribolab.io.headers import split_name, split_row
+from tribolab.io.pieces import LARGEST
 from tribolab.quantities import QUANTITIES, quantity
 
 Kind = Literal["run", "scan", "table"]
@@ -111,23 +112,32 @@ def understand(layout: Layout) -> Understood:
 def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     """Numbers of all rows; for each column a text that is no number, and its words for no value."""
     blank = layout.delimiter == "whitespace"
-    frame = pd.read_csv(
-        io.StringIO("\n".join(layout.rows())),
-        sep=r"\s+" if blank else layout.delimiter,
-        header=None,
-        names=range(layout.width),
-        decimal=layout.decimal,
-        index_col=False,
-        keep_default_na=False,
-        na_values=[""],
-        skipinitialspace=True,
-        on_bad_lines="skip",
-        low_memory=False,
-    )
+    try:
+        frame = pd.read_csv(
+            io.StringIO("\n".join(layout.rows())),
+            sep=r"\s+" if blank else layout.delimiter,
+            header=None,
+            names=range(layout.width),
+            decimal=layout.decimal,
+            index_col=False,
+            keep_default_na=False,
+            na_values=[""],
+            skipinitialspace=True,
+            on_bad_lines="skip",
+            low_memory=False,
+        )
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise ReadError(
+            f"{layout.file.path}: the table cannot be read: {brief(error, 100)}; is a quotation "
+            "mark left open in it?"
+        ) from error
     numbers = np.full(frame.shape, np.nan)
     text, missing = [""] * layout.width, [[] for _ in range(layout.width)]
     for index in range(layout.width):
         column = frame[index]
+        if column.dtype.kind in "fiu":  # all of it was understood
+            numbers[:, index] = column
+            continue
         values = pd.to_numeric(column, errors="coerce")
         numbers[:, index] = values.to_numpy(dtype=float)
         odd = column[values.isna() & column.notna()].astype(str).str.strip()
@@ -136,6 +146,7 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
             text[index] = odd.iloc[0][:30]
         else:
             missing[index] = odd.unique()[:10].tolist()
+    numbers[np.abs(numbers) > LARGEST] = np.nan
     return numbers, text, missing
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tribolab.io.draft_text import Grammar
 
 _ABOVE = 8  # lines above the first row that are looked at
+_TELLING = 200  # cells that tell whether a row is one of units
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
@@ -133,6 +134,6 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
 
 
 def _are_units(cells: Sequence[str]) -> bool:
-    filled = [cell.strip("[]() ") for cell in cells if cell]
+    filled = [cell.strip("[]() ") for cell in cells if cell][:_TELLING]
     units = sum(1 for cell in filled if is_unit(cell) or cell == "-")
     return units >= 0.6 * len(filled)

@@ -17,6 +17,7 @@ from tribolab.io.headers import split_row
 from tribolab.io.signature import HEAD, File
 
 _TAIL = 1 << 14
+_TRIED = 20  # patterns of a step's number
 
 
 class Layout(NamedTuple):
@@ -214,6 +215,7 @@ def _step(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
     for block in blocks:
         texts.append(lines[done : block.heading.names if block.heading else block.start])
         done = block.stop
+    tried: set[str] = set()
     for line in texts[0]:
         found = re.match(
             r"(?i)(\W*(?:[a-z]+ ?- ?|(?:step|schritt|segment|stage)\D{0,5}))(\d+)\b", line
@@ -222,6 +224,11 @@ def _step(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
         if not found:
             continue
         general = r"^.* - (\d+)$" if found[1].endswith(" - ") else f"^{escaped(found[1])}(\\d+)"
+        if general in tried:
+            continue
+        tried.add(general)
+        if len(tried) > _TRIED:
+            break
         numbers = []
         for text in texts:
             hits = re.findall(general, "\n".join(text), re.MULTILINE)

@@ -18,6 +18,7 @@ from tribolab.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # of raw cells that are shown side by side
+_LISTED = 60  # columns that are not used and shown all the same
 
 
 def print_draft(draft: Draft, console: Console) -> None:
@@ -104,8 +105,9 @@ def _columns_table(draft: Draft) -> Table:
     if draft.understood is None:
         return table
     filled = np.isfinite(draft.understood.numbers).any(axis=0)
-    for column in draft.understood.columns:
-        if column.label or filled[column.place - 1]:
+    named = [c for c in draft.understood.columns if c.label or filled[c.place - 1]]
+    for number, column in enumerate(named):
+        if number < _LISTED or column.quantity:
             found = escape(column.quantity or "") if column.used else ""
             unit = column.read_unit or ""
             table.add_row(
@@ -115,6 +117,9 @@ def _columns_table(draft: Draft) -> Table:
                 found,
                 escape(_remark(column)),
             )
+    left = sum(1 for column in named[_LISTED:] if not column.quantity)
+    if left:
+        table.add_row("", f"... and {left} more", "", "", "not used")
     return table
 
 

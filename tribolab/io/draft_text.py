@@ -12,8 +12,8 @@ from tribolab.io.signature import HEAD
 _VOTERS = 300  # lines at the start and at the end that decide on the delimiter
 DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
 _NUMBER = {
-    ".": r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?",
-    ",": r"[+-]?(?:\d+,?\d*|,\d+)(?:[eE][+-]?\d+)?",
+    ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
+    ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
 # dates, times of day, and what instruments write where a value should stand
 _NO_NUMBER = re.compile(

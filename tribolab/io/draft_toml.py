@@ -42,7 +42,8 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     rest = [column for column in columns if not column.used and not column.fill_in]
     parts.append(_unused(rest, numbers))
     parts.append(_values(find_values(layout)))
-    return "\n".join(part for part in parts if part)
+    text = "\n".join(part for part in parts if part)
+    return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
 
 
 def _head(name: str, layout: Layout, understood: Understood) -> str:

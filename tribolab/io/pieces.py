@@ -16,8 +16,8 @@ from tribolab.io.patterns import guarded
 from tribolab.io.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
-_LARGEST = 1e60  # of any quantity in SI; its fourth power is a number still
-_PLACES = {"x", "y"}  # of a scan: `scan_grid` says which cannot be
+LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
+_PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
 
 
 class Piece(NamedTuple):
@@ -129,7 +129,7 @@ def measurable(values: np.ndarray) -> np.ndarray:
     if values.dtype.kind != "f":
         return values
     size = np.abs(values)
-    beyond, nothing = (size > _LARGEST) & np.isfinite(size), (size < 1 / _LARGEST) & (size > 0)
+    beyond, nothing = (size > LARGEST) & np.isfinite(size), (size < 1 / LARGEST) & (size > 0)
     if not (beyond.any() or nothing.any()):
         return values
     return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
@@ -137,9 +137,7 @@ def measurable(values: np.ndarray) -> np.ndarray:
 
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
-    for piece in content.pieces:
-        signals = {k: v for k, v in piece.columns.items() if k not in _PLACES}
-        piece.columns.update({name: measurable(values) for name, values in signals.items()})
+    content = _possible(content)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -165,6 +163,30 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     ]
     without = tuple(f"{content.labels[name]} (no values)" for name in empty)
     return content._replace(pieces=pieces, not_used=content.not_used + without)
+
+
+def _possible(content: Content) -> Content:
+    """Take numbers that nothing measured can have for missing, and say how many they were."""
+    found: dict[str, int] = {}
+    pieces = []
+    for piece in content.pieces:
+        columns = dict(piece.columns)
+        for name, values in columns.items():
+            if name in _PLACES or values.dtype.kind != "f":
+                continue
+            odd = np.isfinite(values) & (np.abs(values) > LARGEST)
+            if name == "time":  # whoever sets the clock refuses it
+                columns[name] = np.where(odd, np.inf, values)
+                continue
+            columns[name] = measurable(values)
+            if odd.any():
+                found[name] = found.get(name, 0) + int(odd.sum())
+        pieces.append(piece._replace(columns=columns))
+    content = content._replace(pieces=pieces)
+    if not found:
+        return content
+    told = "; ".join(f"{name}: {count}" for name, count in found.items())
+    return content._replace(notes={**content.notes, "numbers_beyond_range": told})
 
 
 def last_match(pattern: str, text: str) -> str | None:

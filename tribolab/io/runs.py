@@ -71,7 +71,8 @@ def read(
     Notes
     -----
     Time has to increase strictly; what is done where it does not is stated in
-    `tribolab.io.clock`. Single values that are missing are NaN. An optional column without a
+    `tribolab.io.clock`. Single values that are missing are NaN, and so are numbers beyond
+    1e100, which ``numbers_beyond_range`` counts. An optional column without a
     value is left out and named in ``columns_not_used``.
 
     Examples
@@ -90,7 +91,9 @@ def read(
         raise ReadError("no file is given")
     shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
     if len(paths) == 1 and peek(paths[0]).format == "netcdf":
-        return _own_run(paths[0])
+        from tribolab.io.own_run import read_own_run
+
+        return read_own_run(paths[0])
     dialects = _dialects(paths, instrument)
     for file, dialect in zip(paths, dialects, strict=True):
         if is_scan(dialect):
@@ -212,16 +215,6 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
         "left_out": rows_in_words(run.attrs),
         "metadata": {k: v for k, v in run.attrs.items() if k not in known_attrs},
     }
-
-
-def _own_run(path: Path) -> xr.Dataset:
-    """Read a run that tribolab wrote as netCDF."""
-    from tribolab.io.netcdf import read_netcdf
-
-    run = read_netcdf(path, group="run?")
-    if "time" not in run.coords or run.sizes["time"] == 0:
-        raise ReadError(f"{path}: this netCDF file holds no run: it has no coordinate 'time'")
-    return run
 
 
 def _dialects(paths: list[Path], instrument: str | Path | None) -> list[Dialect]:

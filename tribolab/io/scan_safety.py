@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import zipfile
 import zlib
 from pathlib import Path
 
-from tribolab.errors import ReadError
+import numpy as np
+
+from tribolab.errors import ReadError, shown
 from tribolab.io.seal import is_sealed, try_out
 
 _MEGABYTE = 1 << 20
 _UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
 _RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
+_DEEPEST = 500  # elements of XML within one another; office files have a dozen
+_DAMAGE = (zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError)
+_DAMAGE += (ValueError,)
+_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
 _HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
 _LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square
 _NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
@@ -76,6 +83,42 @@ def _unpacks(path: Path) -> None:
             f"{unpacked / path.stat().st_size:.0f} times its size; that is no measurement. Export "
             "the profile as text (csv)"
         )
+    with contextlib.suppress(*_DAMAGE):  # what reads it says how it is damaged
+        _shallow(path)
+
+
+def _shallow(path: Path) -> None:
+    """Refuse XML whose elements lie so deep in one another that its parsers take for ever."""
+    with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            if not member.filename.lower().endswith((".xml", ".rels")):
+                continue
+            depth = 0
+            with archive.open(member) as file:
+                while block := file.read(_MEGABYTE):
+                    steps = _steps(block)
+                    if depth + steps.cumsum().max(initial=0) > _DEEPEST:
+                        raise ReadError(
+                            f"{path}: in '{shown(member.filename)}' more than {_DEEPEST} elements "
+                            "lie in one another, as no office program writes it; export the "
+                            "profile as text (csv)"
+                        )
+                    depth += int(steps.sum())
+
+
+def _steps(block: bytes) -> np.ndarray:
+    """Down (1) and up (-1) of each tag whose first two letters stand in a block."""
+    letters = np.frombuffer(block, dtype=np.uint8)
+    starts = np.flatnonzero(letters[:-1] == ord("<"))
+    second = letters[starts + 1]
+    steps = np.ones(starts.size, dtype=np.int64)
+    steps[second == ord("/")] = -1
+    steps[(second == ord("?")) | (second == ord("!"))] = 0
+    ends = np.flatnonzero(letters[1:] == ord(">"))
+    ends = ends[letters[ends] == ord("/")]  # of an empty element: <a/>
+    empty = np.searchsorted(starts, ends) - 1
+    steps[empty[empty >= 0]] = 0
+    return steps
 
 
 def _arrays_only(path: Path) -> None:
@@ -92,6 +135,7 @@ def _text_formats(path: Path) -> list[str]:
     content = path.read_bytes()
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         content = content.decode("utf-16", errors="replace").encode()
+    _no_endless_lines(path, content)
     lines = re.split(rb"\r\n|\r|\n", content)
     words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
     for number in words:
@@ -104,6 +148,24 @@ def _text_formats(path: Path) -> list[str]:
     widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
     columns = last < _HEADER_LINES and len(widths) == 1 and None not in widths
     return [name for name in _TEXT if columns or name != "xyz"]
+
+
+def _no_endless_lines(path: Path, content: bytes) -> None:
+    """Refuse text whose lines, or whose one line, would take all memory."""
+    count = content.count(b"\n") + content.count(b"\r")  # before a list of them is made
+    if count > _MOST_LINES:
+        raise ReadError(
+            f"{path}: {count} lines are more than a profile or map without a dialect may have "
+            f"({_MOST_LINES}); describe the file in a TOML dialect"
+        )
+    letters = np.frombuffer(content, dtype=np.uint8)
+    ends = np.flatnonzero((letters == ord("\n")) | (letters == ord("\r")))
+    longest = int(np.diff(ends, prepend=-1, append=len(content)).max()) - 1
+    if longest > _LONGEST_ROW:
+        raise ReadError(
+            f"{path}: a line of {longest} characters is longer than any row of a map "
+            f"({_LONGEST_ROW}); is the file damaged?"
+        )
 
 
 def _width(line: bytes) -> int | None:

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from tribolab.errors import ReadError, brief, shown
+from tribolab.errors import ReadError, shown
 from tribolab.io.columns import Signal
 from tribolab.io.dialect_model import Dialect
 from tribolab.io.headers import RawText, Table
@@ -203,39 +203,43 @@ class _Parser:
                 else:
                     self.incomplete = 1
                     return table
-        raise ReadError(self._diagnosis(block, place, error)) from error
+        raise ReadError(self._diagnosis(block, place)) from error
 
     def _cells(self, line: bytes) -> int:
         return line.count(self._parse["delimiter"].encode()) + 1
 
-    def _diagnosis(self, block: bytes, place: int, error: Exception) -> str:
+    def _diagnosis(self, block: bytes, place: int) -> str:
         """Name the first line of a block that cannot be read."""
         path = self._raw.file.path
         before = self._lines_before(place)
         lines = block.decode("utf-8", errors="replace").splitlines()
         delimiter, missing = self._parse["delimiter"], {*_NO_VALUE, *self._convert["null_values"]}
+        is_table = place > self._table.start  # else what it holds is not told: it may be anything
         for number, line in enumerate(lines):
             if not line.strip():
                 continue
             cells = [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
             where = f"{path}: line {before + number + 1}"
             if len(cells) != self._table.width:
+                told = f": '{shown(line, 60)}'" if is_table else ""
                 return (
-                    f"{where} has {len(cells)} cells where {self._table.width} are expected: "
-                    f"'{line[:60]}'; if the table ends before it, say so in the dialect: "
-                    "[text] end = '...'"
+                    f"{where} has {len(cells)} cells where {self._table.width} are expected{told}; "
+                    "if the table ends before it, say so in the dialect: [text] end = '...'"
                 )
             for signal in self._signals:
                 cell = cells[signal.index]
                 if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
+                    told = f"'{shown(cell, 40)}'" if is_table else "what stands there"
+                    word = shown(cell, 40) if is_table else "..."
                     return (
-                        f"{where}, column '{shown(signal.label)}': '{cell[:40]}' is not a number; "
-                        f"if it stands for a missing value, say so in the dialect: [text] "
-                        f"missing = ['{cell[:40]}']"
+                        f"{where}, column '{shown(signal.label)}': {told} is not a number; if it "
+                        f"stands for a missing value, say so in the dialect: [text] missing = "
+                        f"['{word}']"
                     )
+            is_table = True
         return (
-            f"{path}: the rows after line {before} cannot be read: {brief(error, 150)}; is a "
-            "quotation mark left open there?"
+            f"{path}: the rows after line {before} cannot be read; is a quotation mark left open "
+            "there?"
         )
 
     def _lines_before(self, place: int) -> int:
