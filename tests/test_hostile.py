@@ -8,7 +8,8 @@ import time
 
 import numpy as np
 import pytest
-from hostile_cases import CASES, TRIBOLAB
+from hostile import CASES
+from hostile.base import TRIBOLAB
 from mutations import MADE
 from typer.testing import CliRunner
 

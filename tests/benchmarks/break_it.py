@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from hostile_cases import CASES
+from hostile import CASES
 
 SECONDS, MEMORY, PATIENCE = 5.0, 1 << 30, 300.0
 _NEVER = {
