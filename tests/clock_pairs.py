@@ -158,7 +158,8 @@ def play(position: np.ndarray, half: float) -> np.ndarray:
     >>> play(np.array([0.0, 3.0, 1.0, -3.0]), 1.0).tolist()
     [0.0, 2.0, 2.0, -2.0]
     """
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 1
+    # a turning point still belongs to the way that led to it
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
     out, last = np.empty_like(position), float(position[0])
     for part in np.split(np.arange(len(position)), turns):
         at = position[part]

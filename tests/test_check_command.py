@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -175,8 +176,11 @@ def test_info_describes_scans_and_results_as_check_reads_them(scans, tmp_path):
 
 
 @pytest.mark.parametrize("command", ["info", "check"])
-def test_the_terminal_names_options_and_not_arguments_of_functions(scans, tmp_path, command):
-    unknown, squeezed = tmp_path / "unknown.txt", tmp_path / "run.csv.gz"
+def test_the_terminal_names_options_and_not_arguments_of_functions(
+    scans, tmp_path, command, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)  # the folder's name is no part of the sentence's length
+    unknown, squeezed = Path("unknown.txt"), Path("run.csv.gz")
     unknown.write_text("one\ntwo\n")
     squeezed.write_bytes(b"PK\x03\x04")
     done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])

@@ -156,7 +156,7 @@ def test_a_spreadsheet_without_its_reader_says_what_to_install(shared_data, monk
     [
         ("f,E_stor\nHz,MPa\n1,2\n", "columns for frequency, storage and loss.*it has f, E_stor"),
         ("f,E',E''\nHz,MPa,furlong\n1,2,3\n2,3,4\n", "column 'E'''.*furlong"),
-        ("f,E',E''\n1,2,3\n2,3,4\n", "row of units"),
+        ("f,E',E''\n1,2,3\n2,3,4\n", "units are read from the row below the names"),
     ],
 )
 def test_a_file_that_is_no_dma_table_is_refused_with_the_column(tmp_path, text, words):

@@ -120,7 +120,7 @@ def other_name(name: str, modified: int) -> str:
     Examples
     --------
     >>> other_name("tables/friction.csv", 1_790_000_000_000_000_000)
-    'tables/friction.changed-20260921T134640.csv'
+    'tables/friction.changed-20260921T141320.csv'
     """
     path = Path(name)
     when = dt.datetime.fromtimestamp(modified / 1e9, dt.UTC).strftime("%Y%m%dT%H%M%S")

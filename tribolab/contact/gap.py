@@ -93,7 +93,7 @@ def gap_distribution(
 
     Examples
     --------
-    >>> q, c = [1e3, 1e5, 1e8], [1e-20, 1e-20, 1e-32]
+    >>> q, c = [1e3, 1e5, 1e8], [1e-22, 1e-22, 1e-34]
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
     >>> gaps = gap_distribution("0.04 MPa", psd, "2 MPa")
     >>> share = float(gaps.gap_weight.sum() + gaps.contact_area_ratio)

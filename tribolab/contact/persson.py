@@ -164,11 +164,11 @@ def mean_separation(
     Examples
     --------
     >>> import xarray as xr
-    >>> q, c = [1e3, 1e5, 1e8], [1e-20, 1e-20, 1e-32]
+    >>> q, c = [1e3, 1e5, 1e8], [1e-22, 1e-22, 1e-34]
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
     >>> u = mean_separation("0.04 MPa", psd, "2 MPa")
     >>> f"{1e6 * u:.2f} um"
-    '54.71 um'
+    '2.40 um'
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     slope, weight = slope_quadrature(*spectrum_arrays(psd))

@@ -198,7 +198,8 @@ def play(position: Array, half: float) -> Array:
     >>> play(np.array([0.0, 3.0, 1.0, -3.0]), 1.0).tolist()
     [0.0, 2.0, 2.0, -2.0]
     """
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 1
+    # a turning point still belongs to the way that led to it
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
     edges = np.concatenate([[0], turns, [len(position)]])
     out, last = np.empty_like(position), float(position[0])
     for first, end in zip(edges[:-1], edges[1:], strict=True):

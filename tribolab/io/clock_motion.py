@@ -43,10 +43,11 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
 
     Examples
     --------
-    >>> t = np.arange(100.0)
-    >>> noisy = np.where(t < 50, 0.0, 1.0) + 0.01 * np.cos(7.0 * t)
-    >>> np.unique(clean_motion(t, noisy).way[:50]).tolist()
-    [0]
+    >>> t = np.arange(2000.0)
+    >>> noise = 0.01 * np.random.default_rng(0).standard_normal(t.size)
+    >>> way = clean_motion(t, np.where(t < 1000, 0.0, 1.0) + noise).way
+    >>> np.unique(way[:1000]).tolist(), np.unique(way[1000:]).tolist()
+    ([0], [1])
     """
     path = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (velocity[1:] + velocity[:-1]))])
     half, smooth = 0, velocity

@@ -186,7 +186,7 @@ def flow_factors(
     --------
     >>> import numpy as np, xarray as xr
     >>> q = np.array([1e3, 1e5, 1e9])
-    >>> c = np.array([1e-20, 1e-20, 1e-36])
+    >>> c = np.array([1e-22, 1e-22, 1e-38])
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
     >>> factors = flow_factors(psd)
     >>> far = factors.at(100 * factors.rms_roughness)
