@@ -25,6 +25,7 @@ import numpy as np
 
 SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
 TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
+FAR = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
 WORSE = 16.0  # squares (in variances) by which one line may be worse than two
 
 
@@ -91,9 +92,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     The spread of differences is taken per quarter decade of speed, because the lowest speed may
     drown in a floor that the highest does not show. The floor is no lower than `least` [m/s].
     """
-    # second differences: a ramp has none, so that what one part does is no noise of another
-    middle = np.abs(velocity[2:] + velocity[1:-1] + velocity[:-2]) / 3
-    difference = np.abs(np.diff(velocity, 2)) / np.sqrt(6)
+    middle, difference, bend = _differences(velocity)
     nothing = np.zeros(0)
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
@@ -103,16 +102,13 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     for one in np.unique(bins):
         inside = bins == one
         if np.count_nonzero(inside) >= 8:
-            chosen = difference[inside]
-            # quantised readings repeat, so that their median difference is zero: then the
-            # mean below the largest tenth stands in
-            spread = max(
-                np.median(chosen) / 0.6745,
-                np.mean(np.sort(chosen)[: max(1, chosen.size * 9 // 10)]),
-            )
-            levels.append((np.median(middle[inside]), spread, chosen.size / middle.size))
+            # a ramp has differences, but it does not bend; noise with memory bends, if one looks
+            # far enough, more than it differs from one block to the next
+            spread = min(_spread(difference[inside]), _spread(bend[inside]))
+            share = np.count_nonzero(inside) / middle.size
+            levels.append((np.median(middle[inside]), spread, share))
     if not levels:
-        floor = max(float(np.median(difference) / 0.6745), least)
+        floor = max(float(min(np.median(difference), np.median(bend)) / 0.6745), least)
         return Noise(floor, nothing, nothing)
     speed, spread, share = np.array(levels).T
     floor = max(float(spread.min()), least)
@@ -126,6 +122,25 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     best = relative[moves].min() if moves.any() else np.inf
     relative = np.where(share < TRUSTED, np.minimum(relative, best), relative)
     return Noise(floor, speed, relative)
+
+
+def _differences(velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Speed, first difference and bend around each block; white noise gives both its size."""
+    far = max(1, min(FAR, (velocity.size - 1) // 8))
+    left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
+    after = velocity[far + 1 : velocity.size - far + 1]
+    bend = np.abs(left - 2 * here + right) / np.sqrt(6)
+    return np.abs(left + here + right) / 3, np.abs(after - here) / np.sqrt(2), bend
+
+
+def _spread(deviation: np.ndarray) -> float:
+    """Return the standard deviation from deviations, most of which are noise.
+
+    Quantised readings repeat, so that their median deviation is zero: then the mean below the
+    largest tenth stands in.
+    """
+    most = np.sort(deviation)[: max(1, deviation.size * 9 // 10)]
+    return float(max(np.median(deviation) / 0.6745, np.mean(most)))
 
 
 def find_breaks(
@@ -169,10 +184,14 @@ def find_breaks(
 
 
 def _bends(total: np.ndarray, noise: Noise, width: int, k: np.ndarray) -> np.ndarray:
-    """Second differences of neighbouring window means in standard errors: a ramp has none."""
-    k = k[(k >= width) & (k + 2 * width < total.size)]
+    """Second differences of window means `FAR` apart, as large for white noise as neighbours'.
+
+    In standard errors; a ramp has none.
+    """
+    far = FAR * width
+    k = k[(k >= far) & (k + far + width < total.size)]
     first, second, third = (
-        (total[k + (i + 1) * width] - total[k + i * width]) / width for i in (-1, 0, 1)
+        (total[k + i * far + width] - total[k + i * far]) / width for i in (-1, 0, 1)
     )
     bend = np.abs(first - 2 * second + third)
     larger = np.maximum(np.abs(first), np.abs(third))
