@@ -92,7 +92,7 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     The spread of differences is taken per quarter decade of speed, because the lowest speed may
     drown in a floor that the highest does not show. The floor is no lower than `least` [m/s].
     """
-    middle, difference, bend = _differences(velocity)
+    middle, difference, near, bend = _differences(velocity)
     nothing = np.zeros(0)
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
@@ -102,13 +102,16 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     for one in np.unique(bins):
         inside = bins == one
         if np.count_nonzero(inside) >= 8:
-            # a ramp has differences, but it does not bend; noise with memory bends, if one looks
-            # far enough, more than it differs from one block to the next
-            spread = min(_spread(difference[inside]), _spread(bend[inside]))
+            # a ramp has differences, but it does not bend; noise with memory hardly bends from
+            # block to block, but over more of them; digits repeat, and hide from one distance
+            spread = max(
+                _spread(near[inside]), min(_spread(difference[inside]), _spread(bend[inside]))
+            )
             share = np.count_nonzero(inside) / middle.size
             levels.append((np.median(middle[inside]), spread, share))
     if not levels:
-        floor = max(float(min(np.median(difference), np.median(bend)) / 0.6745), least)
+        usual = max(np.median(near), min(np.median(difference), np.median(bend)))
+        floor = max(float(usual / 0.6745), least)
         return Noise(floor, nothing, nothing)
     speed, spread, share = np.array(levels).T
     floor = max(float(spread.min()), least)
@@ -124,13 +127,18 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     return Noise(floor, speed, relative)
 
 
-def _differences(velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Speed, first difference and bend around each block; white noise gives both its size."""
+def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Speed around each block, first difference, bend of neighbours, and of blocks `FAR` apart.
+
+    White noise gives all three its own size.
+    """
     far = max(1, min(FAR, (velocity.size - 1) // 8))
     left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
+    before = velocity[far - 1 : -far - 1]
     after = velocity[far + 1 : velocity.size - far + 1]
-    bend = np.abs(left - 2 * here + right) / np.sqrt(6)
-    return np.abs(left + here + right) / 3, np.abs(after - here) / np.sqrt(2), bend
+    near, bend = (np.abs(a - 2 * here + b) for a, b in ((before, after), (left, right)))
+    difference = np.abs(after - here) / np.sqrt(2)
+    return np.abs(left + here + right) / 3, difference, near / np.sqrt(6), bend / np.sqrt(6)
 
 
 def _spread(deviation: np.ndarray) -> float:
@@ -169,11 +177,13 @@ def find_breaks(
             # wide to be many cannot tell, and keep what the narrower ones told
             if 16 * width <= m:
                 usual = score[clear][:: 1 + m // 2048]
-                bends = _bends(total, noise, width, k[clear][:: 1 + m // 2048])
-                usual, bends = usual[np.isfinite(usual)], bends[np.isfinite(bends)]
-                if min(usual.size, bends.size) > 16:
+                usual = usual[np.isfinite(usual)]
+                at = k[clear][:: 1 + m // 2048]
+                bends = [_bends(total, noise, width, far * width, at) for far in (1, FAR)]
+                if min(usual.size, *(bend.size for bend in bends)) > 16:
                     # a ramp spreads the means as well, but it does not bend
-                    spread = min(float(np.median(usual)), float(np.median(bends)))
+                    near, bend = (float(np.median(bend)) for bend in bends)
+                    spread = max(near, min(float(np.median(usual)), bend))
                     memory = max(memory, spread / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
@@ -183,12 +193,8 @@ def find_breaks(
     return np.sort(found)
 
 
-def _bends(total: np.ndarray, noise: Noise, width: int, k: np.ndarray) -> np.ndarray:
-    """Second differences of window means `FAR` apart, as large for white noise as neighbours'.
-
-    In standard errors; a ramp has none.
-    """
-    far = FAR * width
+def _bends(total: np.ndarray, noise: Noise, width: int, far: int, k: np.ndarray) -> np.ndarray:
+    """Second differences of the means of windows `far` apart in standard errors: no ramp's."""
     k = k[(k >= far) & (k + far + width < total.size)]
     first, second, third = (
         (total[k + i * far + width] - total[k + i * far]) / width for i in (-1, 0, 1)
@@ -197,7 +203,8 @@ def _bends(total: np.ndarray, noise: Noise, width: int, k: np.ndarray) -> np.nda
     larger = np.maximum(np.abs(first), np.abs(third))
     variance = noise.variance(first) + 4 * noise.variance(second) + noise.variance(third)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(bend > 1e-12 * larger, bend / np.sqrt(variance / width), 0.0)
+        score = np.where(bend > 1e-12 * larger, bend / np.sqrt(variance / width), 0.0)
+    return score[np.isfinite(score)]
 
 
 def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
