@@ -103,6 +103,34 @@ def test_noise_with_or_without_memory_does_not_split_a_plateau(seed):
         assert find_segments(velocity_run(1e-3 * (1 + noise))).sizes["segment"] == 1
 
 
+@pytest.mark.parametrize("memory", [1.0, 2.0, 4.0, 8.0])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_noise_that_a_logger_smooths_over_some_samples_splits_no_stroke(memory, seed):
+    from scipy.ndimage import gaussian_filter1d
+
+    rng = np.random.default_rng(seed)
+    speeds = np.array([0, 5e-6, 0, -5e-6, 0, 1e-4, 0, -1e-4, 0, 2e-3, 0, -2e-3, 0])
+    velocity = gaussian_filter1d(np.repeat(speeds, np.where(speeds == 0, 100, 2000)), 3.0)
+    noise = gaussian_filter1d(rng.standard_normal(velocity.size), memory)
+    floor = gaussian_filter1d(rng.standard_normal(velocity.size), memory)
+    velocity = velocity * (1 + 0.03 * noise / noise.std()) + 1e-8 * floor / floor.std()
+    found = find_segments(velocity_run(velocity))
+    signed = found["sliding_speed"].values * found["direction"].values
+    assert signed == pytest.approx(speeds[speeds != 0], rel=0.01)
+    assert (found["samples"].values >= 0.78 * 2000).all()
+
+
+@pytest.mark.parametrize("blocks", [2, 3, 4, 5, 6])
+def test_digits_that_repeat_after_some_blocks_split_no_stroke(blocks):
+    speed = (1 + 1 / (8 * blocks)) * 1e-7 / 0.04  # one sample of so many blocks holds two steps
+    velocity = speed * np.tile(np.repeat([1.0, 0.0, -1.0, 0.0], [800, 50, 800, 50]), 4)
+    position = np.round(np.cumsum(velocity) * 0.04 / 1e-7) * 1e-7
+    time = np.arange(position.size) * 0.04
+    found = find_segments(xr.Dataset({"position": ("time", position)}, {"time": time}))
+    assert found["direction"].values.tolist() == [1, -1] * 4
+    assert found["sliding_speed"].values == pytest.approx(speed, rel=0.01)
+
+
 def test_spikes_and_single_missing_numbers_do_not_split():
     made = strokes(samples=1000)
     velocity = made.run["sliding_velocity"].values.copy()
