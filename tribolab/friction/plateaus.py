@@ -182,8 +182,8 @@ def find_breaks(
                 bends = [_bends(total, noise, width, far * width, at) for far in (1, FAR)]
                 if min(usual.size, *(bend.size for bend in bends)) > 16:
                     # a ramp spreads the means as well, but it does not bend
-                    near, bend = (float(np.median(bend)) for bend in bends)
-                    spread = max(near, min(float(np.median(usual)), bend))
+                    bent = max(float(np.median(bend)) for bend in bends)
+                    spread = min(float(np.median(usual)), bent)
                     memory = max(memory, spread / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
