@@ -108,7 +108,7 @@ def find_segments(
     >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
     >>> found = find_segments(run)
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
-    ([1, -1], ['at rest', 'at rest', 'at rest'])
+    ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
     """
     if not isinstance(trim, Real) or not 0 <= trim < 0.5:
         raise AnalysisError(
