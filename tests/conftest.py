@@ -7,6 +7,8 @@ import pytest
 from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+# workers of the suite beside each other: more threads of BLAS than processors only wait
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # the same examples at every run; HYPOTHESIS_PROFILE=default searches anew
 settings.register_profile("seeded", derandomize=True)

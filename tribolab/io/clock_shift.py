@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from tribolab.io.clock_classes import Classes, Coarse, coarse_shift, motion_classes
 from tribolab.io.clock_joint import told_by_motion
@@ -74,6 +75,8 @@ class Estimate(NamedTuple):
     refused: str = ""
 
 
+# on matrices this small two threads of BLAS wait for each other: ten times as long
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def estimate_clock_shift(
     force_time: Array,
     force: Array,
