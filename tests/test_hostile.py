@@ -4,7 +4,6 @@ All cases, each in a process of its own and with limits: ``tests/benchmarks/brea
 """
 
 import re
-import time
 
 import numpy as np
 import pytest
@@ -55,9 +54,7 @@ def test_a_file_of_an_unusual_kind_is_data_or_one_error(kind, tmp_path):
         path = tmp_path / "made.csv"
         path.write_bytes(kind(np.random.default_rng(seed)))
         for reader in (read, read_scans, draft_dialect):
-            began = time.process_time()
             try:
                 reader(path)
             except TribolabError as error:
                 assert "made" in str(error) and len(str(error)) < 1500
-            assert time.process_time() - began < 5.0
