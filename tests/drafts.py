@@ -1,9 +1,9 @@
 """What the tests of drafted dialects share."""
 
-from tribolab.io.dialects import load_dialect
-from tribolab.io.draft import draft_dialect, save_draft
+from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.io.dialects.find import load_dialect
 from tribolab.io.runs import read
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
 
 
 def drafted(path, tmp_path):

@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.campaign.config import Campaign
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
-from tribolab.friction.stick_slip import stick_slip
+from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.io.netcdf import write_netcdf
 from tribolab.quantities import stamp
 

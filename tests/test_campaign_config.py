@@ -10,7 +10,7 @@ from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema, loa
 from tribolab.campaign.plan import plan
 from tribolab.campaign.toml_lines import line_of
 from tribolab.errors import ConfigError
-from tribolab.io.dialects import known_dialects, load_dialect
+from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.schema_folder import schema_folder
 
 WHOLE = """\

@@ -13,13 +13,13 @@ from campaigns import RUNS, copied, simulated
 from typer.testing import CliRunner
 
 import tribolab
+from tribolab.app.run import run_campaign
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.kept import kept_model
 from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
 from tribolab.cli import app
 from tribolab.errors import ConfigError
-from tribolab.report.run import run_campaign
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 

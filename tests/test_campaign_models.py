@@ -13,24 +13,24 @@ import pytest
 import xarray as xr
 
 import tribolab
+from tribolab.app.demo import DemoComparison
+from tribolab.app.terminal import truth_lines
+from tribolab.app.truth import Comparison
+from tribolab.app.truth_shear_stress import compare_shear_stress
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.model_work import _beside
 from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
-from tribolab.compare.shear_stress import fit_shear_stress
-from tribolab.compare.spectrum_error import shear_stress_shift
 from tribolab.errors import AnalysisError, ConfigError
-from tribolab.friction.repeatability import repeatability
+from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.fit.spectrum_error import shear_stress_shift
+from tribolab.friction.coefficient.repeatability import repeatability
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.report.demo import DemoComparison
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.model_records import ModelRows, model_rows
 from tribolab.report.model_words import is_described, judgement, stress_interval
 from tribolab.report.page import note_of
 from tribolab.report.results import write_report
-from tribolab.report.terminal import truth_lines
-from tribolab.report.truth import Comparison
-from tribolab.report.truth_shear_stress import compare_shear_stress
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026
 

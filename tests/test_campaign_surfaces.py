@@ -15,6 +15,8 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab import rig
+from tribolab.app.run import run_campaign
+from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.outcome import RunOutcome
 from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
@@ -26,9 +28,7 @@ from tribolab.contact.persson import contact_area_ratio
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.report.page import render
-from tribolab.report.run import run_campaign
 from tribolab.report.surface_records import ADHESION, CONTACT, ROUGHNESS, surface_rows
-from tribolab.report.truth_surfaces import compare_surfaces
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, rms_slope

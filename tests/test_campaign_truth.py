@@ -6,9 +6,9 @@ import pytest
 import xarray as xr
 from campaigns import simulated
 
+from tribolab.app.truth import compare_run, summary, write_truth
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
-from tribolab.report.truth import compare_run, summary, write_truth
 
 
 def true_segments():

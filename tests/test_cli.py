@@ -18,9 +18,9 @@ from reporting import made_outcome
 
 import tribolab
 from tribolab import cli
+from tribolab.app.progress import progress_bars
 from tribolab.campaign.config import Qc
 from tribolab.campaign.outcome import ModelOutcome
-from tribolab.report.progress import progress_bars
 
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
 
@@ -157,7 +157,7 @@ def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, ca
     def broken(*words, **options):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr("tribolab.report.run.run_campaign", broken)
+    monkeypatch.setattr("tribolab.app.run.run_campaign", broken)
     with pytest.raises(SystemExit) as caught:
         cli.app(["run", str(campaign)])
     assert caught.value.code == 3

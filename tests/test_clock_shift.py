@@ -7,7 +7,7 @@ import pytest
 
 import tribolab as tl
 from tribolab import rig
-from tribolab.io.clock_shift import estimate_clock_shift
+from tribolab.io.clocks.shift import estimate_clock_shift
 
 STROKES = tuple((way * speed, 2.0) for speed in (1e-3, 1e-2) for way in (1, -1)) * 2
 

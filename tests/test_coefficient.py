@@ -9,11 +9,11 @@ from made_runs import strokes, with_friction
 from real_runs import actuator, paper, reciprocating, rock
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient import friction_coefficient
-from tribolab.friction.half_loops import half_loops
-from tribolab.friction.offsets import wander
-from tribolab.friction.segments import find_segments
-from tribolab.friction.steadiness import NOT_STEADY, STEADY, UNDECIDED, judged
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.coefficient.half_loops import half_loops
+from tribolab.friction.coefficient.steadiness import NOT_STEADY, STEADY, UNDECIDED, judged
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.zero.offsets import wander
 
 MU = 0.3
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from drafts import drafted
 
+from tribolab.draft.draft import draft_dialect, save_draft
 from tribolab.errors import OutputError, ReadError
-from tribolab.io.draft import draft_dialect, save_draft
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_tester_results
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
+from tribolab.io.scans.results import read_tester_results
 
 ACTUATOR = "actuator_friction_CC0"
 CETR = "cetr_umt2_MIT/HT-2n-6-4 2_00"

@@ -7,10 +7,10 @@ import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli
+from tribolab.app.file_info import run_lines
+from tribolab.draft.draft import draft_dialect, save_draft
 from tribolab.errors import ConfigError
-from tribolab.io.dialects import load_dialect
-from tribolab.io.draft import draft_dialect, save_draft
-from tribolab.report.file_info import run_lines
+from tribolab.io.dialects.find import load_dialect
 
 
 def test_an_existing_dialect_is_not_overwritten(tmp_path):

@@ -13,10 +13,10 @@ from mutations import MADE
 from typer.testing import CliRunner
 
 from tribolab.cli import app
+from tribolab.draft.draft import draft_dialect
 from tribolab.errors import TribolabError
-from tribolab.io.draft import draft_dialect
 from tribolab.io.runs import read
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
 
 _QUICK = re.compile(
     r"units 6: (header|campaign)|patterns 7: \(a|large 8: dialect, (5000.*True, clock True)"

@@ -88,7 +88,7 @@ def test_what_is_no_file_is_refused(tmp_path):
 
 
 def test_a_file_that_vanishes_between_looking_and_reading_is_a_read_error(tmp_path, monkeypatch):
-    from tribolab.io import text
+    from tribolab.io.dialects import text
 
     file = force_log(tmp_path, rows())
     original = text._opened

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.app.file_info import file_lines
+from tribolab.draft.draft import draft_dialect
 from tribolab.errors import ReadError
-from tribolab.io.clock_faults import find_faults, rows_at_fault
-from tribolab.io.draft import draft_dialect
+from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.qc.run_checks import check_run
-from tribolab.report.file_info import file_lines
 
 HEAD = "Time [s],Friction force [N],Normal force [N],Position [mm]"
 TOML = """

@@ -5,7 +5,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.io.clock_shift import estimate_clock_shift
+from tribolab.io.clocks.shift import estimate_clock_shift
 from tribolab.io.runs import group_files
 
 FASTEST = 1e-3  # s, sample period of the fastest strokes

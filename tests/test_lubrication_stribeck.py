@@ -6,9 +6,9 @@ import pytest
 import xarray as xr
 from contact_cases import CONTACT, reference_psd
 
-from tribolab.compare.model_uncertainty import model_uncertainty
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.errors import AnalysisError, UnitError
+from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
 from tribolab.studies import xu2026

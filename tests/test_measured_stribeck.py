@@ -9,8 +9,8 @@ from made_runs import strokes, with_friction
 from scipy import stats
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient import friction_coefficient
-from tribolab.friction.segments import find_segments
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.io.runs import group_files, read
 from tribolab.rig.campaign import simulate_campaign

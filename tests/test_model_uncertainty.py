@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from contact_cases import CONTACT, reference_psd
 
-from tribolab.compare.model_uncertainty import model_uncertainty
 from tribolab.errors import AnalysisError
+from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.surface.extrapolation import extrapolate

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.report import checks
+from tribolab.app import checks
 from tribolab.rig.parameters import Protocol, Rig
 from tribolab.rig.runs import simulate_run
 

@@ -16,7 +16,7 @@ PROJECT = Path(tribolab.__file__).resolve().parents[1]
 SHOWS = (
     "import json, tribolab\n"
     "from tribolab.io.schema_folder import schema_folder\n"
-    "from tribolab.io.dialects import known_dialects, load_dialect\n"
+    "from tribolab.io.dialects.find import known_dialects, load_dialect\n"
     "names = [load_dialect(name).name for name in known_dialects()]\n"
     "print(json.dumps([str(schema_folder()), names, tribolab.__version__]))\n"
 )

@@ -12,11 +12,11 @@ import time
 import pytest
 from campaigns import simulated
 
+from tribolab.app.run import run_campaign
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.executor import ClusterGone, workers
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError
-from tribolab.report.run import run_campaign
 
 distributed = pytest.importorskip("distributed")
 

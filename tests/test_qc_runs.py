@@ -9,8 +9,8 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from tribolab import cli
-from tribolab.friction.segments import find_segments
-from tribolab.friction.stick_slip import stick_slip
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.segments.find import find_segments
 from tribolab.io.runs import read
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
 from tribolab.quantities import stamp

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.friction.lines import find_lines, mains_harmonic
-from tribolab.friction.noise import noise_level
-from tribolab.io.table_schema import validate
+from tribolab.friction.oscillation.lines import find_lines, mains_harmonic
+from tribolab.friction.oscillation.noise import noise_level
+from tribolab.io.tables.schema import validate
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
 

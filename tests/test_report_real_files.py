@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tribolab.report.run import run_campaign
+from tribolab.app.run import run_campaign
 
 CAMPAIGN = """[campaign]
 name = "real files"

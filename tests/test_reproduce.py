@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 import tribolab
 from tribolab import cli
 from tribolab.io.netcdf import read_netcdf
+from tribolab.paper.figures import COMPUTED, FIGURES, SIMULATED
+from tribolab.paper.laboratory import Laboratory
+from tribolab.paper.reproduce import reproduce
 from tribolab.provenance import sha256_of_file
-from tribolab.report.paper.figures import COMPUTED, FIGURES, SIMULATED
-from tribolab.report.paper.laboratory import Laboratory
-from tribolab.report.paper.reproduce import reproduce
 from tribolab.studies.verdict import DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
 from tribolab.studies.xu2026 import CITATION
 

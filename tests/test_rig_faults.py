@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tribolab.app.checks import check_files
 from tribolab.errors import ConfigError, ReadError
 from tribolab.io.runs import read
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
-from tribolab.report.checks import check_files
 from tribolab.rig import (
     FAULTS,
     Protocol,

@@ -22,10 +22,10 @@ from mutations import mat_inside, mutate
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
-from tribolab.io.mat5 import read_variables
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scan_results import read_tester_results
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
+from tribolab.io.scans.results import read_tester_results
+from tribolab.io.tables.mat5 import read_variables
 
 HEAD = "# Surftest profile\nx [mm],z [um]\n"
 REAL = {

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import AnalysisError, UnitError
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
 from tribolab.surface.roughness import roughness_parameters, spectral_roughness

@@ -6,9 +6,9 @@ import xarray as xr
 
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scan_grid import even
-from tribolab.io.scan_results import read_tester_results
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.grid import even
+from tribolab.io.scans.read import read_scans
+from tribolab.io.scans.results import read_tester_results
 from tribolab.rig.files import scan_file
 
 HEAD = "# Surftest profile\n# tip radius: 2 um\n# pitch: 0.5 um\n# length: 25 mm\nx [mm],z [um]\n"

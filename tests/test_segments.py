@@ -9,7 +9,7 @@ from made_runs import SPEEDS, matches, strokes
 from real_runs import actuator, paper, rock
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.segments import find_segments, why_no_segment
+from tribolab.friction.segments.find import find_segments, why_no_segment
 
 
 def reasons(segments):

@@ -7,9 +7,9 @@ import xarray as xr
 from contact_cases import CONTACT, reference_psd, target
 from scipy import stats
 
-from tribolab.compare.residual_error import residual_error
-from tribolab.compare.shear_stress import fit_shear_stress, runs_p_value, shear_stress_ratio
 from tribolab.errors import AnalysisError, UnitError
+from tribolab.fit.residual_error import residual_error
+from tribolab.fit.shear_stress import fit_shear_stress, runs_p_value, shear_stress_ratio
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026

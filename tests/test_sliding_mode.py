@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.compare.regimes import end_of_boundary, measured_regimes, model_regimes
-from tribolab.compare.sliding_mode import (
+from tribolab.errors import AnalysisError
+from tribolab.friction.oscillation.slip_curve import frequency_scaling, stick_slip_curve
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.segments.find import find_segments
+from tribolab.mode.regimes import end_of_boundary, measured_regimes, model_regimes
+from tribolab.mode.verdict import (
     LOCAL,
     NO_STICK_SLIP,
     SUSPECTED,
@@ -14,10 +18,6 @@ from tribolab.compare.sliding_mode import (
     Mode,
     sliding_mode,
 )
-from tribolab.errors import AnalysisError
-from tribolab.friction.segments import find_segments
-from tribolab.friction.slip_curve import frequency_scaling, stick_slip_curve
-from tribolab.friction.stick_slip import stick_slip
 from tribolab.rig import simulate_trace
 
 SPEEDS = np.geomspace(1e-6, 1e-2, 13)

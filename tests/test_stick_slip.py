@@ -6,8 +6,8 @@ import xarray as xr
 
 from tests.real_runs import paper
 from tribolab.errors import AnalysisError
-from tribolab.friction.segments import find_segments
-from tribolab.friction.stick_slip import stick_slip
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.segments.find import find_segments
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.quantities import stamp
 from tribolab.rig import Protocol, Rig, StickSlip, simulate_run, simulate_trace

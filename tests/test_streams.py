@@ -9,7 +9,7 @@ import time
 import pytest
 
 SAY = [sys.executable, "-c"]
-LONG = "from tribolab.report.streams import prepared\nimport sys\n"
+LONG = "from tribolab.app.streams import prepared\nimport sys\n"
 LONG += "with prepared():\n    [print('line', n) for n in range(100_000)]\nsys.exit(7)"
 
 
@@ -29,7 +29,7 @@ def test_a_reader_that_leaves_changes_nothing_but_what_is_shown():
     ],
 )
 def test_every_text_can_be_shown_in_every_terminal(settings, wanted):
-    code = "from tribolab.report.streams import prepared\n"
+    code = "from tribolab.app.streams import prepared\n"
     code += "with prepared(): print('0.8 \\xb1 0.1 \\xb5m \\udcff')"
     env = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))} | settings
     done = subprocess.run([*SAY, code], capture_output=True, env=env, check=True)
@@ -39,7 +39,7 @@ def test_every_text_can_be_shown_in_every_terminal(settings, wanted):
 STOPPED = """
 import sys, time
 from tribolab.campaign.staging import staged
-from tribolab.report.streams import Terminated, prepared
+from tribolab.app.streams import Terminated, prepared
 try:
     with prepared(), staged(sys.argv[1]) as folder:
         print("working", flush=True)

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from tribolab.errors import ConfigError
 from tribolab.io.runs import read
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
 from tribolab.io.schema_folder import schema_folder
-from tribolab.io.table_schema import load_schema, validate
+from tribolab.io.tables.schema import load_schema, validate
 from tribolab.quantities import QUANTITIES, stamp
 
 ONTOLOGY = "https://www.iam.kit.edu/cms/download/TriboDataFAIR_Ontology.owl#"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.draft.header import is_unit
 from tribolab.errors import ConfigError, ReadError, TribolabError, UnitError
-from tribolab.io.draft_header import is_unit
 from tribolab.quantities import QUANTITIES, dictionary, labelled, quantity, unit_conversion
 from tribolab.rubber.modulus import read_modulus
 from tribolab.turns import reciprocal

@@ -10,12 +10,13 @@ import xarray as xr
 from rich.console import Console
 
 from tribolab import cli
+from tribolab.app import terminal
 from tribolab.campaign import pipeline
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run
-from tribolab.report import results, terminal
+from tribolab.report import results
 from tribolab.report.run_summary import _of_friction
 
 TEXT = """

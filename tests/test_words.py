@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli, errors
-from tribolab.friction.stick_slip import stick_slip
-from tribolab.io.dialects import load_dialect
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.io.dialects.find import load_dialect
 from tribolab.qc.run_checks import check_run
 
 PACKAGE = Path(tl.__file__).parent
@@ -69,7 +69,7 @@ def sentences(path):
 def words_of_the_field():
     """Names that are quantities, keys of a campaign or dialect: everyone may read them."""
     from tribolab.campaign.config import Campaign
-    from tribolab.io.dialects import json_schema
+    from tribolab.io.dialects.find import json_schema
     from tribolab.quantities import QUANTITIES
 
     schemas = json.dumps([Campaign.model_json_schema(), json_schema()])

@@ -9,11 +9,11 @@ from real_runs import actuator, rock
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.errors import AnalysisError, ConfigError
-from tribolab.friction.coefficient import friction_coefficient
-from tribolab.friction.half_loops import half_loops
-from tribolab.friction.middles import middles
-from tribolab.friction.rests import Zeros
-from tribolab.friction.segments import find_segments
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.coefficient.half_loops import half_loops
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.zero.middles import middles
+from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.runs import read
 from tribolab.qc.run_checks import check_run

@@ -15,25 +15,25 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from tribolab.version import __version__
 
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
     "read": "tribolab.io.runs",
-    "draft_dialect": "tribolab.io.draft",
+    "draft_dialect": "tribolab.draft.draft",
     "read_netcdf": "tribolab.io.netcdf",
     "write_netcdf": "tribolab.io.netcdf",
-    "find_segments": "tribolab.friction.segments",
-    "friction_coefficient": "tribolab.friction.coefficient",
-    "half_loops": "tribolab.friction.half_loops",
-    "stick_slip": "tribolab.friction.stick_slip",
-    "stick_slip_curve": "tribolab.friction.slip_curve",
+    "find_segments": "tribolab.friction.segments.find",
+    "friction_coefficient": "tribolab.friction.coefficient.coefficient",
+    "half_loops": "tribolab.friction.coefficient.half_loops",
+    "stick_slip": "tribolab.friction.oscillation.stick_slip",
+    "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
     "check_scans": "tribolab.qc.scan_checks",
     "check_scan_set": "tribolab.qc.scan_sets",
-    "read_scans": "tribolab.io.scans",
+    "read_scans": "tribolab.io.scans.read",
     "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
@@ -56,13 +56,13 @@ _PUBLIC = {
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "film_profile": "tribolab.lubrication.stribeck",
     "flow_factors": "tribolab.lubrication.factors",
-    "fit_shear_stress": "tribolab.compare.shear_stress",
-    "sliding_mode": "tribolab.compare.sliding_mode",
-    "model_uncertainty": "tribolab.compare.model_uncertainty",
+    "fit_shear_stress": "tribolab.fit.shear_stress",
+    "sliding_mode": "tribolab.mode.verdict",
+    "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
     "load_campaign": "tribolab.campaign.config",
-    "run_campaign": "tribolab.report.run",
+    "run_campaign": "tribolab.app.run",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -122,10 +122,8 @@ __all__ = [
 
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
+    from tribolab.app.run import run_campaign
     from tribolab.campaign.config import load_campaign
-    from tribolab.compare.model_uncertainty import model_uncertainty
-    from tribolab.compare.shear_stress import fit_shear_stress
-    from tribolab.compare.sliding_mode import sliding_mode
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution
@@ -134,24 +132,26 @@ if TYPE_CHECKING:
     from tribolab.contact.persson import contact_area_ratio, mean_separation
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
+    from tribolab.draft.draft import draft_dialect
     from tribolab.errors import TribolabError
-    from tribolab.friction.coefficient import friction_coefficient
-    from tribolab.friction.half_loops import half_loops
-    from tribolab.friction.segments import find_segments
-    from tribolab.friction.slip_curve import stick_slip_curve
-    from tribolab.friction.stick_slip import stick_slip
+    from tribolab.fit.model_uncertainty import model_uncertainty
+    from tribolab.fit.shear_stress import fit_shear_stress
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.coefficient.half_loops import half_loops
+    from tribolab.friction.oscillation.slip_curve import stick_slip_curve
+    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
-    from tribolab.io.draft import draft_dialect
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.io.runs import read
-    from tribolab.io.scans import read_scans
+    from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+    from tribolab.mode.verdict import sliding_mode
     from tribolab.qc.run_checks import check
     from tribolab.qc.scan_checks import check_scans
     from tribolab.qc.scan_sets import check_scan_set
     from tribolab.report.read_results import read_results
-    from tribolab.report.run import run_campaign
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
     from tribolab.surface.extrapolation import extrapolate

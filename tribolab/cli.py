@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tribolab.report.progress import progress_bars
-from tribolab.report.streams import Terminated, prepared, say
+from tribolab.app.progress import progress_bars
+from tribolab.app.streams import Terminated, prepared, say
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -54,7 +54,7 @@ Instrument = Annotated[
 
 def _version(asked: bool) -> None:
     if asked:
-        from tribolab import __version__
+        from tribolab.version import __version__
 
         say(f"tribolab {__version__}")
         raise typer.Exit
@@ -89,8 +89,8 @@ def demo(
         tribolab demo /tmp/look
     """
     with _reported(debug):
-        from tribolab.report.demo import run_demo
-        from tribolab.report.terminal import truth_lines
+        from tribolab.app.demo import run_demo
+        from tribolab.app.terminal import truth_lines
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
@@ -119,8 +119,8 @@ def reproduce(
         tribolab reproduce --output /tmp/paper
     """
     with _reported(debug):
-        from tribolab.report.paper.reproduce import reproduce as reproduce_paper
-        from tribolab.report.terminal import paper_lines
+        from tribolab.app.terminal import paper_lines
+        from tribolab.paper.reproduce import reproduce as reproduce_paper
 
         with progress_bars(quiet) as progress:
             made = reproduce_paper(output, jobs=jobs, progress=progress)
@@ -162,7 +162,7 @@ def run(
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
     with _reported(debug, audience="campaign"):
-        from tribolab.report.run import run_campaign
+        from tribolab.app.run import run_campaign
 
         with progress_bars(quiet) as progress:
             outcome = run_campaign(
@@ -246,10 +246,10 @@ def check(
         tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
     with _reported(debug):
-        from tribolab.report.quick import plain_arrays_only
+        from tribolab.app.quick import plain_arrays_only
 
         plain_arrays_only()
-        from tribolab.report import checks
+        from tribolab.app import checks
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
         checked = checks.check_files(files, instrument, repeats=repeats)
@@ -274,8 +274,8 @@ def info(
     tribolab info odd.txt --instrument my_tribometer.toml
     """
     with _reported(debug):
+        from tribolab.app.file_info import file_lines
         from tribolab.errors import ReadError
-        from tribolab.report.file_info import file_lines
 
         unreadable = 0
         for file in files:
@@ -321,15 +321,15 @@ def dialect(
         tribolab dialect odd.txt --output instruments/my_tribometer.toml
     """
     with _reported(debug):
-        from tribolab.io.draft import draft_dialect, save_draft
-        from tribolab.io.draft_show import print_draft
-        from tribolab.report.terminal import console
+        from tribolab.app.terminal import console
+        from tribolab.draft.draft import draft_dialect, save_draft
+        from tribolab.draft.show import print_draft
 
         draft = draft_dialect(file, name)
         target = output or Path(f"{draft.name}.toml")
         print_draft(draft, console())
         if draft.toml:
-            from tribolab.io.draft_show import print_next
+            from tribolab.draft.show import print_next
 
             print_next(draft, save_draft(draft, target, force=force), console())
         else:
@@ -367,8 +367,8 @@ def _fail(message: str, code: int, debug: bool) -> None:
 
 def _show(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
+    from tribolab.app import terminal
     from tribolab.qc.findings import exit_code
-    from tribolab.report import terminal
 
     table = terminal.outcome_table(outcome)
     if table.row_count:

@@ -26,7 +26,7 @@ def sha256_of(value: Any) -> str:
 
 def history_line(action: str) -> str:
     """Return one line for the ``history`` attribute: time in UTC, version, what was done."""
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     now = dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"{now} tribolab {__version__}: {action}"
@@ -56,7 +56,7 @@ def made(
     >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
     ['Conventions', 'history', 'source', 'tribolab_version']
     """
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     attrs = {
         "source": source,

@@ -20,7 +20,7 @@ import time
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.segments import find_segments
+from tribolab.friction.segments.find import find_segments
 
 PLATEAUS = 25
 

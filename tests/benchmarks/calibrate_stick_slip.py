@@ -14,8 +14,8 @@ import numpy as np
 from scipy import optimize
 from slip_traces import in_red_noise, intermittent, plain, quiet, scattered
 
-from tribolab.friction.examine import examine
-from tribolab.friction.waveform import CLASSES, LIMITS, features
+from tribolab.friction.oscillation.examine import examine
+from tribolab.friction.oscillation.waveform import CLASSES, LIMITS, features
 from tribolab.rig.traces import simulate_trace
 
 _FORMS = {"none": 0, "sawtooth": 1, "rounded": 2, "irregular": 1}

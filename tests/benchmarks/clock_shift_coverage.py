@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError
-from tribolab.io.merge import merge
+from tribolab.io.clocks.merge import merge
 from tribolab.io.runs import read
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

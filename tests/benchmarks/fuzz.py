@@ -39,12 +39,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 from mutations import MADE, mutate
 
+from tribolab.draft.draft import draft_dialect
 from tribolab.errors import TribolabError
-from tribolab.io.draft import draft_dialect
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.runs import read
-from tribolab.io.scan_results import read_tester_results
-from tribolab.io.scans import read_scans
+from tribolab.io.scans.read import read_scans
+from tribolab.io.scans.results import read_tester_results
 
 SECONDS, MEMORY, LONGEST_MESSAGE = 5.0, 1 << 30, 1500
 NO_ANSWER = "did not answer the alarm"

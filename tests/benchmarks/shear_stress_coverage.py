@@ -31,8 +31,8 @@ from scipy import stats
 
 from tribolab.campaign.config import load_campaign
 from tribolab.campaign.pipeline import process
-from tribolab.compare.shear_stress import fit_shear_stress
-from tribolab.compare.spectrum_error import shear_stress_shift
+from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.rig import simulate_campaign

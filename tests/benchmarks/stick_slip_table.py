@@ -37,9 +37,9 @@ from slip_traces import (
 )
 from slip_traces import look as seen_in
 
-from tribolab.friction.events import turning_points
-from tribolab.friction.segments import find_segments
-from tribolab.friction.stick_slip import stick_slip
+from tribolab.friction.oscillation.events import turning_points
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.segments.find import find_segments
 from tribolab.rig.traces import simulate_trace
 
 CLASS = {

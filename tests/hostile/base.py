@@ -87,7 +87,7 @@ def whole() -> Path:
     import atexit
 
     atexit.register(shutil.rmtree, folder, True)
-    from tribolab.report.run import run_campaign
+    from tribolab.app.run import run_campaign
 
     file = simulated(folder, repeats=1, scans=True)
     run_campaign(file, jobs=1)

@@ -118,7 +118,7 @@ def _(folder: Path) -> Command:
 _LOST = """
 import os, sys
 from tribolab.cli import main
-from tribolab.report import run
+from tribolab.app import run
 from dask.distributed import LocalCluster
 if __name__ == "__main__":
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,

@@ -153,7 +153,7 @@ def _missing(curve: CurveOutcome, contact: dict[str, Any], surface: SurfaceOutco
 
 def _repeatability(curves: Sequence[CurveOutcome], folder: Path) -> tuple[float, int]:
     """Pool the run levels of all curves that were repeated."""
-    from tribolab.friction.repeatability import repeatability
+    from tribolab.friction.coefficient.repeatability import repeatability
 
     levels = [read(folder / curve.data_file).get("run_level") for curve in curves]
     spread, freedom = repeatability([level.values for level in levels if level is not None])

@@ -20,8 +20,8 @@ from tribolab.quantities import stamp
 from tribolab.validity import together
 
 if TYPE_CHECKING:
-    from tribolab.compare.shear_stress import ShearStressFit
     from tribolab.contact.geometry import LineContact
+    from tribolab.fit.shear_stress import ShearStressFit
 
 RECORD = "model_record"
 _PROFILES = 5
@@ -129,7 +129,7 @@ def _fit(
     computed: xr.Dataset,
     folder: Path,
 ) -> ShearStressFit:
-    from tribolab.compare.shear_stress import fit_shear_stress
+    from tribolab.fit.shear_stress import fit_shear_stress
 
     enhancement, low, high = _enhancement(model, folder)
     runs = float(np.median(measured["runs"].values))
@@ -237,7 +237,7 @@ def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
 def _uncertain(
     contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: dict[str, Any]
 ) -> xr.Dataset:
-    from tribolab.compare.model_uncertainty import model_uncertainty
+    from tribolab.fit.model_uncertainty import model_uncertainty
 
     return model_uncertainty(
         contact,
@@ -288,7 +288,7 @@ def _done(
 
 def known_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
     """Return the outcome of earlier results, if data, settings and version are the same."""
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     found = None if model.missing else _stored(path, model)
     if found is None:

@@ -198,7 +198,7 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
     """Checksums, outcome and zero of an earlier data file, if settings and version are the same."""
     import netCDF4
 
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     if not path.is_file():
         return None

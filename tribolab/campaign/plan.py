@@ -232,7 +232,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
 
 def sha256_of_dialect(instrument: str) -> str:
     """Return the checksum of what describes an instrument."""
-    from tribolab.io.dialects import known_dialects
+    from tribolab.io.dialects.find import known_dialects
 
     return sha256_of_file(known_dialects().get(instrument, instrument))
 

@@ -230,7 +230,7 @@ def _toml_key(name: str) -> str:
 
 def _instrument(campaign: Campaign, name: str) -> str:
     from tribolab.campaign.plan import instrument_of
-    from tribolab.io.dialects import load_dialect
+    from tribolab.io.dialects.find import load_dialect
 
     try:
         load_dialect(instrument_of(campaign, name))

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.campaign.outcome import Finding
 from tribolab.errors import AnalysisError, TribolabError
-from tribolab.io.scans import stacked
+from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan_sets import check_scan_set
 
@@ -99,7 +99,7 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
 
 def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding]]:
     """Read each scan alone; a finding for each that cannot be read."""
-    from tribolab.io.scans import read_scans
+    from tribolab.io.scans.read import read_scans
     from tribolab.surface.form import fill_dropouts
 
     scans, findings = {}, []

@@ -145,7 +145,7 @@ def known_surface(
     path: Path, surface: PlannedSurface
 ) -> tuple[tuple[Source, ...], SurfaceOutcome] | None:
     """Return sources and outcome of earlier results, if settings and version are the same."""
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     found = _stored(path)
     if found is None:

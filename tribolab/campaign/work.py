@@ -120,7 +120,7 @@ def process_curve(task: CurveTask) -> None:
     TribolabError
         If the runs make no curve.
     """
-    from tribolab.friction.repeatability import run_levels
+    from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf
 
@@ -200,9 +200,9 @@ def source_of(file: Path, label: str) -> Source:
 
 
 def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset, str]:
-    from tribolab.friction.coefficient import friction_coefficient
-    from tribolab.friction.segments import find_segments
-    from tribolab.friction.stick_slip import stick_slip
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.segments.find import find_segments
     from tribolab.io.runs import read
     from tribolab.qc.run_checks import check_run
 

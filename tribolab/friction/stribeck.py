@@ -10,7 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.zero_of_run import PAIRED
+from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.quantities import stamp
 

@@ -13,17 +13,17 @@ from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
-from tribolab.io.clock import join_clocks, mended_time, set_time
-from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, recognise
-from tribolab.io.pieces import Content, read_content
-from tribolab.io.row_counts import (
+from tribolab.io.clocks.clock import join_clocks, mended_time, set_time
+from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
+from tribolab.io.dialects.signature import peek
+from tribolab.io.dialects.values import single_values, step_values
+from tribolab.io.tables.pieces import Content, read_content
+from tribolab.io.tables.row_counts import (
     ROW_ATTRIBUTES,
     row_attributes,
     rows_in_words,
     with_companion_rows,
 )
-from tribolab.io.signature import peek
-from tribolab.io.values import single_values, step_values
 from tribolab.provenance import CONVENTIONS, history_line
 from tribolab.quantities import stamp
 from tribolab.units import to_si
@@ -71,7 +71,7 @@ def read(
     Notes
     -----
     Time has to increase strictly; what is done where it does not is stated in
-    `tribolab.io.clock`. Single values that are missing are NaN, and so are numbers beyond
+    `tribolab.io.clocks.clock`. Single values that are missing are NaN, and so are numbers beyond
     1e100, which ``numbers_beyond_range`` counts. An optional column without a
     value is left out and named in ``columns_not_used``.
 
@@ -106,7 +106,7 @@ def read(
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
-        from tribolab.io.merge import merge
+        from tribolab.io.clocks.merge import merge
 
         motion = _run(companions)
         return with_companion_rows(merge(run, motion, shift), run, motion)
@@ -362,7 +362,7 @@ def _check_normal_force(
 
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> dict[str, Any]:
     """Provenance, and what else the run should know of its files."""
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     labels = {name: label for content in contents for name, label in content.labels.items()}
     unused = dict.fromkeys(name for content in contents for name in content.not_used)

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.waveform import CLASSES, UNDECIDED
+from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.reduce import envelope

@@ -29,14 +29,14 @@ def check_scans(
     Parameters
     ----------
     scans
-        ``height`` [m] (scan, x) from `tribolab.io.scans.read_scans`; a single profile or a map
+        ``height`` [m] (scan, x) from `tribolab.io.scans.read.read_scans`; a single profile or a map
         (y, x) will do.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
         Names of checks to leave out; they appear as skipped.
     results
-        What `tribolab.io.scan_results.read_tester_results` gave for the instrument's own results.
+        What `tribolab.io.scans.results.read_tester_results` gave for the instrument's own results.
 
     Returns
     -------

@@ -24,7 +24,7 @@ class ScanSubject:
     scans
         ``height`` [m] (..., x).
     results
-        Datasets of `tribolab.io.scan_results.read_tester_results`, if the instrument wrote some.
+        Datasets of `tribolab.io.scans.results.read_tester_results`, if the instrument wrote some.
     """
 
     def __init__(self, scans: xr.Dataset, results: Sequence[xr.Dataset] = ()) -> None:

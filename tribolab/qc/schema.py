@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.io.table_schema import load_schema
+from tribolab.io.tables.schema import load_schema
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.quantities import QUANTITIES
 
@@ -32,7 +32,7 @@ def ranges() -> Mapping[str, Range]:
     """Return what is believed of each signal of a run, as ``run.schema.json`` states it.
 
     Wide on purpose: they catch a wrong unit or an error code that passes for a number, not a bad
-    day. There they are stated once, for this check and for `tribolab.io.table_schema.validate`.
+    day. There they are stated once, for this check and for `tribolab.io.tables.schema.validate`.
 
     Examples
     --------

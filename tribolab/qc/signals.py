@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.noise import quantisation_step
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT
 
 

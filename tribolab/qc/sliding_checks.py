@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribolab.friction import steadiness
-from tribolab.friction.lines import Line
-from tribolab.friction.regularity import KINDS
-from tribolab.friction.steadiness import relative_change, undecided
-from tribolab.friction.waveform import CLASSES
+from tribolab.friction.coefficient import steadiness
+from tribolab.friction.coefficient.steadiness import relative_change, undecided
+from tribolab.friction.oscillation.lines import Line
+from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Count, Limit, Result, Skip

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient import friction_coefficient
-from tribolab.friction.lines import Line, segment_lines
-from tribolab.friction.noise import noise_level
-from tribolab.friction.segments import find_segments, why_no_segment
-from tribolab.friction.stick_slip import stick_slip
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.oscillation.lines import Line, segment_lines
+from tribolab.friction.oscillation.noise import noise_level
+from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.qc.register import Skip
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")

@@ -193,7 +193,7 @@ def _campaign(campaign: Any) -> dict[str, Any]:
 
 def versions() -> dict[str, str]:
     """Return the versions of Python, of tribolab and of what computes for it."""
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     found = {"tribolab": __version__, "python": platform.python_version()}
     for name in _LIBRARIES:

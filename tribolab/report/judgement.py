@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.friction.steadiness import undecided
+from tribolab.friction.coefficient.steadiness import undecided
 from tribolab.qc.run_checks import RUN_CHECKS
 from tribolab.report.wording import percent
 

@@ -85,7 +85,7 @@ def model_rows(outcome: Outcome, model: ModelOutcome) -> ModelRows:
     TribolabError
         If the file or one of its groups cannot be read.
     """
-    from tribolab.compare.spectrum_error import shear_stress_shift
+    from tribolab.fit.spectrum_error import shear_stress_shift
     from tribolab.io.netcdf import read_groups
 
     path = Path(outcome.folder) / model.data_file

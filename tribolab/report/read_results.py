@@ -73,7 +73,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     -------
     Results or xarray.Dataset
         Of a folder its tables by name, and its data; of a file what
-        `tribolab.io.scan_results.read_tester_results` says.
+        `tribolab.io.scans.results.read_tester_results` says.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     """
     path = Path(path)
     if not path.is_dir():
-        from tribolab.io.scan_results import read_tester_results
+        from tribolab.io.scans.results import read_tester_results
 
         return read_tester_results(path)
     if not (path / "tables").is_dir():

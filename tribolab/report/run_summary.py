@@ -11,7 +11,7 @@ import numpy as np
 
 from tribolab.campaign.work import explain
 from tribolab.errors import AnalysisError, told
-from tribolab.friction.segments import why_no_segment
+from tribolab.friction.segments.find import why_no_segment
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
@@ -168,10 +168,10 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
     Parameters
     ----------
     slip
-        From `tribolab.friction.stick_slip.stick_slip`.
+        From `tribolab.friction.oscillation.stick_slip.stick_slip`.
     """
-    from tribolab.friction.slip_curve import STEADY, stick_slip_curve
-    from tribolab.friction.waveform import NOT_EVALUATED, UNDECIDED, oscillating
+    from tribolab.friction.oscillation.slip_curve import STEADY, stick_slip_curve
+    from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 
     curve = stick_slip_curve([slip])
     over_speed = bool(curve.sizes["sliding_speed"])

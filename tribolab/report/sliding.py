@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.outcome import CurveOutcome, ModelOutcome, Outcome
-    from tribolab.compare.sliding_mode import Mode, SlidingMode
+    from tribolab.mode.verdict import Mode, SlidingMode
     from tribolab.report.surface_records import SurfaceRows
 
 _FIRST = [
@@ -69,7 +69,7 @@ def read_slip(outcome: Outcome, curve: CurveOutcome) -> CurveSlip:
     TribolabError
         If a data file cannot be read.
     """
-    from tribolab.friction.slip_curve import stick_slip_curve
+    from tribolab.friction.oscillation.slip_curve import stick_slip_curve
     from tribolab.io.netcdf import read_groups, read_netcdf
 
     folder = Path(outcome.folder)
@@ -115,7 +115,7 @@ def judge_modes(
     found: Sequence[CurveSlip], outcome: Outcome, rows: Mapping[str, SurfaceRows]
 ) -> dict[str, SlidingMode]:
     """Weigh the sliding mode of every curve, by its name."""
-    from tribolab.compare.sliding_mode import sliding_mode
+    from tribolab.mode.verdict import sliding_mode
 
     known = {one.outcome.name: _known(one, outcome, rows) for one in found}
     stresses = {one.outcome.name: _stress(one, known[one.outcome.name]) for one in found}
@@ -155,7 +155,7 @@ def condition(curve: CurveOutcome | ModelOutcome) -> str:
 
 
 def _known(one: CurveSlip, outcome: Outcome, rows: Mapping[str, SurfaceRows]) -> Mode:
-    from tribolab.compare.sliding_mode import Mode
+    from tribolab.mode.verdict import Mode
 
     curve = one.outcome
     medium = outcome.campaign.medium.get(curve.medium)

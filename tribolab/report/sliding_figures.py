@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.friction.waveform import oscillating
+from tribolab.friction.oscillation.waveform import oscillating
 from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.errors import ReadError, brief
-from tribolab.friction.steadiness import WORDS
+from tribolab.friction.coefficient.steadiness import WORDS
 from tribolab.plot.labels import column
 
 if TYPE_CHECKING:

@@ -281,7 +281,7 @@ def _generator(seed: int, name: str) -> np.random.Generator:
 def _write_facts(
     folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, dict[str, Any]]
 ) -> None:
-    from tribolab import __version__
+    from tribolab.version import __version__
 
     text = json.dumps(
         {

@@ -1,0 +1,171 @@
+"""What `tribolab info` says of a raw file of any kind: a run, a scan, or results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tribolab.app.ranges import range_of
+from tribolab.errors import ReadError, shown
+from tribolab.io.clocks.companion import describe_companion
+from tribolab.io.dialects.find import known_dialects, load_dialect
+from tribolab.io.dialects.kinds import kind_of
+from tribolab.io.dialects.signature import peek
+from tribolab.io.runs import describe, read
+from tribolab.io.scans.results import read_tester_results
+from tribolab.qc.register import Count
+from tribolab.quantities import quantity
+
+_PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+_LONGEST = 300  # letters of what a file says of itself
+_TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
+
+
+def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
+    """Say how a raw file is understood: a run, a scan, or the results of a roughness tester.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read.
+    ConfigError
+        If there is no such instrument.
+    """
+    kind = kind_of(path, instrument)
+    if kind == "run":
+        described = describe(path, instrument)
+        return run_lines(described) + companion_lines(describe_companion(path, instrument))
+    return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
+    """Read a scan; what turns out to be none is told about as a run would be."""
+    from tribolab.io.scans.formats import NotSaidError
+    from tribolab.io.scans.read import read_scans
+
+    try:
+        [scan] = read_scans([path], instrument, stack=False)
+    except ReadError as error:
+        if instrument is None and kind_of(path) == "unknown" and _is_text(path):
+            try:
+                read(path)  # says which instruments there are
+            except ReadError as as_run:
+                if isinstance(error, NotSaidError):
+                    what = f"{as_run.what}; taken for a profile or map, {error.what}"
+                    raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
+                raise
+        raise
+    return scan
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return peek(path).format == "text"
+    except ReadError:
+        return not path.is_file() or path.stat().st_size == 0
+
+
+def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
+    scan = read_scan(path, instrument)
+    name = str(scan.attrs.get("instrument", ""))
+    axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
+    lines = [
+        f"{path}: {_titled(name, instrument)}",
+        f"  {'profile' if axes == ['x'] else 'map'} of "
+        f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
+    ]
+    for axis in axes:
+        values = scan[axis].values
+        length = float(values[-1] - values[0])
+        pitch = length / (values.size - 1)
+        lines.append(f"  {axis}       {1e3 * length:.6g} mm, one point every {1e6 * pitch:.4g} um")
+    low, high = float(scan["height"].min()), float(scan["height"].max())
+    lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
+    if missing := int(scan["height"].isnull().sum()):
+        lines.append(f"  {Count(missing):point|points} without a height")
+    return lines + _attribute_lines(scan.attrs)
+
+
+def _results_lines(path: Path) -> list[str]:
+    results = read_tester_results(path)
+    lines = [f"{path}: results of a roughness tester, no profile"]
+    for name, values in results.data_vars.items():
+        unit = quantity(str(name)).unit
+        lines.append(f"  {name}  {float(values):.6g}{'' if unit == '1' else f' {unit}'}")
+    return lines + _attribute_lines(results.attrs)
+
+
+def _attribute_lines(attrs: Mapping[str, Any]) -> list[str]:
+    told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
+    return [f"  {key}: {shown(str(value), _LONGEST)}" for key, value in told.items()]
+
+
+def _titled(name: str, instrument: str | Path | None) -> str:
+    """Name of a dialect with what it is; as it is where another library read the file."""
+    known = instrument or (name if name in known_dialects() else None)
+    return f"{name} ({load_dialect(known).title})" if known else name
+
+
+def run_lines(description: Mapping[str, Any]) -> list[str]:
+    """Say how a raw file of a run is understood.
+
+    Parameters
+    ----------
+    description
+        From `tribolab.io.runs.describe`.
+    """
+    d = description
+    title = f" ({d['title']})" if d["title"] else ""
+    lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
+    sampling = f"  {Count(d['rows']):row|rows} over {d['duration_s']:.6g} s"
+    if d["interval_s"] is not None:
+        sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
+    lines.append(sampling + (f", {Count(d['steps']):step|steps}" if d["steps"] else ""))
+    if d.get("left_out"):
+        lines.append(f"  left out: {d['left_out']}")
+    width = max((len(name) for name in d["columns"]), default=0)
+    for name, column in d["columns"].items():
+        span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
+        span += f" {column['unit']}" if column["unit"] != "1" else ""
+        label = f"   from '{shown(column['label'])}'" if column["label"] else ""
+        lines.append(f"  {name:<{width}}  {span}{label}")
+    if d["not_used"]:
+        lines.append(f"  not used: {', '.join(map(shown, d['not_used']))}")
+    lines += _attribute_lines(d["metadata"])
+    return lines
+
+
+def companion_lines(told: Mapping[str, Any]) -> list[str]:
+    """Say whether a run's second log was found, and how its clock was matched.
+
+    Parameters
+    ----------
+    told
+        From `tribolab.io.clocks.companion.describe_companion`.
+    """
+    if "missing" in told:
+        return [f"  companion log: {told['missing']} is not there"]
+    if "ways" not in told:
+        return [f"  companion log: refused: {told['refused']}"] if told else []
+    lines = [f"  companion log: found ({told['instrument']})"]
+    if "refused" in told:
+        lines.append(
+            f"  clock shift: not told by the signals: {told['refused']}; "
+            "state clock_shift in the [[run]] of a campaign file"
+        )
+    else:
+        lines.append(
+            f"  clock shift: {told['shift_s']:.6g} s, standard uncertainty "
+            f"{told['uncertainty_s']:.2g} s, {told['source']}"
+        )
+    return lines + [
+        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in told["ways"].items()
+    ]
+
+
+_WAYS = {
+    "classes": "classes of velocity",
+    "starts": "the starts of motion",
+    "motion": "a fit by distance, speed and acceleration",
+}

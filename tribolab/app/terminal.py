@@ -1,0 +1,267 @@
+"""What the command line shows of results: short tables, and where to look next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console, ConsoleOptions, ConsoleRenderable, RenderHook, RenderResult
+from rich.segment import Segment
+from rich.table import Table
+
+from tribolab.app.ranges import range_of
+from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.errors import harmless
+from tribolab.qc.register import Count
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tribolab.app.demo import DemoComparison
+
+_PIPED_WIDTH = 120
+_SHOWN, _HANDFUL = 10, 5
+_NONE = "–"
+
+
+def console() -> Console:
+    """Return a console on stdout that no text can steer; a pipe has no width of its own."""
+    out = Console(highlight=False)
+    if not out.is_terminal:
+        out = Console(highlight=False, width=_PIPED_WIDTH)
+    out.push_render_hook(_Harmless())
+    return out
+
+
+class _Harmless(RenderHook):
+    """What is printed, with the marks of the console's own styles only."""
+
+    def process_renderables(self, renderables: list[ConsoleRenderable]) -> list[ConsoleRenderable]:
+        return [_Cleaned(one) for one in renderables]
+
+
+class _Cleaned:
+    def __init__(self, inner: ConsoleRenderable) -> None:
+        self.inner = inner
+
+    def __rich_console__(self, out: Console, options: ConsoleOptions) -> RenderResult:
+        for segment in out.render(self.inner, options):
+            text = segment.text if segment.control else harmless(segment.text)
+            yield Segment(text, segment.style, segment.control)
+
+
+def outcome_table(outcome: Outcome) -> Table:
+    """Return one row per measured curve: what was measured, at what speeds, how much friction."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    done = [curve for curve in outcome.curves if curve.done]
+    # where nothing is said of what was measured, the run's name tells rows apart
+    nameless = any(not (curve.surface or curve.medium) for curve in done)
+    for heading in (*(("run",) if nameless else ()), "surface", "medium"):
+        table.add_column(heading)
+    for heading in ("load", "runs", "segments", "speeds", "friction coefficient"):
+        table.add_column(heading, justify="right")
+    for curve in done:
+        load = _NONE if curve.normal_force is None else f"{curve.normal_force:g} N"
+        known = (curve.surface or _NONE, curve.medium or _NONE, load)
+        run = curve.run_names[0] if len(curve.run_names) == 1 else _NONE
+        first = (run,) if nameless else ()
+        table.add_row(*first, *known, *_numbers(curve, outcome))
+    return table
+
+
+def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
+    from tribolab.io.netcdf import read_netcdf
+
+    data = read_netcdf(outcome.folder / curve.data_file)
+    segments = f"{int(data.segments.sum())}" if "segments" in data else ""
+    speed, mu = data.sliding_speed.values, data.friction_coefficient.values
+    if not speed.size:
+        return _of_unknown_speed(curve, outcome)
+    ends = range_of(f"{speed.min():.2g}", f"{speed.max():.2g}")
+    return (
+        str(len(curve.run_names)),
+        segments,
+        f"{ends} m/s",
+        range_of(f"{mu.min():.3f}", f"{mu.max():.3f}"),
+    )
+
+
+def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
+    """Return the friction of the segments themselves: without a speed there is no curve."""
+    from tribolab.io.netcdf import read_netcdf
+
+    runs = [run for run in outcome.runs if run.name in curve.run_names]
+    found = [read_netcdf(outcome.folder / run.data_file, group="friction") for run in runs]
+    mu = np.concatenate([one.friction_coefficient.values for one in found])
+    known = mu[np.isfinite(mu)]
+    text = range_of(f"{known.min():.3f}", f"{known.max():.3f}") if known.size else _NONE
+    speeds = np.concatenate([one.sliding_speed.values for one in found])
+    said = _NONE if np.isfinite(speeds).any() else "speed unknown"
+    return str(len(runs)), str(sum(run.segments for run in runs)), said, text
+
+
+def outcome_lines(outcome: Outcome) -> list[str]:
+    """Say how many runs were done, taken over and failed, and where the report is."""
+    done = [run for run in outcome.runs if run.done]
+    reused = sum(run.reused for run in done)
+    line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
+    line += f", {Count(outcome.segments):segment|segments}"
+    if reused:
+        line += f"; {reused} unchanged since the last time"
+    lines = [line]
+    for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
+        runs = [run for run in outcome.runs if run.quality == quality]
+        # a campaign of hundreds of runs is not read again for a handful of lines
+        names = [f"{run.name}{_why(run, outcome)}" for run in runs[:_HANDFUL]]
+        names += [run.name for run in runs[_HANDFUL:]]
+        for one in outcome.surfaces:
+            if quality in one.objections:
+                names.append(f"scans of {one.name}{_because(one.checks, quality)}")
+        lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
+        if len(names) > _HANDFUL:
+            file = shown(outcome.folder / "tables" / "findings.csv")
+            lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
+    if known := [surface for surface in outcome.surfaces if surface.files]:
+        done = sum(surface.done for surface in known)
+        lines.append(f"{done} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
+    lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
+    return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
+
+
+def _why(run: RunOutcome, outcome: Outcome) -> str:
+    from tribolab.campaign.work import FINDINGS
+    from tribolab.io.netcdf import read_netcdf
+
+    attrs = read_netcdf(outcome.folder / run.data_file, group="run").attrs
+    return _because(attrs.get(FINDINGS, ()), run.quality)
+
+
+def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
+    """Return the checks that say so, and what they say."""
+    mine = [row for row in rows if row["status"] == status]
+    said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
+    return "".join(f": {' '.join(one.split())}" for one in ["; ".join(said)] if one)
+
+
+def _computed(outcome: Outcome) -> str:
+    """Say what is known of the surfaces."""
+    words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
+    parts = {part for surface in outcome.surfaces for part in surface.parts}
+    return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
+
+
+def foreign_lines(outcome: Outcome) -> list[str]:
+    """Name the files in the results folder that are not ours."""
+    if not outcome.foreign:
+        return []
+    names = ", ".join(outcome.foreign[:_HANDFUL])
+    more = len(outcome.foreign) - _HANDFUL
+    names += f" and {more} more" if more > 0 else ""
+    return [f"not written by tribolab and left where they are: {names}"]
+
+
+def failure_lines(outcome: Outcome) -> list[str]:
+    """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
+    from tribolab.report.sliding import condition
+
+    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    for surface in outcome.surfaces:
+        failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
+    failed += [f"{run.name}: {run.kept}" for run in outcome.runs if run.kept]
+    failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
+    lines = failed[:_SHOWN]
+    if len(failed) > _SHOWN:
+        lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")
+    return lines
+
+
+def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
+    """Say how well truth and paper were found, where to look and what to do next."""
+    c, folder, results = compared.runs, compared.folder, outcome.folder
+    rows = compared.surfaces
+    lines = [
+        "",
+        f"against the truth: {c.found} of {c.true} segments found, {c.missed} missed, "
+        f"{c.extra} extra; the true friction coefficient lies within 1 standard error in "
+        f"{100 * c.within_1:.0f} %, within 3 in {100 * c.within_3:.1f} % of them",
+    ]
+    if len(rows):
+        off = rows.assign(off=100 * rows.relative_difference.abs()).groupby("quantity").off.max()
+        words = {"rms_roughness_m": "roughness", "rms_slope": "slope", "contact_area_ratio": "A/A0"}
+        text = ", ".join(f"{words[name]} {off[name]:.1f} %" for name in words if name in off)
+        lines.append(
+            f"surfaces, from their scans: at most {text} from the truth; "
+            f"{rows.within_bounds.sum()} of {len(rows)} within their bounds"
+        )
+    fits, lost = compared.shear_stress, _not_described(results)
+    if len(fits):
+        lines.append(
+            f"shear stresses, fitted with the scanned spectra: at most "
+            f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
+            f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
+        )
+    lines.append(f"against the paper: {_counted(compared.paper)}")
+    tables = shown(results / "tables")
+    return [
+        *lines,
+        "",
+        f"look at   {shown(results / 'report.html')}        the page: open it in a browser",
+        f"          {tables}/friction.csv  every segment, a row each",
+        f"          {tables}/truth.csv     every segment beside its truth",
+        f"          {tables}/paper.csv     the paper's numbers beside computed ones",
+        f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
+        f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
+    ]
+
+
+def _not_described(results: Path) -> str:
+    """Say in brackets how many curves of which surface the model does not describe."""
+    from tribolab.report import tables
+    from tribolab.report.model_words import is_described
+
+    path = results / "tables" / "shear_stress.csv"
+    if not path.is_file():
+        return ""
+    fits = tables.read(path)
+    fits = fits[[not is_described(words) for words in fits.judgement]]
+    said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
+    verb = "is" if len(fits) == 1 else "are"
+    return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
+
+
+def _counted(table: pd.DataFrame) -> str:
+    count = table.status.value_counts()
+    said = ", ".join(f"{number} {status}" for status, number in count.items())
+    return f"{Count(len(table)):number|numbers}, {said}"
+
+
+def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
+    """Say how many of the paper's numbers hold, which differ, and where to look.
+
+    Parameters
+    ----------
+    folder
+        The results of `tribolab.paper.reproduce.reproduce`.
+    table
+        Published numbers beside computed ones.
+    """
+    lines = [f"the paper: {_counted(table)}"]
+    for row in table[table.status == "differs"].itertuples():
+        what = f"{row.quantity}, {row.surface}, {row.condition}"
+        lines.append(f"differs: {what}: published {row.published}, computed {row.computed}")
+    return [
+        *lines,
+        "",
+        f"look at   {shown(folder / 'paper.html')}  the page: open it in a browser",
+        f"          {shown(folder / 'paper.csv')}   all numbers, a row each",
+    ]
+
+
+def shown(path: Path) -> str:
+    """Return a path as short as it can be said from here."""
+    try:
+        return str(path.resolve().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

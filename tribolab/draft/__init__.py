@@ -1,0 +1,1 @@
+"""A dialect drafted from an unknown raw file."""

@@ -1,0 +1,147 @@
+"""What unnamed columns of numbers hold, told by how the numbers behave; all of it is a guess."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.io.clocks.faults import find_faults, rows_at_fault
+
+if TYPE_CHECKING:
+    from tribolab.draft.columns import DraftColumn, Kind
+
+_ROWS = 20_000  # rows looked at
+_SAME = 0.9999  # correlation of one signal in two units
+_EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
+_SMOOTH = 1.12
+
+
+def by_behaviour(
+    columns: list[DraftColumn], numbers: np.ndarray
+) -> tuple[Kind, list[DraftColumn], list[str]]:
+    """Tell a map, a profile, a run or none of them by the numbers of its columns.
+
+    Parameters
+    ----------
+    columns
+        The columns, without names.
+    numbers
+        Their numbers (rows, columns) as written.
+
+    Notes
+    -----
+    Three columns whose first two fill a grid are a map. Two columns, the first even and rising, are
+    a profile: a run needs more than one signal. In other tables the first column that rises in
+    every row is time, and one that runs smoothly to and fro is the position.
+    """
+    part = numbers[:_ROWS]
+    width = part.shape[1]
+    if width == 3 and _is_grid(part):
+        return "scan", *_map(columns, part)
+    rising = [i for i in range(width) if len(part) > 2 and (np.diff(part[:, i]) > 0).all()]
+    if width == 2 and rising[:1] == [0] and _is_even(part[:, 0]):
+        return "scan", *_profile(columns, part)
+    if not rising:
+        rising = [i for i in range(width) if _is_clock(part[:, i])]
+    if not rising:
+        return "table", columns, []
+    return "run", *_run(columns, part, rising[0])
+
+
+def _is_grid(part: np.ndarray) -> bool:
+    levels = [np.unique(part[:, i]).size for i in (0, 1)]
+    pairs = len(np.unique(part[:, :2], axis=0))
+    n = len(part)
+    return min(levels) > 1 and pairs == n and n <= levels[0] * levels[1] < n + max(levels)
+
+
+def _is_even(x: np.ndarray) -> bool:
+    steps = np.diff(x)
+    return bool(np.ptp(steps) <= 0.05 * np.median(steps))
+
+
+def _is_clock(x: np.ndarray) -> bool:
+    """Whether numbers rise by even steps, start anew now and then, and never go astray."""
+    if len(x) < 2 * _EVERY or not np.isfinite(x).all():
+        return False
+    steps = np.diff(x)
+    falls = int((steps <= 0).sum())
+    usual = np.median(steps)
+    even = np.mean(np.abs(steps - usual) < 0.5 * usual) if usual > 0 else 0.0
+    if not 0 < falls <= len(x) / _EVERY or even < 0.9:
+        return False
+    faults = find_faults(x)
+    anew = x + faults.offsets()
+    return bool(faults.starts) and not rows_at_fault(anew, faults).any()
+
+
+def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
+    """Heights as large as the length, number for number, are in a smaller unit than it."""
+    z = part[:, height]
+    return "mm", "um" if np.nanmax(z) - np.nanmin(z) > 0.1 * np.ptp(part[:, 0]) else "mm"
+
+
+def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
+    x_unit, z_unit = _scan_units(part, 2)
+    units = (x_unit, x_unit, z_unit)
+    found = [
+        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
+        for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
+    ]
+    return found, ["it is a map: columns 1 and 2 fill a grid"]
+
+
+def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
+    found = [
+        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
+        for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
+    ]
+    return found, ["it is a profile: two columns, the first rises in even steps"]
+
+
+def _run(
+    columns: list[DraftColumn], part: np.ndarray, time: int
+) -> tuple[list[DraftColumn], list[str]]:
+    from tribolab.draft.columns import _time_unit
+
+    unit = _time_unit(part[:, time])
+    rises = "it rises in every row"
+    if (np.diff(part[:, time]) <= 0).any():
+        rises = "it rises by even steps, and starts anew now and then"
+    why = f"it is time in {unit}: {rises}"
+    result = list(columns)
+    result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
+    others = [i for i in range(part.shape[1]) if i != time]
+    kin = _kin(part, others)
+    smooth = [i for i in others if _runs_to_and_fro(part[:, i])]
+    position = max(smooth, key=lambda i: np.ptp(part[:, i]), default=None)
+    for i in others:
+        same = [str(k + 1) for k in kin.get(i, ())]
+        note = f"the same signal as column {', '.join(same)}" if same else "without a name"
+        result[i] = columns[i]._replace(note=note)
+    if position is not None:
+        why = "it is the position in mm: it runs smoothly to and fro"
+        result[position] = columns[position]._replace(
+            quantity="position", unit="mm", used=True, guessed=(why,)
+        )
+    return result, []
+
+
+def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
+    """For each column those that are a straight line of it: the same signal in another unit."""
+    moving = [i for i in places if np.isfinite(part[:, i]).all() and np.ptp(part[:, i]) > 0]
+    if len(moving) < 2:
+        return {}
+    alike = np.abs(np.corrcoef(part[:, moving], rowvar=False)) > _SAME
+    return {
+        i: [k for b, k in enumerate(moving) if alike[a, b] and k != i] for a, i in enumerate(moving)
+    }
+
+
+def _runs_to_and_fro(x: np.ndarray) -> bool:
+    if len(x) < 10 * _EVERY or not np.isfinite(x).all() or np.ptp(x) == 0:
+        return False
+    fine = np.abs(np.diff(x)).sum()
+    coarse = np.abs(np.diff(x[::_EVERY])).sum()
+    return bool(coarse > 1.5 * np.ptp(x) and fine < _SMOOTH * coarse)

@@ -1,0 +1,325 @@
+"""What the columns of an unknown table hold: by their names and units, else by their numbers."""
+
+from __future__ import annotations
+
+import io
+from typing import Literal, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from tribolab.draft.header import converts, is_unit
+from tribolab.draft.layout import Layout
+from tribolab.draft.words import Match, matches, split_unit
+from tribolab.errors import ReadError, brief, shown
+from tribolab.io.dialects.headers import split_name, split_row
+from tribolab.io.tables.pieces import LARGEST
+from tribolab.quantities import QUANTITIES, quantity
+
+Kind = Literal["run", "scan", "table"]
+_SIGNALS = {
+    "friction_force",
+    "normal_force",
+    "friction_coefficient",
+    "sliding_velocity",
+    "position",
+    "shear_stress",
+    "film_thickness",
+}
+_SURE = 0.7  # a name of which so much is a known word is no guess
+
+
+class DraftColumn(NamedTuple):
+    """One column as it is understood.
+
+    `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
+    has to say; `file_unit` what the file says. Only a column with ``used`` is read.
+    """
+
+    place: int
+    label: str
+    name: str | None = None
+    occurrence: int = 1
+    file_unit: str | None = None
+    unit: str | None = None
+    quantity: str | None = None
+    sign: int = 1
+    optional: bool = False
+    used: bool = False
+    guessed: tuple[str, ...] = ()
+    note: str = ""
+    fill_in: str = ""
+
+    @property
+    def read_unit(self) -> str | None:
+        """The unit the numbers are read in."""
+        return self.unit or self.file_unit
+
+
+class Understood(NamedTuple):
+    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written."""
+
+    kind: Kind
+    columns: tuple[DraftColumn, ...]
+    numbers: np.ndarray
+    missing: tuple[str, ...]
+    on_repeat: Literal["", "drop", "interpolate"]
+    restart: bool
+    guesses: tuple[str, ...]
+
+
+def understand(layout: Layout) -> Understood:
+    """Tell what the columns of a file hold.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.layout.examine`.
+    """
+    numbers, text, missing = _numbers(layout)
+    columns = _labelled(layout)
+    guesses: list[str] = []
+    if _say_something(columns):
+        kind, columns = _by_name(columns, numbers)
+    else:
+        from tribolab.draft.behaviour import by_behaviour
+
+        kind, columns, guesses = by_behaviour(columns, numbers)
+    columns = [
+        column._replace(
+            used=False,
+            guessed=(),
+            fill_in="",
+            note=f"not a number: '{shown(text[column.place - 1])}'",
+        )
+        if text[column.place - 1]
+        else column
+        for column in columns
+    ]
+    from tribolab.draft.clock import find_clock
+
+    on_repeat, restart, columns = find_clock(layout, columns, numbers)
+    used = [column.place - 1 for column in columns if column.used]
+    words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
+    if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
+        # time alone is a run only if something can be filled in
+        kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
+    return Understood(
+        kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses)
+    )
+
+
+def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
+    """Numbers of all rows; for each column a text that is no number, and its words for no value."""
+    blank = layout.delimiter == "whitespace"
+    try:
+        frame = pd.read_csv(
+            io.StringIO("\n".join(layout.rows())),
+            sep=r"\s+" if blank else layout.delimiter,
+            header=None,
+            names=range(layout.width),
+            decimal=layout.decimal,
+            index_col=False,
+            keep_default_na=False,
+            na_values=[""],
+            skipinitialspace=True,
+            on_bad_lines="skip",
+            low_memory=False,
+        )
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise ReadError(
+            f"{layout.file.path}: the table cannot be read: {brief(error, 100)}; is a quotation "
+            "mark left open in it?"
+        ) from error
+    numbers = np.full(frame.shape, np.nan)
+    text, missing = [""] * layout.width, [[] for _ in range(layout.width)]
+    for index in range(layout.width):
+        column = frame[index]
+        if column.dtype.kind in "fiu":  # all of it was understood
+            numbers[:, index] = column
+            continue
+        values = pd.to_numeric(column, errors="coerce")
+        numbers[:, index] = values.to_numpy(dtype=float)
+        odd = column[values.isna() & column.notna()].astype(str).str.strip()
+        odd = odd[~odd.str.lower().isin(["nan", ""])]
+        if len(odd) > 0.5 * column.notna().sum():
+            text[index] = odd.iloc[0][:30]
+        else:
+            missing[index] = odd.unique()[:10].tolist()
+    numbers[np.abs(numbers) > LARGEST] = np.nan
+    return numbers, text, missing
+
+
+def _labelled(layout: Layout) -> list[DraftColumn]:
+    """Columns with their names and units as the header says them."""
+    heading = layout.heading
+    cells = list(heading.cells if heading else ())[: layout.width]
+    cells += [""] * (layout.width - len(cells))
+    row = list(heading.unit_cells if heading else ()) + [""] * layout.width
+    columns, seen = [], {}
+    for place, cell in enumerate(cells, start=1):
+        name, unit = split_name(cell)
+        if unit is not None and not is_unit(unit):
+            unit = None  # brackets around something else
+        if heading and heading.units is not None:
+            name, unit = cell, row[place - 1].strip("[]() ") or None
+        seen[name] = seen.get(name, 0) + 1
+        found = name if name and heading and heading.aligned else None
+        columns.append(DraftColumn(place, cell, found, seen[name] if found else 1, file_unit=unit))
+    return columns
+
+
+def _bare(column: DraftColumn) -> tuple[str, str | None, bool]:
+    """Name without its unit, the unit, and whether the dialect has to say it."""
+    name = split_name(column.label)[0] if column.name is None else column.name
+    if column.file_unit is not None:
+        return name, column.file_unit, column.name is None
+    name, unit = split_unit(name)
+    return name, unit, unit is not None
+
+
+def _say_something(columns: list[DraftColumn]) -> bool:
+    """Whether the header says more than 'Channel 1, Channel 2'."""
+    bare = [_bare(column)[:2] for column in columns if column.label]
+    return any(unit is not None or matches(name, unit) for name, unit in bare)
+
+
+def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, list[DraftColumn]]:
+    bare = [_bare(column) for column in columns]
+    run = [matches(name, unit) for name, unit, _ in bare]
+    scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
+    best = {found[0].quantity for found in run if found}
+    profile = {found[0].quantity for found in scan if found}
+    if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
+        {"x", "height"} <= profile
+    ):
+        return "scan", _assigned(columns, bare, scan, numbers, "scan")
+    kind: Kind = "run" if best & ({"time"} | _SIGNALS) else "table"
+    return kind, _assigned(columns, bare, run, numbers, kind)
+
+
+def _assigned(
+    columns: list[DraftColumn],
+    bare: list[tuple[str, str | None, bool]],
+    found: list[list[Match]],
+    numbers: np.ndarray,
+    kind: Kind,
+) -> list[DraftColumn]:
+    """Give each quantity to the column whose name fits best."""
+    has_units = any(unit is not None for _, unit, _ in bare)
+    filled = np.isfinite(numbers).any(axis=0)
+    proposals: dict[str, list[tuple]] = {}
+    for index, options in enumerate(found):
+        option = _preferred(options, bare[index][1], numbers[:, index], has_units)
+        if option:
+            # of names used twice the later counts: exporters repeat first what was plotted
+            rank = (option.score, bool(filled[index]), index)
+            proposals.setdefault(option.quantity, []).append((rank, index, option))
+    result = list(columns)
+    for index, column in enumerate(columns):
+        if not column.label:
+            continue
+        unit = bare[index][1]
+        if unit is not None and not found[index]:
+            same = [q for q in _SIGNALS if _told_by(unit, quantity(q).unit)]
+            hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
+            result[index] = column._replace(note=hint or "the name is not known")
+        elif not found[index]:
+            result[index] = column._replace(note="the name is not known")
+    for name, options in proposals.items():
+        rank, winner, _ = max(options)
+        for _, index, option in options:
+            if index == winner:
+                several = len(options) > 1 and sorted(options)[-2][0][0] > rank[0] - 0.05
+                result[index] = _column(
+                    columns[index], bare[index], option, numbers[:, index], kind, several
+                )
+            else:
+                note = f"also looks like {name}; column {winner + 1} is used"
+                result[index] = columns[index]._replace(quantity=name, note=note)
+    return result
+
+
+def _told_by(unit: str, si_unit: str) -> bool:
+    """Whether a unit tells something of the quantity: a number without a unit may be anything."""
+    return si_unit != "1" and converts(unit, si_unit)
+
+
+def _preferred(
+    options: list[Match], unit: str | None, values: np.ndarray, has_units: bool
+) -> Match | None:
+    """Of several quantities that a name may stand for, the one that suits unit and numbers."""
+    if not options or unit is not None:
+        return options[0] if options else None
+    top = [option for option in options if option.score > options[0].score - 0.05]
+    if len(top) > 1:
+        ratio = next((o for o in top if QUANTITIES[o.quantity].unit == "1"), None)
+        sizes = np.abs(values[np.isfinite(values)])
+        if ratio and (has_units or (sizes.size and np.median(sizes) < 2)):
+            return ratio
+        steps = np.diff(values)
+        if top[0].quantity == "time" and not (steps >= 0).all():
+            return top[1]
+    return options[0]
+
+
+def _column(
+    column: DraftColumn,
+    bare: tuple[str, str | None, bool],
+    option: Match,
+    values: np.ndarray,
+    kind: Kind,
+    several: bool,
+) -> DraftColumn:
+    """Fill in a column that holds a quantity."""
+    _, unit, say_unit = bare
+    si_unit = quantity(option.quantity).unit
+    guessed = []
+    if option.score < _SURE:
+        guessed.append(f"the name means {quantity(option.quantity).long_name}")
+    if several:
+        guessed.append(f"of several columns for {option.quantity} it is the one meant")
+    written = unit if say_unit else None
+    if option.unit:
+        written = option.unit
+        guessed.append(f"'{shown(unit)}' means {option.unit}")
+    fill_in = ""
+    if unit is None and si_unit not in ("", "1"):
+        if option.quantity == "time":
+            written = _time_unit(values)
+            guessed.append(f"time is in {written}")
+        elif kind == "scan":
+            written = "mm" if option.quantity in ("x", "y") else "um"
+            guessed.append(f"{option.quantity} is in {written}")
+        else:
+            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
+    finite = values[np.isfinite(values)]
+    sign = 1
+    if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():
+        sign = -1
+        guessed.append("the normal force is counted negative")
+    used, note = not fill_in, ""
+    if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
+        used, note, fill_in = False, "it stands still", ""
+    return column._replace(
+        quantity=option.quantity,
+        unit=written,
+        sign=sign,
+        optional=not finite.size and option.quantity != "time",
+        used=used and (bool(finite.size) or option.quantity != "time"),
+        guessed=tuple(guessed),
+        note=note or ("" if finite.size else "no value in this file"),
+        fill_in=fill_in,
+    )
+
+
+def _time_unit(values: np.ndarray) -> str:
+    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds."""
+    steps = np.diff(values[np.isfinite(values)])
+    whole = steps.size and (values == np.round(values)).all()
+    return "ms" if whole and np.median(steps) >= 5 else "s"
+
+
+def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
+    """Cells of the first rows as they stand in the file."""
+    return [split_row(line, layout.delimiter) for line in layout.rows()[:number]]

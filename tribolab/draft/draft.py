@@ -1,0 +1,267 @@
+"""Draft a dialect from an unknown raw file: how it is written and what its columns hold."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.draft.columns import Kind, Understood, first_cells_of, understand
+from tribolab.draft.layout import Layout, examine
+from tribolab.draft.toml import FILL_IN, dialect_toml
+from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
+from tribolab.io.dialects.find import recognise
+from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.signature import File, peek
+from tribolab.io.scans.results import is_results
+from tribolab.quantities import unit_conversion
+
+PathLike = str | Path
+_SHOWN = 5  # rows shown as understood
+
+
+class Draft(NamedTuple):
+    """What was understood of a file.
+
+    Attributes
+    ----------
+    path, name
+        The file, and the name of the dialect.
+    kind
+        ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
+    layout, understood
+        How the file is written and what its columns hold; None for a file of results.
+    toml
+        The dialect as TOML; empty for a table.
+    answer
+        For a table: what the file is, and what reads it.
+    cells
+        The first rows as they stand in the file.
+    known
+        The known instrument that reads the file already; empty if there is none.
+    """
+
+    path: Path
+    name: str
+    kind: Kind
+    layout: Layout | None
+    understood: Understood | None
+    toml: str
+    answer: str
+    cells: tuple[tuple[str, ...], ...]
+    known: str
+
+    @property
+    def dialect(self) -> Dialect | None:
+        """The dialect; None for a table."""
+        return Dialect.model_validate(tomllib.loads(self.toml)) if self.toml else None
+
+    @property
+    def guesses(self) -> tuple[str, ...]:
+        """What was guessed, in the order of the file."""
+        if self.layout is None or self.understood is None:
+            return ()
+        columns = [
+            f"column {column.place}"
+            + (f" '{shown(column.label)}': " if column.label else ": ")
+            + guess
+            for column in self.understood.columns
+            for guess in column.guessed
+        ]
+        return (*self.layout.guesses, *self.understood.guesses, *columns)
+
+    @property
+    def to_fill_in(self) -> Mapping[int, str]:
+        """Lines of the TOML that want to be filled in, and with what."""
+        return {
+            number: line.split(f"{FILL_IN}: ", 1)[1].removesuffix(", then remove the '#' below")
+            for number, line in enumerate(self.toml.splitlines(), start=1)
+            if FILL_IN in line
+        }
+
+    def _repr_html_(self) -> str:
+        from tribolab.draft.show import draft_html
+
+        return draft_html(self)
+
+    def first_rows(self, number: int = _SHOWN) -> dict[str, np.ndarray]:
+        """Return the first rows in SI, by quantity."""
+        if self.understood is None:
+            return {}
+        rows = {}
+        for column in self.understood.columns:
+            if column.used and column.quantity:
+                scale, offset = unit_conversion(column.read_unit or "", column.quantity)
+                values = self.understood.numbers[:number, column.place - 1]
+                rows[column.quantity] = column.sign * scale * values + offset
+        return rows
+
+
+def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
+    r"""Draft a dialect from a raw text file of an unknown instrument.
+
+    Parameters
+    ----------
+    path
+        The file.
+    name
+        Name of the dialect; made from the file's name if not given.
+
+    Returns
+    -------
+    Draft
+        What was understood and guessed, and the dialect as TOML. Columns whose quantity or unit is
+        not known stand in the TOML as comments, ready to be filled in.
+
+    Raises
+    ------
+    ReadError
+        If the file is missing, not text, or holds no table of numbers.
+
+    Notes
+    -----
+    Names are looked up in one vocabulary, `tribolab.draft.words`; columns without a name are
+    judged by their numbers, `tribolab.draft.behaviour`.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "versuch.txt"
+    >>> _ = file.write_text("Zeit [s];Reibkraft [N];Weg\n0,0;1,5;0,1\n0,1;1,6;0,2\n")
+    >>> draft = draft_dialect(file)
+    >>> draft.kind, [c.quantity for c in draft.understood.columns]
+    ('run', ['time', 'friction_force', 'position'])
+    >>> draft.to_fill_in
+    {28: 'the unit of \'Weg\' (position), e.g. "m"'}
+    """
+    file = peek(path)
+    if file.format != "text":
+        raise ReadError(
+            f"{file.path}: this is {file.format}; a dialect can be drafted from text only, for "
+            "other formats follow an example in raw_data_schema/instruments"
+        )
+    name = dialect_name(file.path if name is None else name)
+    if is_results(file.head):
+        return _results(file, name)
+    layout = examine(file)
+    understood = understand(layout)
+    toml = dialect_toml(name, layout, understood) if understood.kind != "table" else ""
+    draft = Draft(
+        path=file.path,
+        name=name,
+        kind=understood.kind,
+        layout=layout,
+        understood=understood,
+        toml=toml,
+        answer="" if toml else _answer(file, understood),
+        cells=tuple(map(tuple, first_cells_of(layout, _SHOWN))),
+        known=_known(file),
+    )
+    if toml:
+        _validate(draft)
+    return draft
+
+
+def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:
+    """Write a drafted dialect; an existing file stays as it is unless `force` is given.
+
+    Raises
+    ------
+    ConfigError
+        If there is such a file already, or its name does not end in ``.toml``.
+    OutputError
+        If it cannot be written, or the draft has no dialect.
+    """
+    path = Path(path)
+    if not draft.toml:
+        raise OutputError(f"{path}: not written, {draft.path.name} has no dialect: {draft.answer}")
+    if path.suffix != ".toml":
+        raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
+    try:
+        with path.open("w" if force else "x", encoding="utf-8", newline="\n") as handle:
+            handle.write(draft.toml)
+    except FileExistsError as error:
+        raise ConfigError(
+            f"{path}: there is such a file already; --force replaces it, --output names another"
+        ) from error
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {os.strerror(error.errno or 0)}") from error
+    return path
+
+
+def dialect_name(text: PathLike) -> str:
+    """Return a name that a dialect may have, made from a file's name.
+
+    >>> dialect_name("O-ring257_1bar.csv"), dialect_name("Größe 2.txt")
+    ('o_ring257_1bar', 'gr_e_2')
+    """
+    stem = text.stem if isinstance(text, Path) else re.sub(r"\.\w{1,4}$", "", text)
+    return re.sub(r"[^a-z0-9]+", "_", stem.lower()).strip("_") or "drafted"
+
+
+def _known(file: File) -> str:
+    try:
+        return recognise(file.path).name
+    except ReadError:  # none or several
+        return ""
+
+
+def _validate(draft: Draft) -> None:
+    try:
+        Dialect.model_validate(tomllib.loads(draft.toml))
+    except (ValueError, TribolabError) as error:
+        raise ReadError(
+            f"{draft.path}: the file was understood, but no dialect can say it: {error}"
+        ) from error
+
+
+def _answer(file: File, understood: Understood) -> str:
+    """Say what a table is that holds neither signals nor a profile."""
+    from tribolab.io.scans.formats import read_foreign
+
+    labels = [column.label for column in understood.columns if column.label]
+    if not labels:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # what is no scan makes it divide by zero
+                scan = read_foreign(file.path)
+        except TribolabError:
+            return (
+                "numbers without names, of which no column proceeds like time or a position; say "
+                "in a dialect what stands at which position: raw_data_schema/README.md shows how"
+            )
+        sizes = " x ".join(str(size) for size in scan.sizes.values())
+        return (
+            f"heights of a scan ({sizes} points, {scan.attrs['instrument']}); it is read without "
+            "a dialect, by 'tribolab check' and under scans of a [[surface]]"
+        )
+    return (
+        f"a table of {', '.join(map(shown, labels[:8]))}: no signals along time and no profile, "
+        "so there is nothing a dialect could describe"
+    )
+
+
+def _results(file: File, name: str) -> Draft:
+    lines = file.head.decode("latin-1").replace("\r", "").split("\n")
+    start = next((n for n, line in enumerate(lines) if line.startswith("// CalcResult")), 0) + 1
+    rows = [line.split(";") for line in lines[start:] if line.strip()]
+    return Draft(
+        path=file.path,
+        name=name,
+        kind="table",
+        layout=None,
+        understood=None,
+        toml="",
+        answer=(
+            f"{len(rows)} results of a roughness tester (name, value, unit, condition), without "
+            "the profile; 'tribolab check' reads it without a dialect"
+        ),
+        cells=tuple(tuple(row) for row in rows[:_SHOWN]),
+        known="",
+    )

@@ -1,0 +1,157 @@
+"""Show on the terminal how an unknown file was understood, and what to do next."""
+
+from __future__ import annotations
+
+import io
+import shlex
+from pathlib import Path
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tribolab.draft.columns import DraftColumn
+from tribolab.draft.draft import Draft
+from tribolab.quantities import quantity
+
+_PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
+_COLUMNS = 12  # of raw cells that are shown side by side
+_LISTED = 60  # columns that are not used and shown all the same
+
+
+def print_draft(draft: Draft, console: Console) -> None:
+    """Print what was understood of a file, its first rows, and what was guessed.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.draft.draft_dialect`.
+    console
+        Where to.
+    """
+    kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
+    console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
+    for line in _written(draft):
+        console.print(f"  {escape(line)}", soft_wrap=True)
+    if draft.known:
+        console.print(f"  the known instrument '{draft.known}' reads it already")
+    if draft.understood is not None and draft.toml:
+        console.print(_columns_table(draft))
+        console.print(_rows_table(draft))
+    else:
+        console.print(_cells_table(draft))
+    if draft.toml and draft.guesses:
+        console.print("guessed, so look at it:")
+        for guess in draft.guesses:
+            console.print(f"  - {escape(guess)}", soft_wrap=True)
+
+
+def draft_html(draft: Draft) -> str:
+    """Return what `print_draft` prints, and what is to be filled in, for a notebook."""
+    page = Console(record=True, file=io.StringIO(), width=110, force_jupyter=False, highlight=False)
+    print_draft(draft, page)
+    for line, what in draft.to_fill_in.items():
+        page.print(f"fill in line {line} of the TOML: {escape(what)}", soft_wrap=True)
+    return page.export_html(inline_styles=True, code_format=_PRE)
+
+
+def print_next(draft: Draft, written: Path, console: Console) -> None:
+    """Print where the dialect was written, which lines to fill in, and the command to type next."""
+    for line, what in draft.to_fill_in.items():
+        console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
+    console.print(f"written: {escape(str(written))}", soft_wrap=True)
+    file, toml = shlex.quote(str(draft.path)), shlex.quote(str(written))
+    console.print(
+        f"next:  tribolab info {escape(file)} --instrument {escape(toml)}", soft_wrap=True
+    )
+
+
+def _written(draft: Draft) -> list[str]:
+    layout = draft.layout
+    if layout is None:
+        return []
+    rows = sum(len(block.rows) for block in layout.blocks)
+    more = "" if layout.whole else ", and more: only the first megabyte was looked at"
+    tables = f" in {len(layout.blocks)} tables" if len(layout.blocks) > 1 else ""
+    if layout.others:
+        tables += f"; {layout.others} more in the file, which are not read"
+    marks = f"numbers parted by {layout.delimiter_name}, decimal "
+    marks += "comma" if layout.decimal == "," else "point"
+    if layout.heading is None:
+        header = "no header" + (f", {layout.skip} lines before the numbers" if layout.skip else "")
+    else:
+        header = f"header in line {layout.heading.names + 1}"
+        header += f", units in line {layout.heading.units + 1}" if layout.heading.units else ""
+        header += ", repeated" if layout.repeats and len(layout.blocks) > 1 else ""
+    bom = " with BOM" if layout.file.head.startswith(b"\xef\xbb\xbf") else ""
+    return [
+        f"{rows} rows of {layout.width} columns{tables}{more}",
+        f"{layout.encoding}{bom}, lines end in {layout.line_ends}; {marks}; {header}",
+    ]
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold")
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    return table
+
+
+def _columns_table(draft: Draft) -> Table:
+    """One row per column; the unnamed and empty ones are left out."""
+    table = _table("column", "name in the file", "unit", "quantity", "remark")
+    if draft.understood is None:
+        return table
+    filled = np.isfinite(draft.understood.numbers).any(axis=0)
+    named = [c for c in draft.understood.columns if c.label or filled[c.place - 1]]
+    for number, column in enumerate(named):
+        if number < _LISTED or column.quantity:
+            found = escape(column.quantity or "") if column.used else ""
+            unit = column.read_unit or ""
+            table.add_row(
+                str(column.place),
+                escape(column.label),
+                escape(unit),
+                found,
+                escape(_remark(column)),
+            )
+    left = sum(1 for column in named[_LISTED:] if not column.quantity)
+    if left:
+        table.add_row("", f"... and {left} more", "", "", "not used")
+    return table
+
+
+def _remark(column: DraftColumn) -> str:
+    if column.used:
+        return "guessed" if column.guessed else column.note
+    return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
+
+
+def _rows_table(draft: Draft) -> Table:
+    """First rows in SI, a line for each quantity: names are longer than numbers."""
+    rows = draft.first_rows()
+    shown = max((len(values) for values in rows.values()), default=0)
+    table = _table("first rows in SI", "", *(f"row {number + 1}" for number in range(shown)))
+    for name, values in rows.items():
+        unit = quantity(name).unit
+        cells = ["" if np.isnan(value) else f"{value:.6g}" for value in values]
+        table.add_row(name, "" if unit == "1" else unit, *cells)
+    return table
+
+
+def _cells_table(draft: Draft) -> Table:
+    """Return the first rows as they stand in the file, under its header if there is one."""
+    width = min(max((len(row) for row in draft.cells), default=0), _COLUMNS)
+    heading = draft.layout.heading if draft.layout else None
+    cells = list(heading.cells if heading else ()) + [""] * width
+    units = list(heading.unit_cells if heading else ()) + [""] * width
+    labels = [
+        f"{cell} [{unit}]" if unit else cell for cell, unit in zip(cells, units, strict=False)
+    ]
+    table = _table(*(escape(label) for label in labels[:width]))
+    table.show_header = heading is not None
+    for row in draft.cells:
+        table.add_row(*map(escape, row[:width]))
+    return table

@@ -1,0 +1,107 @@
+"""How the lines of a text file are written: encoding, line ends, delimiter, decimal mark."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+
+from tribolab.io.dialects.headers import split_row
+from tribolab.io.dialects.signature import HEAD
+
+_VOTERS = 300  # lines at the start and at the end that decide on the delimiter
+DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
+_NUMBER = {
+    ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
+    ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
+}
+# dates, times of day, and what instruments write where a value should stand
+_NO_NUMBER = re.compile(
+    r"(?i)nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none|"
+    r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|\d{1,2}:\d\d(?::\d\d(?:[.,]\d+)?)?"
+)
+
+
+class Grammar:
+    """One way to read lines: a delimiter and a decimal mark."""
+
+    def __init__(self, delimiter: str, decimal: str):
+        self.delimiter, self.decimal = delimiter, decimal
+        number = _NUMBER[decimal]
+        self._number = re.compile(number)
+        gap = r"\s+" if delimiter == "whitespace" else re.escape(delimiter)
+        cell = f"(?:{number})" if delimiter == "whitespace" else f" *(?:{number})? *"
+        self._plain = re.compile(f"{cell}(?:{gap}{cell})*")
+
+    def cells(self, line: str) -> list[str]:
+        """Cells of a line."""
+        return split_row(line, self.delimiter)
+
+    def is_number(self, cell: str) -> bool:
+        """Whether a cell is a number."""
+        return self._number.fullmatch(cell) is not None
+
+    def merit(self, line: str) -> tuple[int, int]:
+        """Return the number of cells, and by how much numbers outweigh text (0: not a row)."""
+        cells = self.cells(line)
+        filled = [cell for cell in cells if cell]
+        numbers = sum(map(self.is_number, filled))
+        text = sum(1 for c in filled if not self.is_number(c) and not _NO_NUMBER.fullmatch(c))
+        is_row = numbers > 0 and 2 * (len(filled) - text) > len(filled)
+        return len(cells), max(numbers - text, 1) if is_row else 0
+
+    def width(self, line: str) -> int:
+        """Return the number of cells of a row of numbers; 0 for any other line."""
+        stripped = line.strip() if self.delimiter == "whitespace" else line
+        if self._plain.fullmatch(stripped) and any(map(str.isdigit, stripped)):
+            return len(self.cells(line))
+        width, merit = self.merit(line)
+        return width if merit else 0
+
+    def goes_on(self, line: str, width: int) -> bool:
+        """Whether a line can be a row in the midst of others: half of it may be error codes."""
+        cells = self.cells(line)
+        numbers = sum(map(self.is_number, cells))
+        filled = sum(1 for cell in cells if cell)
+        return len(cells) == width and self.is_number(cells[0]) and 2 * numbers >= filled
+
+
+def find_encoding(head: bytes) -> tuple[str, list[str]]:
+    """Return the encoding, and what was guessed of it."""
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16", []
+    try:
+        # the head may end inside a character
+        head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
+    except UnicodeDecodeError:
+        name = "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
+        return name, [f"the encoding is {name}: the file is not UTF-8"]
+    return "utf-8", []
+
+
+def find_line_ends(raw: bytes) -> str:
+    """Say how lines end, the commonest first."""
+    counts = Counter(re.findall(rb"\r+\n|\r|\n", raw))
+    names = {b"\n": "LF", b"\r\n": "CR LF", b"\r": "CR", b"\r\r\n": "CR CR LF"}
+    found = [f"{names.get(end, 'CR ... LF')}" for end, _ in counts.most_common()]
+    return " and ".join(dict.fromkeys(found)) or "none"
+
+
+def find_grammar(lines: Sequence[str]) -> Grammar | None:
+    """Return the delimiter and decimal mark that make most numbers of the lines."""
+    filled = [line for line in lines if line.strip()]
+    voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
+    best, highest = None, 0
+    for delimiter in DELIMITERS:
+        for decimal in (".", ","):
+            if delimiter == decimal:
+                continue
+            grammar = Grammar(delimiter, decimal)
+            votes: Counter[int] = Counter()
+            for line in voters:
+                width, merit = grammar.merit(line)
+                votes[width] += merit
+            top = max(votes.values(), default=0)
+            if top > highest:  # in the order of DELIMITERS: a tab is also a blank
+                best, highest = grammar, top
+    return best

@@ -1,0 +1,221 @@
+"""A drafted dialect as TOML for people: comments say what was guessed and what is missing."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+
+from tribolab.draft.columns import DraftColumn, Understood
+from tribolab.draft.layout import Layout
+from tribolab.draft.values import DraftValue, find_values
+from tribolab.quantities import quantity
+
+FILL_IN = "FILL IN"
+
+
+def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
+    """Return the TOML text of a dialect that reads a file as it was understood.
+
+    Parameters
+    ----------
+    name
+        Name of the dialect.
+    layout, understood
+        What was found out about the file.
+    """
+    columns = understood.columns
+    used = [column for column in columns if column.used]
+    parts = [_head(name, layout, understood)]
+    if layout.heading and any(column.name for column in used):
+        names = dict.fromkeys(column.name for column in used if column.name)
+        parts.append("[recognise]\nheader = [" + ", ".join(map(_text, names)) + "]\n")
+    elif not layout.heading:
+        parts.append(f"[recognise]\ncolumns = {layout.width}\n")
+    parts += [_text_table(layout, understood), _header_table(layout, used)]
+    parts += [_time_table(understood), _speed_table(understood.kind, columns)]
+    numbers = understood.numbers
+    parts += [_column(column, numbers[:, column.place - 1]) for column in used]
+    wanted = [column for column in columns if column.fill_in]
+    parts += [_column(column, numbers[:, column.place - 1]) for column in wanted]
+    rest = [column for column in columns if not column.used and not column.fill_in]
+    parts.append(_unused(rest, numbers))
+    parts.append(_values(find_values(layout)))
+    text = "\n".join(part for part in parts if part)
+    return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
+
+
+def _head(name: str, layout: Layout, understood: Understood) -> str:
+    file = _comment(layout.file.path.name)
+    lines = [
+        f"# Drafted from '{file}'. Look at what is marked 'guessed'.",
+        f"name = {_text(name)}",
+        f"title = {_text('files like ' + file)}",
+    ]
+    lines += [f"# guessed: {_comment(guess)}" for guess in (*layout.guesses, *understood.guesses)]
+    if layout.others:
+        lines.append(f"# {layout.others} more tables stand in the file; they are not read")
+    return "\n".join(lines) + "\n"
+
+
+def _text_table(layout: Layout, understood: Understood) -> str:
+    lines = ["[text]", f"delimiter = {_text(layout.delimiter)}"]
+    if layout.encoding != "utf-8":
+        lines.insert(1, f"encoding = {_text(layout.encoding)}")
+    if layout.decimal != ".":
+        lines.append(f"decimal = {_text(layout.decimal)}")
+    if understood.missing:
+        lines.append("missing = [" + ", ".join(map(_text, understood.missing)) + "]")
+    if layout.end:
+        lines.append(f"end = {_pattern(layout.end)}")
+    if layout.skip_lines:
+        lines.append(f"skip_lines = {_pattern(layout.skip_lines)}    # guessed: the table goes on")
+    return "\n".join(lines) + "\n"
+
+
+def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
+    lines = ["[header]"]
+    if layout.heading:
+        if layout.header_pattern:
+            lines.append(f"pattern = {_pattern(layout.header_pattern)}")
+        else:
+            lines.append(f"line = {layout.header_line}")
+        units = "row" if layout.heading.units is not None else "brackets"
+        lines.append(f'units = "{units if layout.heading.aligned else "dialect"}"')
+        if layout.repeats:
+            lines.append("repeats = true")
+        if layout.step:
+            lines.append(f"step = {_pattern(layout.step)}")
+    if layout.skip:
+        lines.append(f"skip = {layout.skip}")
+    return "\n".join(lines) + "\n" if len(lines) > 1 else ""
+
+
+def _time_table(understood: Understood) -> str:
+    lines = ["[time]"]
+    if not any(c.used and c.quantity == "time" for c in understood.columns):
+        lines.append('source = "none"')
+        if understood.kind == "run":
+            lines[1] += "    # guessed: rows are counted as seconds"
+            lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
+            lines.append('# source = "rate"\n# rate = "? Hz"')
+    if understood.on_repeat == "drop":
+        lines.append('on_repeat = "drop"    # guessed: leave out rows that repeat the one before')
+    elif understood.on_repeat:
+        lines.append(
+            'on_repeat = "interpolate"    # guessed: rows that are not later get times between'
+        )
+    if understood.restart:
+        lines.append('restart = "continue"    # the clock starts anew, or wraps')
+    return "\n".join(lines) + "\n" if len(lines) > 1 else ""
+
+
+def _speed_table(kind: str, columns: list[DraftColumn]) -> str:
+    names = {column.quantity for column in columns if column.used}
+    if kind == "run" and "sliding_velocity" in names:
+        return ""
+    source = "position" if kind == "run" and "position" in names else "none"
+    lines = ["[speed]", f'source = "{source}"']
+    waiting = {column.quantity for column in columns if column.fill_in}
+    if source == "none" and kind == "run" and waiting & {"position", "sliding_velocity"}:
+        lines.append('# "position" or "column", once that column (below) has its unit')
+    elif source == "none" and kind == "run" and "rotation_speed" in names:
+        lines.append(
+            f"# {FILL_IN}: the radius of the track, if the disc's rotation tells the speed"
+        )
+        lines.append('# source = "rotation"\n# radius = "? mm"')
+    return "\n".join(lines) + "\n"
+
+
+def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:
+    """Return columns that nothing is known of; the empty ones among them in one line."""
+    filled = np.isfinite(numbers).any(axis=0)
+    empty = [
+        str(c.place) for c in columns if not c.label and not filled[c.place - 1] and not c.note
+    ]
+    others = [column for column in columns if str(column.place) not in empty]
+    parts = []
+    if others:
+        parts.append(
+            "# Not used. To use a column remove the '#' before it and put in what is '?'.\n"
+        )
+    parts += [_column(column, numbers[:, column.place - 1]) for column in others]
+    if empty:
+        parts.append(f"# Empty: column {', '.join(empty)}\n")
+    return "\n".join(parts)
+
+
+def _column(column: DraftColumn, values: np.ndarray) -> str:
+    """Return one column; what is not used stands there as a comment, ready to be filled in."""
+    lines = ["[[column]]"]
+    lines.append(f'quantity = "{column.quantity or "?"}"')
+    if column.name is None:
+        lines.append(f"position = {column.place}")
+    else:
+        lines.append(f"name = {_text(column.name)}")
+        if column.occurrence > 1:
+            lines.append(f"occurrence = {column.occurrence}")
+    if column.unit is not None:
+        lines.append(f"unit = {_text(column.unit)}")
+    elif column.file_unit is None and not column.used and not _has_no_unit(column):
+        lines.append('unit = "?"')
+    if column.sign < 0:
+        lines.append("sign = -1")
+    if column.optional:
+        lines.append("optional = true")
+    about = [f"# guessed: {_comment(guess)}" for guess in column.guessed]
+    if column.used:
+        if column.note:
+            about.append(f"# {_comment(column.note)}")
+        return "\n".join([*about, *lines]) + "\n"
+    label = f"column {column.place}" + (f" '{_comment(column.label)}'" if column.label else "")
+    if column.fill_in:
+        about.insert(0, f"# {FILL_IN}: {_comment(column.fill_in)}, then remove the '#' below")
+    else:
+        about = [f"# {label}: {_range(values)}; {_comment(column.note or 'not used')}"]
+    return "\n".join([*about, *(f"# {line}" for line in lines)]) + "\n"
+
+
+def _values(values: list[DraftValue]) -> str:
+    """Return proposals for single values, as comments."""
+    if not values:
+        return ""
+    parts = ["# Single values that the file states. To keep one, remove the '#' before it.\n"]
+    for value in values:
+        lines = ["[[value]]", f"name = {_text(value.name)}"]
+        if value.source != "preamble":
+            lines.append(f"source = {_text(value.source)}")
+        lines.append(f"pattern = {_pattern(value.pattern)}")
+        if value.unit is not None:
+            lines.append(f"unit = {_text(value.unit)}")
+        if value.to is not None:
+            lines.append(f"to = {_text(value.to)}")
+        parts.append("\n".join([f"# {_comment(value.text)}", *(f"# {x}" for x in lines)]) + "\n")
+    return "\n".join(parts)
+
+
+def _has_no_unit(column: DraftColumn) -> bool:
+    return column.quantity is not None and quantity(column.quantity).unit == "1"
+
+
+def _range(values: np.ndarray) -> str:
+    finite = values[np.isfinite(values)]
+    ends = (
+        dict.fromkeys(f"{end:.6g}" for end in (finite.min(), finite.max())) if finite.size else {}
+    )
+    return " to ".join(ends) or "no number"
+
+
+def _comment(text: str) -> str:
+    """Text as it may stand in a comment, on one line."""
+    return re.sub(r"[\x00-\x1f\x7f\u0085\u2028\u2029]+", " ", text)
+
+
+def _text(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _pattern(text: str) -> str:
+    plain = "'" not in text and text.isprintable()
+    return f"'{text}'" if plain else _text(text)

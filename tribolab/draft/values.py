@@ -1,0 +1,88 @@
+"""Single values beside the table: what the preamble and the file's name say, as proposals."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tribolab.draft.header import DIMENSIONS, converts, escaped, is_unit
+from tribolab.draft.layout import Layout
+from tribolab.draft.words import matches, squeezed
+
+_MOST = 12  # a long preamble is not repeated in the dialect
+# "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
+_SAYS = re.compile(
+    r"(?P<before>\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*)(?P<number>[-+]?\d[\d.,]*(?:e[-+]?\d+)?)"
+    r"\s*(?P<unit>[^\s\d;,][^\s;,]*)?\s*[;,\t]*\s*(?:\(.*\))?$",
+    re.IGNORECASE,
+)
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
+_IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
+_SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
+
+
+class DraftValue(NamedTuple):
+    """One value as a dialect's [[value]] would say it."""
+
+    name: str
+    pattern: str
+    unit: str | None
+    to: str | None
+    text: str
+    source: str = "preamble"
+
+
+def find_values(layout: Layout) -> list[DraftValue]:
+    """Find the single values that a file and its name state.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.layout.examine`.
+
+    Returns
+    -------
+    list of DraftValue
+        A dozen at most; none from a file without a header, of which no preamble is known.
+    """
+    found: dict[str, DraftValue] = {}
+    in_name = _IN_NAME.search(layout.file.path.stem)
+    if in_name:
+        pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
+        if re.search(pattern, layout.file.path.name):
+            name = layout.file.path.name
+            value = DraftValue(
+                "set_normal_force", pattern, in_name["unit"], None, name, "file name"
+            )
+            found[value.name] = value
+    stop = layout.heading.names if layout.heading else 0
+    for line in layout.lines[:stop]:
+        said = _SAYS.match(line.rstrip())
+        # a digit before the colon: a time of day
+        if said and not said["key"][-1].isdigit() and len(found) < _MOST:
+            value = _value(said)
+            found.setdefault(value.name, value)
+    return list(found.values())
+
+
+def _value(said: re.Match[str]) -> DraftValue:
+    key, unit = said["key"], (said["unit"] or "").strip("[]()") or None
+    bracket = _BRACKETS.search(key)
+    if unit is None and bracket and is_unit(bracket[1]):
+        unit, key = bracket[1], key[: bracket.start()]
+    pattern = r"^\s*" + escaped(said["before"].strip()) + r"\s*([-+\d.,eE]+)"
+    line = said.string.strip()
+    dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
+    if unit is None or dimension is None:
+        return DraftValue(_name(key), pattern, None, None, line)
+    options = matches(key, unit)
+    if options and options[0].score > 0.5:
+        quantity = _SET.get(options[0].quantity, options[0].quantity)
+        if quantity.startswith("set_"):
+            return DraftValue(quantity, pattern, options[0].unit or unit, None, line)
+    return DraftValue(_name(key), pattern, unit, dimension, line)
+
+
+def _name(key: str) -> str:
+    words = [squeezed(word) for word in re.split(r"\W+|_", key)]
+    return "_".join(word for word in words if word) or "value"

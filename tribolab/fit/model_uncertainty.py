@@ -1,0 +1,288 @@
+"""How far a computed Stribeck curve can be trusted: what is not known, varied one at a time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from threadpoolctl import threadpool_limits
+
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.persson import rough_band
+from tribolab.errors import AnalysisError
+from tribolab.fit.variations import Base, Skipped, Variation, held_fixed, variations
+from tribolab.lubrication.factors import RoughBody
+from tribolab.lubrication.stribeck import CELLS, stribeck_curve
+from tribolab.quantities import labelled, stamp
+from tribolab.units import positive, to_si
+
+_SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
+_CELLS = 200  # a change needs no finer mesh than this: its error is in both curves
+_NORMAL = 1.959963984540054
+_PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
+
+
+def model_uncertainty(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    *,
+    viscosity: str | float,
+    load: str | float,
+    shear_stress: str | float,
+    speed: str | ArrayLike | None = None,
+    rough_body: RoughBody = "stationary",
+    shear_stress_error: str | float | None = None,
+    friction_factors: bool = True,
+    gamma: float = 0.45,
+    measured_to: str | float | None = None,
+    refit: bool = False,
+    viscosity_range: tuple[str | float, str | float] | None = None,
+    youngs_modulus_range: tuple[str | float, str | float] | None = None,
+    inlet_length: str | float = np.inf,
+    cells: int = CELLS,
+) -> xr.Dataset:
+    """Band on a computed Stribeck curve from what is not known, and what moves it most.
+
+    Parameters
+    ----------
+    contact, psd, viscosity, load, shear_stress, rough_body, friction_factors, gamma
+        As for `stribeck_curve`, with one load. Of the spectrum ``psd_2d_low``, ``psd_2d_high`` and
+        ``origin`` are used where it has them.
+    speed
+        Sliding speeds [m/s] (sliding_speed), above zero; by default 17 from 1 nm/s to 0.1 m/s.
+    shear_stress_error
+        Standard error [Pa] of sigma_f; None leaves it out.
+    measured_to
+        Wavenumber [1/m] above which the spectrum is a guess, where ``origin`` does not say.
+    refit
+        Give each varied curve the sigma_f that fits the given curve best. So is the band what is
+        left to a model whose sigma_f is fitted to a measured curve anyway.
+    viscosity_range, youngs_modulus_range
+        Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
+        leaves them out.
+    inlet_length, cells
+        As for `stribeck_curve`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``friction_coefficient`` with ``_low`` and ``_high`` over ``sliding_speed``. Over
+        ``variation`` (its name): ``variation_low``, ``variation_high`` (text: the ends of the
+        range; empty where it has one end), ``variation_reason``; ``largest_change`` [1], the
+        largest change of mu over the height of the curve, at ``largest_change_speed`` [m/s];
+        ``largest_relative_change`` [1] of mu at one speed, at ``largest_relative_change_speed``;
+        ``shear_stress_change_low``, ``shear_stress_change_high`` [1], relative change of the
+        sigma_f that each end needs to fit the given curve. The curves themselves are
+        ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN where there is
+        no such end. The attribute ``not_varied`` names what was left out, and all that no variation
+        reaches, with the reason.
+
+    Raises
+    ------
+    UnitError, AnalysisError
+        As for `stribeck_curve`, also if a varied model cannot be solved.
+
+    Notes
+    -----
+    Each range is what a careful reader would not be surprised by, roughly 95 %; that of percolation
+    is wider than numerics of isotropic surfaces [2]_ leave it. Deviations of
+    ln mu are combined in quadrature, those that raise mu at a speed for the upper edge and those
+    that lower it for the lower one: the unknowns are independent of each other, so their sum
+    would overstate the band; many are one-sided or bend the curve differently at both ends, so
+    that a symmetric band would hide the sign; and mu spans decades and stays positive, so that
+    ratios are combined. Of a variation whose two ends both raise mu the larger counts. The
+    reference for the changes is computed on the same coarser mesh, 200 cells, as the variations.
+
+    The refitted sigma_f is that of least squares with equal weights, as in `fit_shear_stress`.
+
+    References
+    ----------
+    .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
+       Stribeck curve in hydrophobic soft contacts" (2026).
+    .. [2] A. Wang, M. H. Müser, "Percolation and Reynolds flow in elastic contacts of isotropic and
+       anisotropic, randomly rough surfaces", Tribol. Lett. 69, 1 (2021).
+       doi:10.1007/s11249-020-01378-7
+
+    Examples
+    --------
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
+    >>> spread = model_uncertainty(contact, None, speed=[1e-3, 1e-1], **given)
+    >>> spread.largest_change.to_series().round(2).to_dict()  # of smooth surfaces
+    {'inlet length': 0.05}
+    """
+    known_to = None if measured_to is None else positive(measured_to, "1/m", "measured_to")
+    error = None if shear_stress_error is None else _error_of_stress(shear_stress_error)
+    if psd is not None:  # where nothing is rough there is nothing to vary
+        rough = rough_band(psd)[0]
+        psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
+    eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, "N/m", "load")
+    begins = to_si(inlet_length, "m", name="inlet_length")
+    base = Base(
+        psd=psd,
+        rough_body=rough_body,
+        friction_factors=friction_factors,
+        gamma=gamma,
+        measured_to=known_to,
+        contact=contact,
+        load=force,
+        viscosity=eta,
+        viscosity_range=_range(viscosity_range, eta, "Pa s", "viscosity"),
+        youngs_modulus_range=_range(
+            youngs_modulus_range, contact.youngs_modulus, "Pa", "youngs_modulus"
+        ),
+        inlet_length=begins,
+    )
+    stress = to_si(shear_stress, "Pa", name="shear_stress")
+    given = {
+        "viscosity": eta,
+        "load": force,
+        "shear_stress": stress,
+        "speed": np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed")),
+    }
+    if np.any(given["speed"] <= 0):
+        raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
+    plain = {
+        "rough_body": rough_body,
+        "friction_factors": friction_factors,
+        "gamma": gamma,
+        "inlet_length": begins,
+    }
+    coarse = {**given, **plain, "cells": min(cells, _CELLS)}
+    with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
+        curve = stribeck_curve(contact, psd, **given, **plain, cells=cells)
+        reference = stribeck_curve(contact, psd, **coarse) if cells > _CELLS else curve
+        found = variations(base)
+        varied = [one for one in found if isinstance(one, Variation)]
+        mu, fitted = _all_ends(contact, psd, coarse, varied, reference, refit)
+    left = [one for one in found if isinstance(one, Skipped)]
+    height = reference["friction_coefficient"].values
+    if error is None:
+        left.append(Skipped("shear stress", "no shear_stress_error was given"))
+    elif not refit:
+        one, ends = _of_stress(error, reference)
+        varied.append(one)
+        mu = np.concatenate([mu, ends[None]])
+        fitted = np.concatenate([fitted, np.zeros((1, 2))])
+    log_ratio = np.log(mu / height)
+    top = curve["friction_coefficient"].values
+    raised, lowered = (_quadrature(sign * log_ratio) for sign in (1, -1))
+    data = xr.Dataset(
+        {
+            "friction_coefficient": ("sliding_speed", top),
+            "friction_coefficient_low": ("sliding_speed", top * np.exp(-lowered)),
+            "friction_coefficient_high": ("sliding_speed", top * np.exp(raised)),
+            "friction_coefficient_varied": (
+                ("variation", "range_end", "sliding_speed"),
+                top * np.exp(log_ratio),
+            ),
+            **_table(varied, mu, height, given["speed"]),
+            "shear_stress_change_low": ("variation", fitted[:, 0]),
+            "shear_stress_change_high": ("variation", fitted[:, 1]),
+        },
+        {
+            "sliding_speed": given["speed"],
+            "variation": np.array([one.name for one in varied], dtype=str),
+            "range_end": ["low", "high"],
+        },
+    )
+    return stamp(
+        data.assign_attrs(curve.attrs),
+        load_N_m=given["load"],
+        not_varied="; ".join(f"{one.name}: {one.reason}" for one in left + held_fixed(base)),
+        shear_stress_refitted="yes" if refit else "no",
+        combined="deviations of ln mu in quadrature, upwards and downwards apart",
+    )
+
+
+def _all_ends(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    coarse: dict[str, Any],
+    varied: list[Variation],
+    reference: xr.Dataset,
+    refit: bool,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Friction (variation, end, speed) and relative change of the refitted sigma_f; NaN if none."""
+    stress, aim = coarse["shear_stress"], reference["friction_coefficient"].values
+    mu = np.full((len(varied), 2, aim.size), np.nan)
+    fitted = np.full((len(varied), 2), np.nan)
+    for i, one in enumerate(varied):
+        for j, end in enumerate(one.ends):
+            if end is None:
+                continue
+            try:
+                changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
+            except AnalysisError as error:
+                raise AnalysisError(error, where=f"varied {one.name} ({one.texts[j]})") from error
+            fluid = sum(changed[part].values for part in _PARTS)
+            area = changed["friction_per_shear_stress"].values
+            solid = float(area @ area)
+            best = float(area @ (aim - fluid)) / solid if solid > 0 else np.nan
+            fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
+            mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
+    return mu, fitted
+
+
+def _range(
+    given: tuple[str | float, str | float] | None, value: float, unit: str, name: str
+) -> tuple[float, float] | None:
+    """Return the ends of a range in SI, about the value that it is for."""
+    if given is None:
+        return None
+    low, high = (positive(end, unit, f"{name}_range") for end in given)
+    if not low <= value <= high:
+        raise AnalysisError(
+            f"{name}_range: {low:g} to {high:g} {unit} must go from below to above {value:g} {unit}"
+        )
+    return low, high
+
+
+def _error_of_stress(given: str | float) -> float:
+    error = to_si(given, "Pa", name="shear_stress_error")
+    if not 0 <= error < np.inf:
+        raise AnalysisError(
+            f"finite, not negative is wanted; got {error:g} Pa", function="shear_stress_error"
+        )
+    return error
+
+
+def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
+    """Return the fitted stress's own error as a variation, and mu at its ends, without solving."""
+    stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
+    ends = np.array([max(stress - _NORMAL * error, 0.0), stress + _NORMAL * error])
+    texts = tuple(f"{end / 1e6:.3g} MPa" for end in ends)
+    reason = "1.96 standard errors of the fit"
+    area = reference["friction_per_shear_stress"].values
+    changed = mu + (ends - stress)[:, None] * area
+    return Variation("shear stress", reason, texts, ({}, {})), changed
+
+
+def _quadrature(deviation: np.ndarray) -> np.ndarray:
+    """Root of the sum of squares of the positive deviations, the larger end of each variation."""
+    if deviation.shape[0] == 0:
+        return np.zeros(deviation.shape[-1])
+    larger = np.nanmax(deviation, axis=1).clip(0)
+    return np.sqrt(np.sum(larger**2, axis=0))
+
+
+def _table(
+    varied: list[Variation], mu: np.ndarray, height: np.ndarray, speed: np.ndarray
+) -> dict[str, tuple[str, Any]]:
+    """Return ends, reasons and largest changes of each variation."""
+    words = {
+        "variation_low": [one.texts[0] for one in varied],
+        "variation_high": [one.texts[1] for one in varied],
+        "variation_reason": [one.reason for one in varied],
+    }
+    table: dict[str, tuple[str, Any]] = {
+        name: ("variation", np.array(texts, dtype=str))  # text also where nothing is varied
+        for name, texts in words.items()
+    }
+    for name, over in (("largest_change", height.max()), ("largest_relative_change", height)):
+        change = np.nanmax(np.abs(mu - height) / over, axis=1)
+        table[name] = ("variation", change.max(axis=1))
+        table[f"{name}_speed"] = ("variation", speed[change.argmax(axis=1)])
+    return table

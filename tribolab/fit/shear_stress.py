@@ -1,0 +1,340 @@
+"""The shear stress in the real contact, from a measured Stribeck curve and the computed one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+from scipy.optimize import least_squares
+from scipy.special import comb
+
+from tribolab.contact.geometry import LineContact
+from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.fit.residual_error import residual_error
+from tribolab.fit.shear_stress_fit import ShearStressFit
+from tribolab.friction.stribeck import measured_stribeck_curve
+from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
+from tribolab.quantities import stamp
+from tribolab.units import positive, to_si
+
+FREE = ("viscosity", "youngs_modulus")
+_LIKELY = 0.01  # probability of chi-square above which a range of speeds counts as described
+_FEWEST = 4  # speeds in such a range
+_ATOM = 1e-19  # m2, contact area under which the bodies do not touch
+_STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
+
+
+def fit_shear_stress(
+    measured: xr.Dataset,
+    contact: LineContact,
+    psd: xr.Dataset,
+    viscosity: str | float,
+    load: str | float,
+    speed_range: tuple[str | float, str | float] | None = None,
+    area_enhancement: float = 1.0,
+    area_enhancement_error: float = 0.0,
+    free: Sequence[str] = (),
+    common_error: float = 0.0,
+    common_freedom: float = np.inf,
+    spectrum_error: tuple[float, float] | None = None,
+    curve: xr.Dataset | None = None,
+    **model: Any,
+) -> ShearStressFit:
+    """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
+
+    Parameters
+    ----------
+    measured
+        ``friction_coefficient`` (sliding_speed) with ``_sem`` or, failing that, ``_std``. Points
+        that are not finite are left out, as is speed 0. The segments of one run, as
+        `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first.
+    contact, psd, viscosity, load
+        As for `stribeck_curve`, with one load.
+    speed_range
+        Lowest and highest speed [m/s] to fit; None for all.
+    area_enhancement, area_enhancement_error
+        Real contact area with adhesion over that without [1], and its standard error.
+    free
+        More parameters to fit: ``"viscosity"``, ``"youngs_modulus"``; their given values start.
+    common_error, common_freedom
+        Relative standard error [1] that all measured points share, such as the repeatability of
+        a run's level over the square root of the number of runs, and the degrees of freedom
+        behind it.
+    spectrum_error
+        Relative changes [1] of sigma_f, down and up, that an uncertain spectrum may make, from
+        `shear_stress_shift`. A spectrum with ``psd_2d_low`` was measured: without this argument
+        there is no interval but a statistical one.
+    curve
+        The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
+        speeds (and others), with ``"0 Pa"``.
+    **model
+        Further arguments of `stribeck_curve`, such as ``rough_body``.
+
+    Returns
+    -------
+    ShearStressFit
+
+    Raises
+    ------
+    AnalysisError
+        If there are too few points, an error bar is negative, or the surfaces do not touch.
+
+    Notes
+    -----
+    Since ``mu = mu_fluid + sigma_f a`` with a = int (A/A0) dx/(F_N/L), sigma_f is a weighted linear
+    regression: ``sum w a (mu - mu_fluid) / sum w a^2``, ``error = 1/sqrt(sum w a^2)`` with w the
+    points' 1/error^2. A point whose error is unknown or 0 gets the median of the others; if none
+    is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
+    An error that all points share cannot be averaged away. It does not move the estimate; it moves
+    sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
+    The errors of neighbouring speeds may go together, since a run's level wanders: how much is
+    told by the residuals, and the error bar grows with it (`residual_error`).
+    The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the ratio is
+    Birge's [2]_.
+
+    References
+    ----------
+    .. [1] A. Wald, J. Wolfowitz, Ann. Math. Stat. 11, 147 (1940). doi:10.1214/aoms/1177731909
+    .. [2] R. T. Birge, Phys. Rev. 40, 207 (1932). doi:10.1103/PhysRev.40.207
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> q, c = np.array([423.0, 9e4, 3e9]), [1.63e-22, 1.63e-22, 4e-42]
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> speed = np.geomspace(1e-6, 1e-2, 5)
+    >>> curve = stribeck_curve(contact, psd, 1.4, 310.0, "0.84 MPa", speed)
+    >>> measured = curve[["friction_coefficient"]]
+    >>> measured["friction_coefficient_sem"] = 0.01 + 0 * measured.friction_coefficient
+    >>> fit = fit_shear_stress(measured, contact, psd, "1.4 Pa s", "310 N/m")
+    >>> f"{fit.shear_stress / 1e6:.3f} MPa"
+    '0.840 MPa'
+    """
+    unknown = [name for name in free if name not in FREE]
+    if unknown:
+        raise AnalysisError(
+            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], FREE)}"
+        )
+    eta = positive(viscosity, "Pa s", "viscosity")
+    force = positive(load, "N/m", "load")
+    enhancement = positive(area_enhancement, "1", "area_enhancement")
+    if not 0 <= area_enhancement_error < np.inf:
+        raise AnalysisError(
+            f"a standard error, finite and not negative, is wanted; got {area_enhancement_error:g}",
+            function="area_enhancement_error",
+        )
+    speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
+
+    def computed(extra: np.ndarray) -> xr.Dataset:
+        if curve is not None and not free:
+            return curve.sel(sliding_speed=speed)
+        given = dict(zip(free, np.exp(extra), strict=True))
+        body = replace(contact, youngs_modulus=given.get("youngs_modulus", contact.youngs_modulus))
+        stress = "0 Pa"
+        return stribeck_curve(body, psd, given.get("viscosity", eta), force, stress, speed, **model)
+
+    start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
+    found, best = computed(start), start
+    least = _ATOM / (force * contact.length)
+    if not np.any(_parts(found)[1][used] > least):
+        raise AnalysisError(
+            "at none of these speeds do the bodies touch; take lower speeds",
+            function="fit_shear_stress",
+        )
+    if free:
+        best = _profiled(computed, start, mu[used], error[used], used)
+        found = computed(best)
+    fluid, area = _parts(found)
+    area = np.where(area > least, area, 0.0)
+    stress = _regression(mu[used], fluid[used], area[used], error[used])
+    residual = mu - fluid - stress * area
+    freedom = int(used.sum()) - 1 - len(free)
+    if source == "scatter":
+        error = np.full_like(error, np.sqrt(np.sum(residual[used] ** 2) / freedom))
+    chi_square = float(np.sum((residual[used] / error[used]) ** 2))
+    birge = float(np.sqrt(chi_square / freedom))
+    jacobian = _jacobian(computed, best, stress, area, used) / error[used, None]
+    covariance = _covariance(jacobian, np.exp(best))
+    level = ((fluid + stress * area) / error)[used]
+    shared = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
+    spread = float(np.sqrt(covariance[0, 0]))
+    scatter = residual_error(
+        residual[used],
+        jacobian * error[used, None],
+        error[used],
+        np.log(speed[used]),
+        known=source != "scatter",
+    )
+    found = with_shear_stress(found, stress).assign(
+        friction_coefficient_residual=("sliding_speed", residual),
+        used=("sliding_speed", used.astype(int)),
+    )
+    return ShearStressFit(
+        shear_stress=stress,
+        shear_stress_error=spread,
+        shear_stress_error_inflated=max(spread, scatter.error),
+        scatter_half_interval=scatter.half_interval,
+        residual_correlation=scatter.correlation,
+        chi_square=chi_square,
+        degrees_of_freedom=freedom,
+        chi_square_p_value=float(stats.chi2.sf(chi_square, freedom)),
+        birge_ratio=birge,
+        runs_p_value=runs_p_value(residual[used]),
+        common_error=shared,
+        common_freedom=float(common_freedom),
+        valid_speed_range=_valid_range(speed, mu, fluid, area, error, used),
+        area_enhancement=enhancement,
+        area_enhancement_error=float(area_enhancement_error),
+        error_from=source,
+        spectrum_error=spectrum_error,
+        spectrum_scanned="psd_2d_low" in (psd if psd is not None else ()),
+        curve=stamp(found),
+        parameters={"shear_stress": stress, **dict(zip(free, np.exp(best).tolist(), strict=True))},
+        covariance=covariance,
+    )
+
+
+def shear_stress_ratio(one: ShearStressFit, other: ShearStressFit) -> tuple[float, float]:
+    """Ratio of two corrected shear stresses [1] and its standard error, the fits independent."""
+    ratio = one.corrected_shear_stress / other.corrected_shear_stress
+    parts = (f.corrected_shear_stress_error / f.corrected_shear_stress for f in (one, other))
+    return ratio, float(abs(ratio) * np.hypot(*parts))
+
+
+def runs_p_value(residual: np.ndarray) -> float:
+    """Probability of so few runs of one sign or fewer, if the signs were in random order.
+
+    Examples
+    --------
+    >>> runs_p_value(np.array([1.0, 2, 1, 3, -1, -2, -1, -3]))  # 2 of the 70 orders
+    0.02857142857142857
+    """
+    sign = residual[residual != 0] > 0
+    plus, minus = int(sign.sum()), int((~sign).sum())
+    if plus == 0 or minus == 0:
+        return 1.0  # one sign throughout says nothing of their order
+    found = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
+    ways = 0.0
+    for runs in range(2, found + 1):
+        half = runs // 2
+        if runs % 2 == 0:
+            ways += 2 * comb(plus - 1, half - 1) * comb(minus - 1, half - 1)
+        else:
+            ways += comb(plus - 1, half) * comb(minus - 1, half - 1)
+            ways += comb(plus - 1, half - 1) * comb(minus - 1, half)
+    return float(ways / comb(plus + minus, plus))
+
+
+def _points(
+    measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
+    """Speeds, friction, errors, which to use, and where the errors come from."""
+    mu = measured.get("friction_coefficient")
+    if mu is not None and mu.dims == ("segment",):
+        measured = measured_stribeck_curve([measured])
+    elif mu is None or mu.dims != ("sliding_speed",):
+        over = (
+            "is not in it" if mu is None else f"is over {', '.join(map(repr, mu.dims)) or 'none'}"
+        )
+        raise AnalysisError(
+            f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
+            cure=Cure(
+                notebook="tl.measured_stribeck_curve makes such a curve from the results of "
+                "friction_coefficient"
+            ),
+        )
+    measured = measured.sortby("sliding_speed")
+    speed = measured["sliding_speed"].values.astype(float)
+    mu = measured["friction_coefficient"].values.astype(float)
+    if speed_range is None:
+        low, high = 0.0, np.inf
+    else:
+        low, high = (to_si(end, "m/s", name="speed_range") for end in speed_range)
+    used = np.isfinite(mu) & (speed > 0) & (speed >= low) & (speed <= high)
+    if used.sum() < least:
+        raise AnalysisError(
+            f"measured: {used.sum()} points from {low:g} to {high:g} m/s; at least {least} are "
+            "wanted to fit and still see a misfit"
+        )
+    keep = speed > 0
+    for source in ("sem", "std"):
+        name = f"friction_coefficient_{source}"
+        if name not in measured:
+            continue
+        error = measured[name].values.astype(float)
+        if np.any(error < 0):
+            raise AnalysisError(
+                f"measured: '{shown(name)}' is negative at {speed[error < 0][0]:g} m/s"
+            )
+        known = np.isfinite(error) & (error > 0)
+        if np.any(known & used):
+            error = np.where(known, error, np.median(error[known & used]))
+            return speed[keep], mu[keep], error[keep], used[keep], source
+    return speed[keep], mu[keep], np.ones(keep.sum()), used[keep], "scatter"
+
+
+def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Friction of the fluid, and what sigma_f is multiplied with."""
+    return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
+
+
+def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, error: np.ndarray) -> float:
+    weighted = area / error**2
+    return float(weighted @ (mu - fluid) / (weighted @ area))
+
+
+def _profiled(computed, start: np.ndarray, mu, error, used) -> np.ndarray:
+    """Logarithms of the free parameters at the least squares; sigma_f follows from each."""
+
+    def residual(extra: np.ndarray) -> np.ndarray:
+        fluid, area = (part[used] for part in _parts(computed(extra)))
+        return (mu - fluid - _regression(mu, fluid, area, error) * area) / error
+
+    found = least_squares(residual, start, diff_step=_STEP, x_scale=1.0, xtol=1e-6, ftol=1e-8)
+    if not found.success:
+        raise AnalysisError(
+            f"no least squares ({found.message}); free fewer", function="fit_shear_stress"
+        )
+    return found.x
+
+
+def _jacobian(computed, best: np.ndarray, stress: float, area, used) -> np.ndarray:
+    """Return the derivatives of mu over sigma_f and over the logarithms of the free parameters."""
+    columns = [area[used]]
+    for step in _STEP * np.eye(best.size):
+        above, below = (
+            fluid + stress * per_stress
+            for fluid, per_stress in (_parts(computed(best + s)) for s in (step, -step))
+        )
+        columns.append((above - below)[used] / (2 * _STEP))
+    return np.stack(columns, axis=1)
+
+
+def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
+    """Inverse of the normal matrix in SI; columns are scaled so that it is well conditioned."""
+    size = np.linalg.norm(weighted, axis=0)
+    inverse = np.linalg.pinv(weighted / size)
+    scale = np.append(1.0, extra) / size
+    return inverse @ inverse.T * np.outer(scale, scale)
+
+
+def _valid_range(speed, mu, fluid, area, error, used) -> tuple[float, float]:
+    """Find the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
+    speed, mu, fluid, area, error = (a[used] for a in (speed, mu, fluid, area, error))
+    best, widest = (np.nan, np.nan), 0.0
+    for first in range(speed.size):
+        for stop in range(first + _FEWEST, speed.size + 1):
+            part = slice(first, stop)
+            width = np.log(speed[stop - 1] / speed[first])
+            if width <= widest or not np.any(area[part] > 0):
+                continue
+            stress = _regression(mu[part], fluid[part], area[part], error[part])
+            miss = (mu[part] - fluid[part] - stress * area[part]) / error[part]
+            if stats.chi2.sf(float(miss @ miss), stop - first - 1) > _LIKELY:
+                best, widest = (float(speed[first]), float(speed[stop - 1])), width
+    return best

@@ -1,0 +1,308 @@
+"""Friction coefficient of each segment, with offsets removed and honest errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.friction.coefficient.statistics import NOTHING, Estimate, describe, student_remark
+from tribolab.friction.coefficient.steadiness import judged
+from tribolab.friction.zero.of_run import Settings, zero_of_run
+from tribolab.friction.zero.parts import Reference
+from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.quantities import stamp
+
+OFFSETS = ("auto", "half loop", "zero load", "none")
+NO_CONTACT = 0.02  # share of the run's load below which there is no contact
+LOST = 0.05  # share of samples without contact that spoils a segment
+
+
+def friction_coefficient(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    offset: str = "auto",
+    *,
+    pair_tolerance: float = 0.25,
+    zero_uncertainty: str | float | None = None,
+    rectified: bool | None = None,
+    other_zeros: Sequence[float] = (),
+) -> xr.Dataset:
+    """Friction coefficient of each segment: the mean of the pointwise ratio F_x / F_N.
+
+    Parameters
+    ----------
+    run
+        The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
+        ``friction_force`` alone (then only forces come out).
+    segments
+        From `find_segments` on the same run.
+    offset
+        ``"half loop"``: the middle of the loop of two neighbouring strokes of opposite direction,
+        its drift from loop to loop taken out. ``"zero load"``: the reading of rests without load,
+        interpolated in time. ``"none"``. ``"auto"``: half loop where strokes pair, unless rests
+        without load contradict it; else zero load where the run has such a rest; else what is
+        stated or known from other runs; else none. The zero of the normal force is always
+        taken from rests without load if there are any, except with ``"none"``.
+    pair_tolerance
+        Largest relative difference of speed between the two strokes of a pair, up to which
+        friction is known to be alike. Where the zero would rest on nothing else, strokes whose
+        speeds differ by up to their mean pair as well, and the result is in doubt.
+    zero_uncertainty
+        Standard uncertainty of the friction signal's zero, where no stroke or rest tells it
+        ("0.2 N", or a number in SI); else the attribute ``friction_force_zero_uncertainty_N``.
+    rectified
+        Whether the friction signal was recorded without its sign; else the run's attribute
+        ``friction_force_rectified``, else the signal at the reversals tells.
+    other_zeros
+        Zeros of other runs on the same instrument, in the unit of the friction signal.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `segments` and, on dim ``segment``: ``friction_coefficient`` (signed by
+        direction, so that ordinary friction is positive), ``_std`` (sample standard deviation of
+        the pointwise ratio, the error bar of [1]_), ``_sem``, ``effective_samples``,
+        ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
+        ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``, ``normal_force`` [N] (+
+        ``_std``, ``_sem``), ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``,
+        ``half_loop`` [N], ``zero_from`` (text: what the zero rests on) and ``remark`` (text: why a
+        value is missing or special). Attributes ``offset`` and ``zero_doubts``: what is not sure
+        of the zero.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has no friction, the segments are another run's, or the offset asked for cannot
+        be had.
+
+    Notes
+    -----
+    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the mean forces of a pair and N_f, N_b
+    its mean normal forces, (F_f N_b + F_b N_f)/(N_f + N_b) is the zero Z between the strokes (the
+    half sum where the load is the same or unknown), and its drift to both strokes is that
+    from loop to loop (`tribolab.friction.zero.middles`). Both strokes then have the same
+    coefficient, and they are one observation, not two. Each keeps the standard deviation and the
+    trend of its own stroke. Their error holds the errors of all strokes that it rests on, how the
+    zero moves from loop to loop beyond those and a common drift, and, for strokes of unequal
+    speed, what friction may change between the speeds (`tribolab.friction.zero.unequal`).
+    With another zero the error is sqrt(sem^2 + (sem(Z)/F_N)^2). The zero of the normal force adds
+    mu sem(F_N0)/F_N. A signal without sign has the direction of sliding put back as its sign.
+
+    References
+    ----------
+    .. [1] Xu et al. (2026), Appendix C.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from tribolab.friction.segments.find import find_segments
+    >>> v = np.repeat([0.0, 1e-3, 0.0, -1e-3, 0.0], 100)
+    >>> run = xr.Dataset(
+    ...     {
+    ...         "sliding_velocity": ("time", v),
+    ...         "friction_force": ("time", 9.0 * np.sign(v) + 1.0),
+    ...         "normal_force": ("time", np.full(500, 30.0)),
+    ...     },
+    ...     {"time": np.arange(500) / 10},
+    ... )
+    >>> found = friction_coefficient(run, find_segments(run))
+    >>> found.friction_coefficient.values.round(6).tolist(), found.attrs["offset"]
+    ([0.3, 0.3], 'half loop')
+    """
+    if offset not in OFFSETS:
+        raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, OFFSETS)}")
+    belong(run, segments)
+    settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
+    if "friction_force" in run:
+        result = _from_forces(run, segments, settings)
+    elif "friction_coefficient" in run:
+        result = _from_ratio(run, segments, settings)
+    else:
+        raise AnalysisError(
+            f"{_name(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
+        )
+    kept = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
+    attrs = {**segments.attrs, **result.attrs}
+    return stamp(judged(kept.merge(result, combine_attrs="drop")), **attrs)
+
+
+def _name(run: xr.Dataset) -> str:
+    return str(run.attrs.get("source", "run"))
+
+
+def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
+    """Refuse segments of another run."""
+    mine, theirs = (d.attrs.get("source_sha256") for d in (run, segments))
+    outside = False
+    if segments.sizes["segment"]:
+        if not run.sizes.get("time"):
+            raise AnalysisError(f"{_name(run)}: the run has no samples")
+        time = run["time"].values
+        slack = 1e-6 * (time[-1] - time[0])
+        outside = bool(
+            (segments["start"].values < time[0] - slack).any()
+            or (segments["stop"].values > time[-1] + slack).any()
+        )
+    if outside or (mine and theirs and mine != theirs):
+        raise AnalysisError(
+            "the segments lie outside this run or come from another file",
+            where=_name(run),
+            cure=Cure(notebook="find them in the same run with find_segments(run)"),
+        )
+
+
+def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
+    """Find the samples of each trimmed segment."""
+    time = run["time"].values
+    first = np.searchsorted(time, segments["trimmed_start"].values, side="left")
+    last = np.searchsorted(time, segments["trimmed_stop"].values, side="right")
+    return [slice(a, max(a, b)) for a, b in zip(first, last, strict=True)]
+
+
+def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.ndarray:
+    """Mean moment of the samples of each segment: that is when a drifting signal has its mean."""
+    ends = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+    means = [
+        time[s].mean() if s.stop > s.start else end for s, end in zip(parts, ends, strict=True)
+    ]
+    return np.array(means, dtype=float)
+
+
+def _column(found: list[Estimate], name: str) -> np.ndarray:
+    return np.array([getattr(one, name) for one in found], dtype=float)
+
+
+def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
+    time, force = run["time"].values, run["friction_force"].values
+    parts = trimmed_slices(run, segments)
+    forces = [describe(time[s], force[s]) for s in parts]
+    means = _column(forces, "mean")
+    loads, load = [], np.nan
+    if "normal_force" in run:
+        normal = run["normal_force"].values
+        loads = [describe(time[s], normal[s]) for s in parts]
+        pressed = _column(loads, "mean")
+        load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
+    rests, normal_rests = unloaded_rests(run, segments, load)
+    n0, n0_error = np.zeros(means.size), np.zeros(means.size)
+    middle = _middles(time, parts, segments)
+    if normal_rests is not None and settings.offset != "none":
+        n0, n0_error = normal_rests.at(middle)
+    pressed = _column(loads, "mean") - n0 if loads else np.ones(means.size)
+    held = np.where(pressed > 0, pressed, 1.0)
+    own_errors = _column(forces, "sem")
+    zero, signs, pair = zero_of_run(
+        run, segments, "friction_force", parts, means, own_errors, held, middle, rests, settings
+    )
+    turn = signs.sign * signs.unfold
+    data = {
+        "friction_force": turn * means - signs.sign * zero.value,
+        "friction_force_std": _column(forces, "std"),
+        "friction_force_sem": zero.error(own_errors),
+        "friction_force_offset": zero.value,
+        "half_loop": zero.half_loop,
+        "pair": pair,
+    }
+    if not loads:
+        empty = [one.samples == 0 for one in forces]
+        few = np.array([student_remark(one.effective_samples) for one in forces], dtype=object)
+        remarks = np.where(empty, "no samples that are numbers", few).astype(object)
+        trend = turn * _column(forces, "trend") - signs.sign * zero.slope
+        data |= _memory(forces) | {"force_trend": trend}
+        return _table(data, remarks, zero)
+
+    ratios, remarks = [], []
+    for i, s in enumerate(parts):
+        drift = zero.slope[i] * (time[s] - middle[i])
+        own = turn[i] * force[s] - signs.sign[i] * (zero.value[i] + drift)
+        ratio, remark = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
+        ratios.append(ratio)
+        remarks.append(remark)
+    mu, scatter = _column(ratios, "mean"), _column(ratios, "sem")
+    # the load's fluctuations move friction and load together and leave the ratio alone: its own
+    # scatter, not the force's, says how well friction is known
+    known = np.isfinite(scatter)
+    errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sem = np.where(known, errors_by_ratio / pressed, np.nan)
+        sem = np.hypot(sem, mu * n0_error / pressed)
+    data |= {
+        "friction_coefficient": mu,
+        "friction_coefficient_std": _column(ratios, "std"),
+        "friction_coefficient_sem": sem,
+        "normal_force": pressed,
+        "normal_force_std": _column(loads, "std"),
+        "normal_force_sem": np.hypot(_column(loads, "sem"), n0_error),
+        "normal_force_offset": n0,
+        **_memory(ratios),
+        "trend": _column(ratios, "trend"),
+        "trend_change": _column(ratios, "trend_change"),
+    }
+    return _table(data, np.array(remarks, dtype=object), zero)
+
+
+def _ratio(
+    time: np.ndarray,
+    force: np.ndarray,
+    normal: np.ndarray,
+    load: Estimate,
+    zero: float,
+    usual: float,
+) -> tuple[Estimate, str]:
+    """Pointwise ratio of one segment, or why there is none."""
+    known = np.isfinite(normal)
+    if load.samples == 0 or normal.size == 0:
+        return NOTHING, "normal force is not a number" if normal.size else "no samples"
+    if not load.mean - zero > max(NO_CONTACT * usual, 0.0):
+        return NOTHING, f"no contact: mean normal force {load.mean - zero:.3g} N"
+    pressed = known & (normal > 0)
+    lost = 1 - np.count_nonzero(pressed) / normal.size
+    if lost > LOST:
+        return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
+    found = describe(time[pressed], force[pressed] / normal[pressed])
+    if found.samples == 0:
+        return found, "friction force is not a number"
+    left = normal.size - int(np.count_nonzero(pressed))
+    said = [f"{left} samples without contact left out"] if left else []
+    return found, "; ".join([*said, *filter(None, [student_remark(found.effective_samples)])])
+
+
+def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Segments of a run whose instrument records only the coefficient."""
+    time, ratio = run["time"].values, run["friction_coefficient"].values
+    parts = trimmed_slices(run, segments)
+    found = [describe(time[s], ratio[s]) for s in parts]
+    means, own = _column(found, "mean"), _column(found, "sem")
+    alike, middle = np.ones(means.size), _middles(time, parts, segments)
+    zero, signs, pair = zero_of_run(
+        run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
+    )
+    turn = signs.sign * signs.unfold
+    data = {
+        "friction_coefficient": turn * means - signs.sign * zero.value,
+        "friction_coefficient_std": _column(found, "std"),
+        "friction_coefficient_sem": zero.error(own),
+        "friction_coefficient_offset": zero.value,
+        "pair": pair,
+        **_memory(found),
+        "trend": turn * _column(found, "trend"),
+        "trend_change": turn * _column(found, "trend_change"),
+    }
+    few = np.array([student_remark(one.effective_samples) for one in found], dtype=object)
+    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", few)
+    return _table(data, remarks.astype(object), zero)
+
+
+def _memory(found: list[Estimate]) -> dict[str, np.ndarray]:
+    names = ("effective_samples", "autocorrelation_time", "trend_p_value")
+    return {name: _column(found, name) for name in names}
+
+
+def _table(data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference) -> xr.Dataset:
+    table = xr.Dataset({name: ("segment", values) for name, values in data.items()})
+    table["zero_from"] = "segment", zero.zero_from
+    table["remark"] = "segment", remarks
+    return table.assign_attrs(offset=zero.method, zero_doubts=list(zero.doubts))

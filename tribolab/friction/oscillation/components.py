@@ -1,0 +1,144 @@
+"""All oscillations of a record that are significant, each with its own frequency."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from tribolab.friction.oscillation.oscillation import CYCLES, gather
+from tribolab.friction.oscillation.survey import Survey
+
+MOST = 6
+_LEAST = 0.03  # of the strongest one's variance
+_HARMONIC = 1.3  # times a saw's harmonic: a line at a multiple that is no stronger is one
+_HIGHEST = 16  # harmonic that is looked at by itself
+_WIDTH = 0.04  # relative, of a line
+_AROUND = (1.15, 1.5)  # factors of frequency within which a line stands out of its surroundings
+_MOSTLY = 0.7  # of the power around them, that lines hold
+_WINDOW = 0.8  # bins, that the window makes of a line
+_RARE = 1e-3  # that noise as strong as the surroundings shows such a line
+
+
+class Component(NamedTuple):
+    """An oscillation of its own: frequency [Hz], error [Hz], swing (signal's unit), chance."""
+
+    frequency: float
+    frequency_error: float
+    swing: float
+    false_alarm: float
+
+
+def components(seen: Survey) -> tuple[Component, ...]:
+    """Find all oscillations that are significant, the strongest first.
+
+    Parameters
+    ----------
+    seen
+        From `tribolab.friction.oscillation.survey.survey`.
+
+    Notes
+    -----
+    The strongest is taken out of the spectrum with its harmonics, whose width grows as the square
+    of their number [1]_, then the next is sought. Harmonics no stronger than a saw's are not
+    listed. A second line has to stand out of its surroundings, too: the spectrum of an irregular
+    wave is ragged, but no line stands out of it.
+
+    References
+    ----------
+    .. [1] Stratonovich (1967), Topics in the Theory of Random Noise, vol. 2.
+    """
+    found: list[Component] = []
+    strongest = 0.0
+    whole, taken = seen, np.zeros(seen.fine.frequency.size, bool)
+    core = taken.copy()
+    for _ in range(4 * MOST):
+        strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
+        if not strong.any() or len(found) == MOST:
+            break
+        top = int(np.argmax(strong))
+        stop = seen.first[top + 1] if top + 1 < seen.first.size else seen.fine.frequency.size
+        at = int(seen.first[top] + np.argmax(seen.fine.power[seen.first[top] : stop]))
+        level = np.interp(seen.fine.frequency, seen.middle, seen.background)
+        frequency, error, powers = gather(seen.fine, level, at)
+        own = float(powers[0])
+        narrow = not found or _stands_out(whole, core, at)
+        spread = _spread(seen, level, frequency)
+        near = np.abs(seen.fine.frequency / frequency - 1) < 0.15
+        near[seen.first[top] : stop] = True
+        if narrow and own > _LEAST * strongest:
+            swing = float(np.sqrt(8 * own))
+            alarm = float(max(seen.chance[top], seen.rise[top]))
+            found.append(Component(frequency, error, swing, alarm))
+            strongest = max(strongest, own)
+            near |= _harmonics(seen, level, frequency, own, spread)
+            core |= _line(whole, at)
+        taken |= near
+        seen = seen.without(taken)
+    found.sort(key=lambda line: -line.swing)
+    return tuple(found if _hold(whole, core, found) else found[:1])
+
+
+def _line(seen: Survey, at: int) -> np.ndarray:
+    """Which bins a narrow line covers (bin)."""
+    f = seen.fine.frequency
+    return np.abs(f - f[at]) <= max(_WIDTH * f[at], 2.01 * seen.fine.width[at])
+
+
+def _hold(seen: Survey, core: np.ndarray, found: list[Component]) -> bool:
+    """Whether narrow lines hold most of the power where they lie."""
+    if len(found) < 2:
+        return True
+    f = seen.fine.frequency
+    level = np.interp(f, seen.middle, seen.background)
+    excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
+    own = [line.frequency for line in found]
+    around = (f > min(own) / _AROUND[1]) & (f < max(own) * _AROUND[1])
+    return bool(excess[core].sum() > _MOSTLY * excess[around].sum())
+
+
+def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
+    """Return the standard deviation of a line's power over frequency [Hz]."""
+    f = seen.fine.frequency
+    near = np.abs(f / frequency - 1) < 0.15
+    weight = np.maximum(seen.fine.power - level, 0)[near]
+    if not weight.sum() > 0:
+        return 0.0
+    variance = (f[near] - frequency) ** 2 @ weight / weight.sum()
+    # what the window alone makes of a line is no width of its own
+    return float(np.sqrt(max(variance - (_WINDOW * seen.fine.width[0]) ** 2, 0.0)))
+
+
+def _harmonics(
+    seen: Survey, level: np.ndarray, frequency: float, own: float, spread: float
+) -> np.ndarray:
+    """Which bins a line's harmonics cover, as far as they are no stronger than a saw's (bin)."""
+    f = seen.fine.frequency
+    width = float(seen.fine.width[0])
+    excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
+    covered = np.zeros(f.size, bool)
+    for k in range(2, min(int(f[-1] / frequency), _HIGHEST) + 2):
+        reach = min(max(3 * k * k * spread, 3 * width, 0.03 * k * frequency), 0.5 * frequency)
+        part = np.abs(f - k * frequency) <= reach
+        if excess[part].sum() <= _HARMONIC * own / k**2:
+            covered |= part
+        if reach >= 0.5 * frequency or k > _HIGHEST:  # the harmonics run into one another
+            beyond = f > (k - 0.5) * frequency
+            if excess[beyond].sum() <= _HARMONIC * own * (1 / (k - 0.5)):
+                return covered | beyond
+    return covered
+
+
+def _stands_out(seen: Survey, core: np.ndarray, at: int) -> bool:
+    """Whether a bin stands so high among those around it that they do not explain it."""
+    f, power = seen.fine.frequency, seen.fine.power
+    beside = ~core & ~_line(seen, at)
+    levels = [np.interp(f[at], seen.middle, seen.background)]
+    for factor in _AROUND:
+        part = beside & (f > f[at] / factor) & (f < f[at] * factor)
+        if part.sum() > 2:
+            levels.append(power[part].mean())
+    half = seen.fine.freedom[at] / 2
+    single = special.gammaincc(half, half * power[at] / max(levels))
+    return bool(single * f.size < _RARE)

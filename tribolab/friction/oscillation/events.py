@@ -1,0 +1,160 @@
+"""Sticks and slips of a record: turning points beyond a hysteresis, whatever the noise between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+SPIKE = 6.0  # a single sample so many noise levels off its neighbours is no slip
+
+
+class Events(NamedTuple):
+    """Whole cycles of a record: from a valley up to a peak (stick), down to the next (slip).
+
+    Parameters
+    ----------
+    start, peak, stop
+        Moments of valley, peak and next valley [s] (event).
+    middle
+        Moment at which half of the drop is done [s] (event): steep, so that noise shifts it less
+        than the peak.
+    rise, drop
+        Heights of the rise and of the drop, in the signal's unit (event).
+    """
+
+    start: np.ndarray
+    peak: np.ndarray
+    stop: np.ndarray
+    middle: np.ndarray
+    rise: np.ndarray
+    drop: np.ndarray
+
+
+def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
+    """Put the middle of its neighbours in the place of each single sample that stands off.
+
+    Parameters
+    ----------
+    values
+        (time)
+    noise
+        Of a sample, from `tribolab.friction.oscillation.noise.noise_level`.
+
+    Returns
+    -------
+    tuple
+        The values, and how many were spikes.
+    """
+    if values.size < 5:
+        return values, 0
+    left, here, right = values[:-2], values[1:-1], values[2:]
+    middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
+    # beside it the signal has to go on as if nothing had been: a drop is no spike
+    apart = np.abs(here - middle)
+    single = (apart > SPIKE * noise) & (apart > 2 * np.abs(right - left))
+    if not single.any():
+        return values, 0
+    result = values.copy()
+    result[1:-1][single] = 0.5 * (left + right)[single]
+    return result, int(single.sum())
+
+
+def turning_points(values: np.ndarray, hysteresis: float) -> np.ndarray:
+    """Find the valleys and peaks that are left when swings below a threshold are dropped.
+
+    Parameters
+    ----------
+    values
+        (time)
+    hysteresis
+        Smallest swing that counts.
+
+    Returns
+    -------
+    ndarray
+        Indices of alternating valleys and peaks (turn).
+
+    Notes
+    -----
+    All swings below the threshold that are smaller than both neighbours are taken out at once,
+    until none is left. The smallest swing never decides whether a larger one counts, so that the
+    result does not depend on the order.
+
+    Examples
+    --------
+    >>> turning_points(np.array([0.0, 5.0, 4.0, 6.0, 0.0, 1.0, -1.0]), 3.0).tolist()
+    [0, 3, 6]
+    """
+    step = np.sign(np.diff(values))
+    moved = np.flatnonzero(step)
+    if moved.size == 0:
+        return np.zeros(0, int)
+    turned = np.flatnonzero(step[moved[1:]] != step[moved[:-1]])
+    points = np.concatenate([[moved[0]], moved[turned + 1], [moved[-1] + 1]])
+    while points.size > 2:
+        swing = np.abs(np.diff(values[points]))
+        small = swing < hysteresis
+        if not small.any():
+            break
+        left = np.append(np.inf, swing[:-1])
+        right = np.append(swing[1:], np.inf)
+        take = np.flatnonzero(small & (swing < left) & (swing <= right))
+        gone = np.zeros(points.size, bool)
+        inner = take[(take > 0) & (take < swing.size - 1)]
+        gone[inner] = gone[inner + 1] = True
+        gone[0] |= bool((take == 0).any())
+        gone[-1] |= bool((take == swing.size - 1).any())
+        points = points[~gone]
+    if points.size == 2 and abs(values[points[1]] - values[points[0]]) < hysteresis:
+        return np.zeros(0, int)
+    return points
+
+
+def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Events:
+    """Cycles of stick and slip in a record.
+
+    Parameters
+    ----------
+    time, values
+        [s] and any unit, positive in the sense of friction (time).
+    hysteresis
+        Smallest swing that counts.
+
+    Returns
+    -------
+    Events
+        What begins or ends outside the record is left out.
+
+    Examples
+    --------
+    >>> t = np.arange(0, 4, 0.01)
+    >>> found = find_events(t, t % 1.0, 0.3)
+    >>> found.drop.size, round(float(found.drop.mean()), 2)
+    (2, 0.99)
+    """
+    turns = turning_points(values, hysteresis)
+    if turns.size < 4:
+        return Events(*[np.zeros(0)] * len(Events._fields))
+    # the first and the last turn are where the record was cut
+    turns = turns[1:-1]
+    if values[turns[0]] > values[turns[1]]:
+        turns = turns[1:]
+    turns = turns[: (turns.size - 1) // 2 * 2 + 1]
+    if turns.size < 3:
+        return Events(*[np.zeros(0)] * len(Events._fields))
+    t, v = time[turns], values[turns]
+    middle = _half_way(time, values, turns[1:-1:2], turns[2::2])
+    return Events(t[:-2:2], t[1:-1:2], t[2::2], middle, v[1:-1:2] - v[:-2:2], v[1:-1:2] - v[2::2])
+
+
+def _half_way(
+    time: np.ndarray, values: np.ndarray, peak: np.ndarray, valley: np.ndarray
+) -> np.ndarray:
+    """When each fall is half done: as many samples after the peak as lie above its middle."""
+    count = valley - peak + 1
+    first = np.cumsum(count) - count
+    inside = np.arange(count.sum()) + np.repeat(peak - first, count)
+    middle = np.repeat(0.5 * (values[peak] + values[valley]), count)
+    last = peak + np.add.reduceat((values[inside] > middle).astype(int), first) - 1
+    return 0.5 * (time[last] + time[last + 1])

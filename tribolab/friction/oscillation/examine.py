@@ -1,0 +1,297 @@
+"""One record seen whole: oscillation, events and form at the scale of its own period."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.oscillation.components import Component, components
+from tribolab.friction.oscillation.events import Events, find_events, without_spikes
+from tribolab.friction.oscillation.few_periods import slow_wave
+from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
+from tribolab.friction.oscillation.noise import noise_level, quantisation_step
+from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
+from tribolab.friction.oscillation.periods import ALIKE, Verdict, at_odds, verdict
+from tribolab.friction.oscillation.regularity import KINDS, Regularity, regularity, scatter
+from tribolab.friction.oscillation.spectra import Record, coarse, make_record
+from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
+from tribolab.friction.oscillation.waveform import (
+    Waveform,
+    class_probabilities,
+    describe_waveform,
+    features,
+)
+
+PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
+COARSE = 12  # the same, where noise splits drops
+QUIET = 50.0  # ... until the noise is so many times smaller than the swing
+MOST = 1 << 17  # samples that events are sought in: thousands of periods
+DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
+WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
+WANDERS = 6  # periods in a record, at least, that a wander can be told beside
+PER_DEGREE, DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
+CALMER = 0.8  # of the scatter of the periods, that is left without the wander
+STEPS = 1.5  # quantisation steps
+SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
+_AGAIN = 200  # cycles that tell how much noise adds to them
+_ROUNDS = 2
+
+
+class Limits(NamedTuple):
+    """What an event has to exceed, and what is looked at; see `stick_slip`."""
+
+    hysteresis: float = 0.5
+    noise_levels: float = 4.0
+    fewest_samples: int = 16
+
+
+DEFAULT = Limits()
+
+
+class Examined(NamedTuple):
+    """What a record holds; numbers carry the signal's unit."""
+
+    oscillation: Oscillation
+    events: Events
+    waveform: Waveform
+    regularity: Regularity
+    probability: np.ndarray
+    verdict: Verdict
+    lines: tuple[Component, ...]
+    hysteresis: float
+    sample_noise: float
+    spike_share: float
+    force: bool = False
+
+
+class View(NamedTuple):
+    """An oscillation with its cycles, and the record they were sought in."""
+
+    oscillation: Oscillation
+    record: Record
+    events: Events
+    hysteresis: float
+    regularity: Regularity
+
+
+def examine(
+    time: np.ndarray, values: np.ndarray, limits: Limits = DEFAULT, *, force: bool = False
+) -> Examined | str:
+    """Look at one record; text where there is nothing to see, saying why.
+
+    Parameters
+    ----------
+    time, values
+        [s], friction positive in the sense of resistance (time).
+    limits
+        What counts.
+    force
+        Whether the values are a force [N]; for the record.
+    """
+    record = make_record(time, values)
+    n = record.values.size
+    if n < max(limits.fewest_samples, 4):
+        return f"{n} samples are too few"
+    least = 1e-12 * abs(record.values[0])
+    if np.ptp(record.values[:4096]) <= least and np.ptp(record.values) <= least:
+        return "the signal is constant"
+    noise, spikes = noise_level(record.values[: 1 << 17]), 0
+    if n <= DESPIKED:
+        kept, spikes = without_spikes(record.values, noise)
+        record = record._replace(values=kept)
+    surveyed = survey(record)
+    if surveyed is None:
+        return "too short for a spectrum"
+    view = _settled(record, surveyed, noise, limits)
+    found, part, events = view.oscillation, view.record, view.events
+    lag = max(1, int(round(1 / (found.frequency * 16 * part.spacing))))
+    form = describe_waveform(part.values, lag, events, view.regularity.periods)
+    probability = class_probabilities(features(form, found))
+    if events.drop.size:
+        excess = _excess(record, view, form, probability)
+        events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
+    lines = components(surveyed)
+    slow = slow_wave(record)
+    seen = verdict(probability, found, view.regularity, slow, lines, surveyed.duration)
+    return Examined(
+        found, events, form, view.regularity, probability, seen, lines,
+        view.hysteresis, noise, spikes / n, force,
+    )  # fmt: skip
+
+
+def _settled(record: Record, surveyed: Survey, noise: float, limits: Limits) -> View:
+    """Look at the scale of the strongest line; another view counts where it is regular.
+
+    Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
+    drops repeat at another period, and the spectrum is looked at there. Slow wander may hide or
+    split drops, and so may noise: then they are looked for in means, and beside the wander.
+    """
+    view = _view(record, oscillation(surveyed), noise, limits)
+    if at_odds(view.oscillation, view.regularity):
+        own = 1 / float(view.regularity.periods.mean())
+        again = _view(record, oscillation(surveyed, near=own), noise, limits)
+        if not at_odds(again.oscillation, again.regularity):
+            view = again
+    # of a wander, too, what is left beside its mean over a while goes to and fro in that while
+    sure = view.oscillation.false_alarm < CHANCE
+    if sure and view.regularity.kind not in KINDS[::2]:
+        for part in (record, _beside_wander(record, view.oscillation)):
+            if part is None:
+                continue
+            again = _view(part, view.oscillation, noise, limits, COARSE)
+            less = scatter(again.regularity.periods) < CALMER * scatter(view.regularity.periods)
+            if less and not at_odds(again.oscillation, again.regularity):
+                view = again
+    return view
+
+
+def _without_drift(record: Record, frequency: float) -> Record:
+    """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
+    periods = frequency * record.values.size * record.spacing
+    degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
+    place = np.linspace(-1, 1, record.values.size)
+    if not record.even:
+        place = 2 * (record.time - record.time[0]) / np.ptp(record.time) - 1
+    series = np.polynomial.legendre
+    drift = series.legval(place, series.legfit(place, record.values, degree))
+    return record._replace(values=record.values - drift)
+
+
+def _beside_wander(record: Record, found: Oscillation) -> Record | None:
+    """Take the mean over one period off; None where there is hardly a wander.
+
+    A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
+    period is lost at either end.
+    """
+    size = int(round(1 / (found.frequency * record.spacing)))
+    n = record.values.size
+    if not 2 <= size <= n / WANDERS or not record.even:
+        return None
+    sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
+    mean = (sums[size:] - sums[:-size]) / size
+    if np.std(mean) < WANDER * found.swing:
+        return None
+    first = size // 2
+    part = slice(first, first + mean.size)
+    return Record(record.time[part], record.values[part] - mean, *record[2:])
+
+
+def _view(
+    record: Record, found: Oscillation, noise: float, limits: Limits, fewest: int = PER_PERIOD
+) -> View:
+    """Seek the cycles of an oscillation at the scale of its period."""
+    most = int(1 / (found.frequency * fewest * record.spacing))
+    # no more is averaged than the noise calls for: means round off what is abrupt
+    wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
+    size = int(max(1, min(most, wanted)))
+    first = slice(MOST * size)
+    part = coarse(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = _without_drift(part, found.frequency)
+    step = quantisation_step(record.values[: 1 << 16])
+    hysteresis = max(
+        limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
+    )
+    events = find_events(part.time, part.values, hysteresis)
+    if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
+        typical = limits.hysteresis * float(np.mean(events.drop))
+        if typical > hysteresis:
+            hysteresis = typical
+            events = find_events(part.time, part.values, hysteresis)
+    fall, whole = events.stop - events.peak, events.stop - events.start
+    if events.drop.size and np.median(fall / whole) > SLOW_FALL:  # what is sharp tells the periods
+        turned = part._replace(values=-part.values)
+        seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
+    else:
+        seen = regularity(part, events)
+    return View(found, part, events, hysteresis, seen)
+
+
+def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray) -> float:
+    """By how much the mean of the drops, as picked from valley to peak, is too large."""
+    if probability[0] >= 0.5:
+        return 0.0
+    found, events = view.oscillation, view.events
+    mean = float(np.mean(events.drop))
+    # the cycles lie on one another, and none is a pause
+    if form.period_scatter < ALIKE and view.regularity.periods.size == events.drop.size - 1:
+        means = {1: abrupt_drop, 2: smooth_drop, 3: abrupt_rise}.get(int(np.argmax(probability)))
+        # means round off what is abrupt
+        finer = max(1, round(view.record.spacing / record.spacing) // 2)
+        last = int(view.record.values.size * round(view.record.spacing / record.spacing))
+        part = Record(record.time[:last], record.values[:last], *record[2:])
+        drop = means(coarse(part, finer), events) if means else np.nan
+        if 0.25 * mean < drop < 1.25 * mean:
+            return mean - drop
+    # of a sine, its power says best how large it is: the noise's has been taken off
+    sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
+    if view.regularity.kind == KINDS[2]:  # power is that of the trains and of the quiet between
+        sine = 0.0
+    excess = 0.0
+    if sine < 1:
+        excess = min(noise_excess(view.record, found, events, view.hysteresis), 0.5 * mean)
+    return sine * (mean - found.swing) + (1 - sine) * excess
+
+
+def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis: float) -> float:
+    """By how much the noise makes the mean drop look larger.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    found
+        Oscillation with its background.
+    events
+        Events of the record.
+    hysteresis
+        Smallest swing that counts.
+
+    Returns
+    -------
+    float
+        In the signal's unit.
+
+    Notes
+    -----
+    Turning points are picked where the noise adds to them. How much that is depends on the form,
+    on the noise and on how often it is sampled, so it is seen by doing it again: noise drawn from
+    the background's spectrum is laid on the cycles that were found, and cycles are sought once
+    more. Harmonics may have been taken for noise: what is left beside straight lines from turn to
+    turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
+    valleys alike and is left out.
+    """
+    events = Events(*(part[:_AGAIN] for part in events))  # so many tell, however long the record
+    n = int(np.searchsorted(record.time, events.stop[-1])) + 1
+    frequency = np.fft.rfftfreq(n, record.spacing)
+    density = np.interp(frequency, found.bands, found.background)
+    density[frequency < 0.5 * found.frequency] = 0.0
+    height = np.sqrt(density * n / (4 * record.spacing))
+    time, cycles, rest = _cycles(record.time, record.values, events)
+    inside = np.searchsorted(record.time, time[0])
+    rng = np.random.default_rng(0)
+    for _ in range(_ROUNDS):
+        drops, rests = [np.zeros(0)], []
+        for _ in range(int(np.clip(_AGAIN / events.drop.size, 1, 32))):
+            draw = rng.standard_normal((2, height.size))
+            noise = np.fft.irfft(height * (draw[0] + 1j * draw[1]), n)
+            noisy = cycles + noise[inside : inside + time.size]
+            again = find_events(time, noisy, hysteresis)
+            drops.append(again.drop)
+            if again.drop.size:
+                rests.append(_cycles(time, noisy, again)[2])
+        if not sum(rests) > 0:  # no cycles are left, or no noise was laid on them
+            return 0.0
+        height *= min(rest * len(rests) / sum(rests), 1.0)
+    return float(np.concatenate(drops).mean() - events.drop.mean())
+
+
+def _cycles(
+    time: np.ndarray, values: np.ndarray, events: Events
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Moments within the events, straight lines from turn to turn, and what is left beside them."""
+    knots = np.append(np.stack([events.start, events.peak], axis=1).ravel(), events.stop[-1])
+    first, last = np.searchsorted(time, knots[[0, -1]])
+    time, values = time[first : last + 1], values[first : last + 1]
+    lines = np.interp(time, knots, values[np.searchsorted(time, knots)])
+    return time, lines, float(np.sqrt(np.mean((values - lines) ** 2)))

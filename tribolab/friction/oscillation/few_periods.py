@@ -1,0 +1,98 @@
+"""One slow wave in a record, too few periods of it to be told from a wander for sure."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.oscillation.spectra import Record, block_means
+
+_POINTS = 192  # that the record is averaged to
+_CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
+_HARMONICS = 2
+_DEGREE = 4  # of the polynomial that is to explain less: drifts of any kind
+_EXPLAINED = 0.75  # part of the variance beside a straight line that the wave has to hold
+_ALIKE = 1.2  # misfits that differ by less: of a wave and its half, the faster counts
+_BETTER = 0.4  # of the polynomial's misfit that the wave's may be at most
+
+
+class SlowWave(NamedTuple):
+    """Periods in the record, part of the variance beside a straight line that the wave holds."""
+
+    periods: float
+    explained: float
+    swing: float
+
+
+@cache
+def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Orthonormal bases: straight line, polynomial (point, term), waves (cycles, point, term)."""
+    x = (np.arange(_POINTS) + 0.5) / _POINTS
+    powers = np.polynomial.legendre.legvander(2 * x - 1, _DEGREE)
+    turn = 2 * np.pi * _CYCLES[:, None] * x
+    terms = [f(k * turn) for k in range(1, _HARMONICS + 1) for f in (np.cos, np.sin)]
+    line = np.broadcast_to(powers[:, :2], (_CYCLES.size, _POINTS, 2))
+    waves = np.concatenate([line, np.stack(terms, axis=2)], axis=2)
+    return np.linalg.qr(powers[:, :2])[0], np.linalg.qr(powers)[0], np.linalg.qr(waves)[0]
+
+
+def slow_wave(record: Record) -> SlowWave | None:
+    """Find one slow wave that nearly all of the fluctuation is; None where there is none.
+
+    Parameters
+    ----------
+    record
+        From `tribolab.friction.oscillation.spectra.make_record`.
+
+    Notes
+    -----
+    Means over blocks are fitted with a straight line beside a sine and its second harmonic, two to
+    five of them in the record. Noise whose spectrum falls wanders at all scales: a single wave
+    holds three quarters of it in less than one record of a hundred. A drift is met as well by a
+    polynomial of fourth degree.
+
+    Examples
+    --------
+    >>> t = np.arange(600.0)
+    >>> wave = slow_wave(Record(t, np.sin(2 * np.pi * 3 * t / 600), 1.0, True))
+    >>> round(wave.periods, 1), slow_wave(Record(t, np.exp(-t / 100), 1.0, True))
+    (3.0, None)
+    """
+    if record.values.size < 32:
+        return None
+    if record.even:
+        means = block_means(record.values, max(record.values.size // (4 * _POINTS), 1))
+        x = (np.arange(means.size) + 0.5) / means.size
+    else:
+        means, x = record.values, (record.time - record.time[0]) / np.ptp(record.time)
+    at = (np.arange(_POINTS) + 0.5) / _POINTS
+    if means.size > 2 * _POINTS:
+        place = np.minimum((x * _POINTS).astype(int), _POINTS - 1)
+        count = np.bincount(place, minlength=_POINTS)
+        known = count > 0
+        sums = np.bincount(place, means, _POINTS)
+        values = np.interp(at, at[known], sums[known] / count[known])
+    else:
+        values = np.interp(at, x, means)
+    line, polynomial, waves = _bases()
+    rest = values - line @ (line.T @ values)
+    total = float(rest @ rest)
+    if not total > 0:
+        return None
+    drift = values - polynomial @ (polynomial.T @ values)
+    parts = np.einsum("kpt,p->kt", waves, rest)
+    explained = (parts**2).sum(axis=1) / total
+    # a wave of twice the frequency has no part of its own at this one
+    own = (parts[:, 2:4] ** 2).sum(axis=1)
+    explained = np.where(own > 0.5 * (parts**2).sum(axis=1), explained, 0.0)
+    left = 1 - float(explained.max())
+    best = int(np.flatnonzero(1 - explained <= _ALIKE * left)[-1])
+    left = 1 - float(explained[best])
+    if best in (0, _CYCLES.size - 1) or left > min(
+        1 - _EXPLAINED, _BETTER * float(drift @ drift) / total
+    ):
+        return None
+    fitted = waves[best] @ parts[best]
+    return SlowWave(float(_CYCLES[best]), 1 - left, float(np.ptp(fitted)))

@@ -1,0 +1,53 @@
+"""Lines of the mains in a record."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.oscillation.lines import LONGEST, amplitude_spectrum
+from tribolab.friction.oscillation.spectra import Record
+
+_SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
+_GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
+_FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
+_MAINS_CHANCE = 3e-3  # that noise passes for a line of the mains
+
+
+class Mains(NamedTuple):
+    """A line of the mains: frequency [Hz], amplitude (signal's unit), name."""
+
+    frequency: float
+    amplitude: float
+    name: str
+
+
+def find_mains(record: Record) -> tuple[Mains, ...]:
+    """Lines of the mains in a record that is sampled fast and evenly enough.
+
+    Notes
+    -----
+    Where to look is known, so that a line needs not stand out among all bins, as one of unknown
+    frequency must (`tribolab.friction.oscillation.lines.find_lines`), but among those within the
+    grid's own 0.1 Hz only.
+    """
+    n = record.values.size
+    rate = 1 / record.spacing
+    if not record.even or rate < _SAMPLED or n < 256:
+        return ()
+    frequency, amplitude = amplitude_spectrum(record.time[:LONGEST], record.values[:LONGEST])
+    found = []
+    for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
+        reach = _GRID * true / 50 + frequency[1]
+        near = np.flatnonzero(np.abs(frequency - true) <= reach)
+        around = np.abs(frequency - true) <= max(40 * frequency[1], 5 * reach)
+        if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
+            continue
+        at = near[np.argmax(amplitude[near])]
+        usual = np.median(amplitude[around] ** 2) / np.log(2)
+        if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
+            found.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
+    # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
+    names = {line.name for line in found}
+    return tuple(line for line in found if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)

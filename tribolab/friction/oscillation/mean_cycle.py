@@ -1,0 +1,148 @@
+"""The drop of the mean cycle: noise averages out before anything is measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.friction.oscillation.events import Events, find_events
+from tribolab.friction.oscillation.spectra import Record
+
+_REACH = 0.38  # of a period to either side of the fall
+_BESIDE = 0.005  # of a period between the fall and the stretches beside it ...
+_STRETCH = 0.06  # ... whose means are compared: slow noise is alike in both
+_LONGEST = 0.3  # of a period; a longer fall is not abrupt
+_ROUNDS = 3
+_PHASES = 256  # at which the extremes of a smooth cycle are sought
+
+
+def abrupt_drop(record: Record, events: Events) -> float:
+    """Mean drop of a wave that rises slowly and falls abruptly.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    events
+        At least two, their periods alike.
+
+    Returns
+    -------
+    float
+        In the signal's unit; NaN where there are too few samples or events.
+
+    Notes
+    -----
+    Cycles are laid on one another by the middles of their falls, and averaged. Of a straight fall,
+    the integral of z(1 - z) over the part z that is left is a sixth of its duration. From the means
+    of short stretches just before and just after it, the slope of the loading leads to its begin
+    and its end. Nothing is picked because it is large, so that noise does not make the drop larger.
+
+    Examples
+    --------
+    >>> from tribolab.friction.oscillation.events import find_events
+    >>> t = np.arange(0, 20, 0.01)
+    >>> saw = t % 1.0 + 0.1 * np.random.default_rng(0).standard_normal(t.size)
+    >>> found = find_events(t, saw, 0.8)
+    >>> drops = found.drop.mean(), abrupt_drop(Record(t, saw, 0.01, True), found)
+    >>> [round(float(drop), 1) for drop in drops]
+    [1.2, 1.0]
+    """
+    if events.middle.size < 2:
+        return np.nan
+    period = float(np.diff(events.middle).mean())
+    spacing = record.spacing / period
+    count = int(_REACH / spacing)
+    place = spacing * (np.arange(-count, count) + 0.5)  # middles lie between two samples
+    reach = count * record.spacing
+    whole = (events.middle - reach >= record.time[0]) & (events.middle + reach <= record.time[-1])
+    if count < 2 or not whole.any():
+        return np.nan
+    moments = events.middle[whole, None] + period * place
+    cycle = np.interp(moments, record.time, record.values).mean(axis=0)
+    fall = 0.1
+    for _ in range(_ROUNDS):
+        edge = 0.5 * fall + _BESIDE
+        before, after = place < -edge, place > edge
+        near = np.abs(place) <= edge + max(_STRETCH, 1.5 * spacing)
+        if min((before & near).sum(), (after & near).sum(), before.sum() - 1, after.sum() - 1) < 1:
+            return np.nan
+        slope = 0.5 * (_slope(place[before], cycle[before]) + _slope(place[after], cycle[after]))
+        level = cycle - slope * place
+        high, low = level[before & near].mean(), level[after & near].mean()
+        part = (level - low)[np.abs(place) <= edge + _STRETCH] / (high - low)
+        fall = float(np.clip(6 * spacing * (part * (1 - part)).sum(), spacing, _LONGEST))
+    return float(high - low - slope * fall)
+
+
+def abrupt_rise(record: Record, events: Events) -> float:
+    """Mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    events
+        At least three, their periods alike.
+
+    Returns
+    -------
+    float
+        In the signal's unit; NaN where there are too few samples or events.
+    """
+    turned = record._replace(values=-record.values)
+    swing = float(np.min(events.drop)) if events.drop.size else 0.0
+    return abrupt_drop(turned, find_events(turned.time, turned.values, 0.6 * swing))
+
+
+def smooth_drop(record: Record, events: Events) -> float:
+    """Mean drop, from valley to peak, of a wave that rises and falls smoothly.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    events
+        At least three, their periods alike.
+
+    Returns
+    -------
+    float
+        In the signal's unit; NaN where there are too few samples or events.
+
+    Notes
+    -----
+    Least squares of a sine and its second harmonic, whose phase goes on by one period from the
+    middle of one fall to the next, beside a straight line: nearly all that a record tells of the
+    size of a sine in noise.
+
+    Examples
+    --------
+    >>> from tribolab.friction.oscillation.events import find_events
+    >>> t = np.arange(0, 20, 0.01)
+    >>> wave = 0.5 * np.sin(6 * t) + 0.1 * np.random.default_rng(0).standard_normal(t.size)
+    >>> found = find_events(t, wave, 0.5)
+    >>> drops = found.drop.mean(), smooth_drop(Record(t, wave, 0.01, True), found)
+    >>> [round(float(drop), 1) for drop in drops]
+    [1.3, 1.0]
+    """
+    if events.middle.size < 3:
+        return np.nan
+    first, last = np.searchsorted(record.time, events.middle[[0, -1]])
+    time, values = record.time[first:last], record.values[first:last]
+    if values.size < 12:
+        return np.nan
+    phase = 2 * np.pi * np.interp(time, events.middle, np.arange(events.middle.size))
+    along = (time - time[0]) / (time[-1] - time[0])
+    terms = np.stack([np.ones(time.size), along, *_two_harmonics(phase)], axis=1)
+    size = np.linalg.lstsq(terms, values)[0][2:]
+    turn = np.linspace(0, 2 * np.pi, _PHASES, endpoint=False)
+    return float(np.ptp(size @ _two_harmonics(turn)))
+
+
+def _two_harmonics(phase: np.ndarray) -> np.ndarray:
+    return np.stack([np.cos(phase), np.sin(phase), np.cos(2 * phase), np.sin(2 * phase)])
+
+
+def _slope(x: np.ndarray, y: np.ndarray) -> float:
+    x = x - x.mean()
+    return float(x @ y / (x @ x))

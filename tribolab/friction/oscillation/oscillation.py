@@ -1,0 +1,209 @@
+"""The strongest oscillation of a record: its frequency, its size, and whether noise explains it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from tribolab.friction.oscillation.background import significant_power
+from tribolab.friction.oscillation.mains import Mains
+from tribolab.friction.oscillation.spectra import Spectrum
+from tribolab.friction.oscillation.survey import CHANCE, Survey
+
+HARMONICS = 6
+_REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
+CYCLES = 4.0  # in a record: slower oscillations cannot be told from a wander
+_HUMP = 7  # bands that a hump in the spectrum covers
+_BREADTH = 0.4  # of an irregular wave's spectrum, in the natural log of frequency
+_ROUNDS = 15  # in which its mean settles
+_NEAR = 0.2  # of a frequency that is sought near another
+
+
+class Oscillation(NamedTuple):
+    """What the spectrum of one record says.
+
+    Parameters
+    ----------
+    frequency
+        Of the strongest oscillation [Hz]; where none is significant, of the largest hump.
+    frequency_error
+        Standard error from the width of the peak [Hz].
+    mean_frequency, mean_frequency_error
+        Of a wave without a sharp line, the mean over its spectrum [Hz], see `mean_frequency`.
+    false_alarm
+        Probability that noise shows such a peak anywhere in the spectrum.
+    prominence
+        Power of the peak over its background.
+    swing
+        From valley to peak of the oscillation as its power (with harmonics) gives it.
+    noise
+        Standard deviation of the background below ten times the frequency.
+    share
+        Part of the variance from half the frequency on that is the oscillation.
+    harmonic_content
+        Amplitude of the harmonics 2 to 6 over that of the first.
+    bands, power, background, level
+        Spectrum in bands [Hz] and its background; level that noise exceeds with 1 in 1000.
+    mains
+        Lines of the mains; they are taken out first.
+    method
+        How the spectrum was had.
+    """
+
+    frequency: float
+    frequency_error: float
+    mean_frequency: float
+    mean_frequency_error: float
+    false_alarm: float
+    prominence: float
+    swing: float
+    noise: float
+    share: float
+    harmonic_content: float
+    bands: np.ndarray
+    power: np.ndarray
+    background: np.ndarray
+    level: np.ndarray
+    mains: tuple[Mains, ...]
+    method: str
+
+
+def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
+    """Find the strongest oscillation of a record.
+
+    Parameters
+    ----------
+    seen
+        From `tribolab.friction.oscillation.survey.survey`.
+    near
+        Frequency that the drops tell [Hz]: the oscillation is sought near it, be its line lower
+        than its harmonics' or not.
+
+    Notes
+    -----
+    The spectrum is averaged over bands a tenth wide, because the periods of stick-slip scatter by
+    as much; significance is that of a band over red and white noise, corrected for the number of
+    bands. Of the significant bands that with the most power above the background counts.
+    """
+    fine, middle, power, width = seen.fine, seen.middle, seen.power, seen.width
+    strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
+    # without a significant band: where most of the power above the slow wander lies
+    energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _HUMP)
+    energy = np.where(seen.cycles >= 2 * CYCLES, energy, -np.inf)
+    hump = int(np.argmax(energy))
+    top = int(np.argmax(strong)) if strong.any() else hump
+    chance = float(max(seen.chance[top], seen.rise[top]))
+    prominence = power[top] / seen.background[top]
+    at = _summit(fine, seen.first, top) if near is None else _nearest_summit(fine, near)
+    level = np.interp(fine.frequency, middle, seen.background)
+    frequency, error, powers = gather(fine, level, at)
+    start = float(middle[hump]) if near is None else near
+    mean, mean_error = mean_frequency(fine, start, float(level[-1]))
+    variance = powers.sum()
+    above = fine.frequency >= 0.5 * frequency
+    total = float((fine.power * fine.width)[above].sum())
+    below = middle <= 10 * frequency
+    return Oscillation(
+        frequency=frequency,
+        frequency_error=float(max(error, 0.3 * fine.width[at])),
+        mean_frequency=mean,
+        mean_frequency_error=mean_error,
+        false_alarm=chance,
+        prominence=float(prominence),
+        swing=float(_swing(powers)),
+        noise=float(np.sqrt((seen.background * width)[below].sum())),
+        share=float(min(variance / max(total, 1e-300), 1.0)),
+        harmonic_content=float(np.sqrt(powers[1:].sum() / max(powers[0], 1e-9 * variance, 1e-300))),
+        bands=middle,
+        power=power,
+        background=seen.background,
+        level=significant_power(seen.background, seen.freedom, CHANCE),
+        mains=seen.mains,
+        method=fine.method,
+    )
+
+
+def _nearest_summit(fine: Spectrum, near: float) -> int:
+    """Strongest bin near a frequency."""
+    part = np.abs(fine.frequency - near) <= max(_NEAR * near, 1.01 * fine.width[0])
+    part[:1] = False
+    return int(np.argmax(np.where(part, fine.power, -1.0)))
+
+
+def _summit(fine: Spectrum, starts: np.ndarray, top: int) -> int:
+    """Strongest bin of the strongest band."""
+    stop = starts[top + 1] if top + 1 < starts.size else fine.frequency.size
+    return int(starts[top] + np.argmax(fine.power[starts[top] : stop]))
+
+
+def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np.ndarray]:
+    """Return a line's frequency as the centre of its power, its error, its harmonics' variances."""
+    f0, error = float(fine.frequency[at]), 0.0
+    excess = np.maximum(fine.power - level, 0) * fine.width
+    for _ in range(3):
+        near = np.abs(fine.frequency - f0) <= max(_REACH * f0, 2.01 * fine.width[at])
+        weight = excess[near]
+        if not weight.sum() > 0:
+            break
+        f0 = float(fine.frequency[near] @ weight / weight.sum())
+        spread = float(np.sqrt((fine.frequency[near] - f0) ** 2 @ weight / weight.sum()))
+        # a jittering line of width s over a record of n bins wanders by s / sqrt(bins it covers)
+        error = spread / np.sqrt(max(spread / fine.width[at], 1.0))
+    powers = np.zeros(HARMONICS)
+    for k in range(1, HARMONICS + 1):
+        reach = min(max(_REACH * k * f0, 2.01 * fine.width[at]), 0.5 * f0)
+        near = np.abs(fine.frequency - k * f0) <= reach
+        powers[k - 1] = excess[near].sum()
+    powers[0] = max(powers[0], excess[at])
+    return f0, error, powers
+
+
+def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, float]:
+    """Mean frequency of a wave without a sharp line, and its standard error.
+
+    Parameters
+    ----------
+    fine
+        The spectrum.
+    start
+        Frequency about which the wave's power lies [Hz].
+    floor
+        Power density of the white noise.
+
+    Returns
+    -------
+    tuple
+        Both [Hz].
+
+    Notes
+    -----
+    m1/m0, the mean frequency of irregular sea waves [1]_, with the moments of the spectrum under a
+    lognormal window about the mean itself, so that neither wander nor hiss counts. It asks for no
+    threshold, unlike the count of drops, and noise moves it half as much.
+
+    References
+    ----------
+    .. [1] Longuet-Higgins (1975), J. Geophys. Res. 80, 2688. doi:10.1029/JC080i018p02688
+    """
+    mean = start
+    frequency, power = fine.frequency[2:], ((fine.power - floor) * fine.width)[2:]
+    logs = np.log(frequency)
+    for _ in range(_ROUNDS):
+        weight = power * np.exp(-0.5 * ((logs - np.log(mean)) / _BREADTH) ** 2)
+        total, moment = float(weight.sum()), float(frequency @ weight)
+        if not min(total, moment) > 0:  # nothing but white noise
+            return mean, np.nan
+        mean = moment / total
+    # a Hann window ties neighbouring bins together: two thirds of them are independent
+    scatter = 3 / fine.freedom[2:] * (weight * (frequency - mean)) ** 2
+    return mean, float(np.sqrt(scatter.sum()) / total)
+
+
+def _swing(powers: np.ndarray) -> float:
+    """From valley to peak: between a sine's and a saw's, by the share of the harmonics."""
+    variance = powers.sum()
+    share = min(powers[1:].sum() / max(variance, 1e-300) / 0.39, 1.0)  # 0.39: an ideal saw's
+    factor = np.sqrt(8.0) * (1 - share) + np.sqrt(12.0) * share
+    return factor * np.sqrt(variance)

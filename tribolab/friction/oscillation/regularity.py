@@ -1,0 +1,110 @@
+"""How regular an oscillation is: alike periods, scattered ones, or trains with quiet between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.oscillation.events import Events
+from tribolab.friction.oscillation.spectra import Record
+
+KINDS = ("regular", "irregular", "intermittent")
+IRREGULAR = 0.18  # scatter of the periods above which they are irregular
+_PAUSE = 2.2  # usual periods between two drops, that may be a pause
+_STILL = 0.5  # of the climb or of the swing that a stick or a wave would show in a pause
+_QUIET = 0.15  # of the time that is quiet, above which an oscillation is intermittent
+
+
+class Regularity(NamedTuple):
+    """How an oscillation goes on.
+
+    Parameters
+    ----------
+    kind
+        One of `KINDS`; empty where there are too few periods to say.
+    share
+        Part of the time that oscillates.
+    periods
+        Times from drop to drop, pauses left out [s].
+    """
+
+    kind: str
+    share: float
+    periods: np.ndarray
+
+
+def regularity(record: Record, events: Events) -> Regularity:
+    """Tell regular, irregular and intermittent oscillations apart.
+
+    Parameters
+    ----------
+    record
+        In which the events were found.
+    events
+        Cycles of stick and slip.
+
+    Returns
+    -------
+    Regularity
+        Intermittent where over a seventh of the time is quiet, else irregular where the periods
+        scatter by more than 18 %.
+
+    Notes
+    -----
+    A long time between two drops is a pause if friction neither climbs through its middle as in a
+    long stick, nor swings as in a long wave; before the first drop and after the last, alike.
+
+    Examples
+    --------
+    >>> from tribolab.friction.oscillation.events import find_events
+    >>> t = np.arange(0, 60, 0.01)
+    >>> saw = np.where((t > 20) & (t < 40), 0.5, t % 1.0)
+    >>> found = regularity(Record(t, saw, 0.01, True), find_events(t, saw, 0.3))
+    >>> found.kind, round(found.share, 1)
+    ('intermittent', 0.7)
+    """
+    between = np.diff(events.middle)
+    if between.size < 2:
+        return Regularity("", np.nan, between)
+    usual = float(np.median(between))
+    drop = float(np.mean(events.drop))
+    ends = np.array([record.time[0], record.time[-1]])
+    first, last = events.middle[0], events.middle[-1]
+    quiet = 0.0
+    paused = np.zeros(between.size, bool)
+    for k in np.flatnonzero(between > _PAUSE * usual):
+        a, b = events.middle[k], events.middle[k + 1]
+        climb = drop * (b - a - 1.3 * usual) / (b - a)
+        # a train ends with a drop and begins with a climb; a reversed one the other way round
+        if any(_still(record, a + c * usual, b - (1.3 - c) * usual, climb) for c in (0.3, 1.0)):
+            paused[k] = True
+            quiet += float(b - a - usual)
+    # at an end of the record a part of a period is cut off
+    for c in (0.3, 1.0):
+        for a, b in ((ends[0], first - c * usual), (last + c * usual, ends[1])):
+            if b - a > usual and _still(record, a, b, drop * min((b - a) / usual, 1.0)):
+                quiet += 0.5 * float(b - a)  # one half for each of the two ways
+    share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
+    periods = between[~paused]
+    if share < 1 - _QUIET:
+        return Regularity(KINDS[2], share, periods)
+    kind = KINDS[1] if scatter(periods) > IRREGULAR else KINDS[0]
+    return Regularity(kind, 1.0, periods)
+
+
+def scatter(periods: np.ndarray) -> float:
+    """Return the standard deviation over the mean; NaN of fewer than two."""
+    return float(np.std(periods, ddof=1) / periods.mean()) if periods.size > 1 else np.nan
+
+
+def _still(record: Record, start: float, stop: float, climb: float) -> bool:
+    """Whether friction hardly moves in a stretch in which a stick would climb by so much."""
+    part = slice(*np.searchsorted(record.time, [start, stop]))
+    values = record.values[part]
+    if values.size < 6:
+        return False
+    pieces = [float(piece.mean()) for piece in np.array_split(values, min(values.size // 2, 8))]
+    # the means of the first and the last piece are a piece's length less than the stretch apart
+    expected = climb * (1 - 1 / len(pieces))
+    return float(np.ptp(pieces)) < _STILL * expected

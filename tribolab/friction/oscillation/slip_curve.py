@@ -1,0 +1,219 @@
+"""Stick-slip of several runs against sliding speed, and whether frequency goes with the speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from tribolab.errors import AnalysisError
+from tribolab.friction.oscillation.slip_table import ringing
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
+from tribolab.quantities import stamp
+
+STEADY = CLASSES[0]
+RESONANCE = "resonance"
+FIXED_FREQUENCY = "frequency does not go with the speed: it is fixed"
+_MEANS = (
+    "drop",
+    "dominant_wavelength",
+    "recurrence_distance",
+    "dominant_frequency",
+    "fall_share",
+    "harmonic_content",
+    "period_scatter",
+    "oscillating_time_share",
+)
+_FEWEST = 3  # speeds that a fit of the exponent needs
+_LEAST_ERROR = 0.01  # relative; a frequency is not known better than the speed
+
+
+class Scaling(NamedTuple):
+    """How frequency goes with speed: f ~ v^exponent.
+
+    Parameters
+    ----------
+    exponent, error
+        And its standard error; 1 is a fixed wavelength, 0 a fixed frequency.
+    speeds
+        Number of speeds.
+    text
+        Which of the two it is, in words.
+    """
+
+    exponent: float
+    error: float
+    speeds: int
+    text: str
+
+
+def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) -> xr.Dataset:
+    """Stick-slip against speed over several runs.
+
+    Parameters
+    ----------
+    slips
+        From `stick_slip`, one per run.
+    speed_tolerance
+        Neighbouring speeds that differ by no more than this are one.
+
+    Returns
+    -------
+    xarray.Dataset
+        On dim ``sliding_speed``: ``segments`` that were evaluated, ``segments_oscillating`` among
+        them, ``waveform`` and ``regularity`` (the most frequent of those where more than half of
+        the segments that were decided oscillate, else smooth sliding, or "not decided" where most
+        are not), there means over those and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of
+        the spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
+        ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
+        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates.
+        Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
+        smooth. Attributes ``scaling_exponent``,
+        ``scaling_error``, ``scaling`` and, of a resonance, ``resonance_frequency_Hz``.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no run.
+
+    Examples
+    --------
+    >>> from tribolab.friction.segments.find import find_segments
+    >>> from tribolab.friction.oscillation.stick_slip import stick_slip
+    >>> from tribolab.rig import simulate_trace
+    >>> run = simulate_trace("sawtooth", wavelength=22e-6, samples=1000, speed=1e-5)
+    >>> curve = stick_slip_curve([stick_slip(run, find_segments(run))])
+    >>> curve.waveform.item(), f"{1e6 * curve.dominant_wavelength.item():.0f} um"
+    ('sawtooth stick-slip', '22 um')
+    """
+    if not slips:
+        raise AnalysisError("stick-slip against speed needs at least one run; none was given")
+    speed = np.concatenate([s["sliding_speed"].values for s in slips])
+    kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
+    own = _column(slips, "dominant_frequency")
+    named = np.concatenate([[RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
+    # runs of one speed each show only together that a frequency ignores the speed
+    rings = named.astype(bool) | ringing(kind, own, speed)
+    kind[rings] = STEADY
+    known = (kind != NOT_EVALUATED) & (speed > 0)
+    order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
+    edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
+    groups = [group for group in np.split(order, edges) if group.size]
+    regular = np.concatenate([_regularity(s) for s in slips]).astype(object)
+    columns = {name: _column(slips, name) for name in (*_MEANS, "oscillation_swing")}
+    rows = [_row(group, kind, regular, columns) for group in groups]
+    names = list(rows[0]) if rows else [*_EMPTY]
+    data = {n: ("sliding_speed", np.array([row[n] for row in rows])) for n in names}
+    for name in ("waveform", "regularity"):
+        texts = np.array([row[name] for row in rows], dtype=object)
+        data[name] = "sliding_speed", texts
+    middle = np.array([np.exp(np.mean(np.log(speed[g]))) for g in groups])
+    result = stamp(xr.Dataset(data, {"sliding_speed": middle}))
+    found = frequency_scaling(result)
+    result.attrs.update(
+        scaling_exponent=found.exponent, scaling_error=found.error, scaling=found.text
+    )
+    if rings.any():
+        result.attrs["resonance_frequency_Hz"] = float(np.nanmedian(own[rings]))
+    return result
+
+
+_EMPTY = ("segments", "segments_oscillating", "waveform", "regularity", "oscillation_swing")
+
+
+def _column(slips: Sequence[xr.Dataset], name: str) -> np.ndarray:
+    return np.concatenate(
+        [
+            s[name if name in s else f"force_{name}"].values
+            if name in s or f"force_{name}" in s
+            else np.full(s.sizes["segment"], np.nan)
+            for s in slips
+        ]
+    )
+
+
+def _regularity(slip: xr.Dataset) -> np.ndarray:
+    return slip["regularity"].values if "regularity" in slip else np.full(slip.sizes["segment"], "")
+
+
+def _row(
+    group: np.ndarray, kind: np.ndarray, regular: np.ndarray, columns: dict[str, np.ndarray]
+) -> dict:
+    moving = group[oscillating(kind[group])]
+    waveform, regularity, count = STEADY, "", moving.size
+    decided = int((kind[group] != UNDECIDED).sum())
+    if moving.size > 0.5 * decided:
+        waveform, regularity = _commonest(kind[moving]), _commonest(regular[moving])
+    else:  # what few segments show is not what the contact does
+        moving = moving[:0]
+        waveform = STEADY if decided >= 0.5 * group.size else UNDECIDED
+    row = {
+        "segments": group.size,
+        "segments_oscillating": count,
+        "waveform": waveform,
+        "regularity": regularity,
+    }
+    for name in _MEANS:
+        values = columns[name][moving]
+        values = values[np.isfinite(values)]
+        row[name] = values.mean() if values.size else np.nan
+        row[f"{name}_std"] = values.std(ddof=1) if values.size > 1 else np.nan
+    swing = columns["oscillation_swing"][group]
+    row["oscillation_swing"] = np.nanmean(swing) if np.isfinite(swing).any() else np.nan
+    return row
+
+
+def _commonest(words: np.ndarray) -> str:
+    """Return the most frequent word; of equally frequent ones that which comes first."""
+    known = words.astype(str).tolist()
+    return max(dict.fromkeys(known), key=known.count)
+
+
+def frequency_scaling(curve: xr.Dataset) -> Scaling:
+    """Fit f ~ v^n to the frequencies of the oscillation at several speeds.
+
+    Parameters
+    ----------
+    curve
+        From `stick_slip_curve`.
+
+    Notes
+    -----
+    Least squares of ln f over ln v, each speed weighted alike but for its number of segments; the
+    error is that of the scatter about the line, by Student's t brought to one standard deviation.
+    Fixed wavelength is said where 1 lies within two errors of n and 0 does not; fixed frequency the
+    other way round; a law in between where neither does.
+    """
+    nothing = Scaling(np.nan, np.nan, 0, "not known: nothing oscillates at three speeds or more")
+    if "dominant_frequency" not in curve:
+        return nothing
+    f, v = curve["dominant_frequency"].values, curve["sliding_speed"].values
+    good = np.isfinite(f) & (oscillating(curve["waveform"].values))
+    count = int(good.sum())
+    if count < _FEWEST:
+        return nothing._replace(speeds=count)
+    x, y = np.log(v[good]), np.log(f[good])
+    weight = curve["segments_oscillating"].values[good].astype(float)
+    weight /= weight.sum()
+    x0 = float(weight @ x)
+    spread = float(weight @ (x - x0) ** 2)
+    slope = float(weight @ ((x - x0) * y)) / spread
+    rest = y - weight @ y - slope * (x - x0)
+    variance = max(float(weight @ rest**2) * count / (count - 2), _LEAST_ERROR**2)
+    student = special.stdtrit(count - 2, 0.8413)
+    error = float(np.sqrt(variance / count / spread)) * float(student)
+    fixed_wavelength, fixed_frequency = abs(slope - 1) < 2 * error, abs(slope) < 2 * error
+    if fixed_wavelength and fixed_frequency:
+        text = "not decided between a fixed wavelength and a fixed frequency"
+    elif fixed_wavelength:
+        text = "frequency goes with the speed: the wavelength is fixed"
+    elif fixed_frequency:
+        text = FIXED_FREQUENCY
+    elif slope > 1:
+        text = "frequency grows faster than the speed: the wavelength shrinks"
+    else:
+        text = "frequency grows more slowly than the speed: the wavelength grows"
+    return Scaling(slope, error, count, text)

@@ -1,0 +1,297 @@
+"""What was seen in the segments of a run, as columns, spectra on one grid, and a list of events."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.oscillation.components import MOST
+from tribolab.friction.oscillation.examine import Examined
+from tribolab.friction.oscillation.regularity import scatter
+from tribolab.friction.oscillation.survey import PER_DECADE
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED
+
+# what is said of a segment in which nothing oscillates
+_OF_NOISE = (
+    "false_alarm_probability",
+    "peak_prominence",
+    "oscillation_swing",
+    "oscillation_share",
+    "background_noise",
+    "sample_noise",
+    "hysteresis",
+    "spike_share",
+    "mains_frequency",
+    "mains_amplitude",
+    "periods",
+)
+SAME = 0.03  # a resonance keeps its frequency this well
+SPEEDS = 2.0  # over speeds that differ by this factor at least
+
+
+def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Find the segments whose oscillation keeps its frequency, whatever the speed.
+
+    Parameters
+    ----------
+    kind
+        Class of waveform; only a sinus-like oscillation is a resonance (segment).
+    frequency, speed
+        [Hz], [m/s] (segment).
+
+    Returns
+    -------
+    ndarray
+        True where other segments share the frequency within 3 % and the speeds of all of them
+        differ by a factor of two or more (segment).
+
+    Examples
+    --------
+    >>> kind = np.array(["sinus-like oscillation"] * 3)
+    >>> ringing(kind, np.array([11.0, 11.1, 20.0]), np.array([1e-3, 3e-3, 3e-3])).tolist()
+    [True, True, False]
+    """
+    sine = (kind == CLASSES[2]) & (frequency > 0) & (speed > 0)
+    result = np.zeros(kind.size, bool)
+    order = np.flatnonzero(sine)[np.argsort(frequency[sine], kind="stable")]
+    logs = np.log(frequency[order])
+    first = np.searchsorted(logs, logs - SAME, side="left")
+    last = np.searchsorted(logs, logs + SAME, side="right")
+    for k, (a, b) in enumerate(zip(first, last, strict=True)):
+        near = speed[order[a:b]]
+        result[order[k]] = near.max() >= SPEEDS * near.min()
+    return result
+
+
+class Row(NamedTuple):
+    """Numbers of one segment; see `tribolab.friction.oscillation.stick_slip` for each."""
+
+    dominant_frequency: float
+    dominant_frequency_sem: float
+    dominant_wavelength: float
+    dominant_wavelength_sem: float
+    false_alarm_probability: float
+    peak_prominence: float
+    oscillation_swing: float
+    oscillation_share: float
+    background_noise: float
+    sample_noise: float
+    hysteresis: float
+    harmonic_content: float
+    drop: float
+    drop_std: float
+    stick_duration: float
+    stick_duration_std: float
+    slip_duration: float
+    slip_duration_std: float
+    recurrence_time: float
+    recurrence_time_std: float
+    recurrence_distance: float
+    recurrence_distance_std: float
+    loading_slope: float
+    loading_stiffness: float
+    fall_share: float
+    asymmetry_p_value: float
+    derivative_skewness: float
+    period_scatter: float
+    periods: float
+    oscillating_time_share: float
+    drop_scatter: float
+    spike_share: float
+    mains_frequency: float
+    mains_amplitude: float
+
+
+def class_of(found: Examined | str) -> str:
+    """Return the class of waveform, "not decided" or "not evaluated"."""
+    return NOT_EVALUATED if isinstance(found, str) else found.verdict.kind
+
+
+def ranked(found: Examined) -> list[tuple[str, float]]:
+    """Return the classes with their probabilities, the most probable first, claimed or not."""
+    probability = found.probability
+    return [(CLASSES[k], float(probability[k])) for k in np.argsort(-probability)]
+
+
+def class_table(found: list[Examined | str]) -> np.ndarray:
+    """Probability of each class (segment, class)."""
+    nothing = np.full(len(CLASSES), np.nan)
+    rows = [nothing if isinstance(e, str) else e.probability for e in found]
+    return np.array(rows).reshape(len(found), len(CLASSES))
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if values.size else np.nan
+
+
+def _std(values: np.ndarray) -> float:
+    return float(values.std(ddof=1)) if values.size > 1 else np.nan
+
+
+def _row(e: Examined, speed: float, load: float) -> Row:
+    o, w, events = e.oscillation, e.waveform, e.events
+    stick, slip = events.peak - events.start, events.stop - events.peak
+    period = e.regularity.periods
+    frequency, error = e.verdict.frequency, e.verdict.frequency_error
+    slope = np.nan
+    if speed > 0 and stick.size:
+        slope = float(np.median(events.rise / np.maximum(stick, 1e-300))) / speed
+    mains = max(o.mains, key=lambda line: line.amplitude, default=None)
+    return Row(
+        dominant_frequency=frequency,
+        dominant_frequency_sem=error,
+        dominant_wavelength=speed / frequency,
+        dominant_wavelength_sem=speed / frequency * error / frequency,
+        false_alarm_probability=o.false_alarm,
+        peak_prominence=o.prominence,
+        oscillation_swing=o.swing,
+        oscillation_share=o.share,
+        background_noise=o.noise,
+        sample_noise=e.sample_noise,
+        hysteresis=e.hysteresis,
+        harmonic_content=o.harmonic_content,
+        drop=_mean(events.drop),
+        drop_std=_std(events.drop),
+        stick_duration=_mean(stick),
+        stick_duration_std=_std(stick),
+        slip_duration=_mean(slip),
+        slip_duration_std=_std(slip),
+        recurrence_time=_mean(period),
+        recurrence_time_std=_std(period),
+        recurrence_distance=_mean(period) * speed,
+        recurrence_distance_std=_std(period) * speed,
+        loading_slope=slope,
+        loading_stiffness=slope * (1.0 if e.force else load),
+        fall_share=w.fall_share,
+        asymmetry_p_value=w.asymmetry_p_value if w.events else np.nan,
+        derivative_skewness=w.derivative_skewness,
+        period_scatter=scatter(period),
+        periods=e.verdict.periods,
+        oscillating_time_share=e.regularity.share,
+        drop_scatter=w.drop_scatter,
+        spike_share=e.spike_share,
+        mains_frequency=mains.frequency if mains else np.nan,
+        mains_amplitude=mains.amplitude if mains else np.nan,
+    )
+
+
+def oscillates(found: Examined | str) -> bool:
+    """Whether an oscillation is claimed of a segment."""
+    return class_of(found) in CLASSES[1:]
+
+
+def _count(found: Examined | str) -> int:
+    return found.waveform.events if not isinstance(found, str) and oscillates(found) else 0
+
+
+def table(
+    found: list[Examined | str], speed: np.ndarray, loads: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Columns (segment): numbers, and the class and method as text."""
+    nothing = Row(*[np.nan] * len(Row._fields))
+    rows = [
+        nothing if isinstance(e, str) else _row(e, v, n)
+        for e, v, n in zip(found, speed, loads, strict=True)
+    ]
+    kinds = [class_of(e) for e in found]
+    # where nothing oscillates, the turns of the noise are neither drops nor periods
+    rows = [
+        nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
+        if kind in (CLASSES[0], UNDECIDED)
+        else row
+        for row, kind in zip(rows, kinds, strict=True)
+    ]
+    data = {name: np.array([getattr(row, name) for row in rows], float) for name in Row._fields}
+    data["events"] = np.array([_count(e) for e in found], int)
+    data["waveform"] = np.array(kinds, dtype=object)
+    regular = [e.regularity.kind if oscillates(e) else "" for e in found]
+    data["regularity"] = np.array(regular, dtype=object)
+    method = ["" if isinstance(e, str) else e.oscillation.method for e in found]
+    data["method"] = np.array(method, dtype=object)
+    return data
+
+
+def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+    """All significant oscillations of the segments, on (segment, line), the strongest first.
+
+    Parameters
+    ----------
+    found, speed
+        What was seen, and the sliding speed [m/s] (segment).
+    """
+    lines = [e.lines if not isinstance(e, str) and oscillates(e) else () for e in found]
+    columns = {name: np.full((len(found), MOST), np.nan) for name in _LINE}
+    for k, mine in enumerate(lines):
+        for n, line in enumerate(mine):
+            columns["line_frequency"][k, n] = line.frequency
+            columns["line_wavelength"][k, n] = speed[k] / line.frequency
+            columns["line_swing"][k, n] = line.swing
+            columns["line_false_alarm_probability"][k, n] = line.false_alarm
+    return xr.Dataset({name: (("segment", "line"), values) for name, values in columns.items()})
+
+
+_LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_probability")
+
+
+def spectra(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+    """All spectra on one logarithmic grid of frequency, and of inverse wavelength."""
+    names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
+    seen = [None if isinstance(e, str) else e.oscillation for e in found]
+    data = {}
+    frequency = _grid([o.bands for o in seen if o is not None])
+    for name, field in names.items():
+        rows = [_on(frequency, o.bands, getattr(o, field)) if o else None for o in seen]
+        data[name] = ("segment", "frequency"), _stack(rows, frequency.size)
+    places = [o.bands / v if o and v > 0 else None for o, v in zip(seen, speed, strict=True)]
+    inverse = _grid([place for place in places if place is not None])
+    rows = [
+        None if place is None else _on(inverse, place, v * o.power)
+        for o, place, v in zip(seen, places, speed, strict=True)
+    ]
+    data["distance_psd"] = ("segment", "inverse_wavelength"), _stack(rows, inverse.size)
+    return xr.Dataset(data, {"frequency": frequency, "inverse_wavelength": inverse})
+
+
+def _grid(axes: list[np.ndarray]) -> np.ndarray:
+    if not axes:
+        return np.zeros(0)
+    first = np.floor(PER_DECADE * np.log10(min(a[0] for a in axes)))
+    last = np.ceil(PER_DECADE * np.log10(max(a[-1] for a in axes)))
+    return 10 ** (np.arange(first, last + 1) / PER_DECADE)
+
+
+def _on(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
+    """Carry a spectrum over to the grid, straight in the logarithms; NaN beyond its ends."""
+    log = np.log(np.maximum(power, 1e-300))
+    return np.exp(np.interp(np.log(grid), np.log(axis), log, left=np.nan, right=np.nan))
+
+
+def _stack(rows: list[np.ndarray | None], size: int) -> np.ndarray:
+    nothing = np.full(size, np.nan)
+    return np.array([nothing if row is None else row for row in rows]).reshape(len(rows), size)
+
+
+def event_list(found: list[Examined | str]) -> xr.Dataset:
+    """All events of a run in the order of time."""
+    seen = [
+        (number, e.events)
+        for number, e in enumerate(found)
+        if not isinstance(e, str) and oscillates(e)
+    ]
+    number = [np.full(e.peak.size, k) for k, e in seen]
+    columns = {
+        "event_segment": (number, int),
+        "event_time": ([e.peak for _, e in seen], float),
+        "event_drop": ([e.drop for _, e in seen], float),
+        "event_stick": ([e.peak - e.start for _, e in seen], float),
+        "event_slip": ([e.stop - e.peak for _, e in seen], float),
+    }
+    empty = np.zeros(0)
+    return xr.Dataset(
+        {
+            name: ("event", np.concatenate([*parts, empty]).astype(kind))
+            for name, (parts, kind) in columns.items()
+        }
+    )

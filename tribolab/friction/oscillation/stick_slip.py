@@ -1,0 +1,312 @@
+"""Stick-slip of each segment: spectrum, events, waveform and its class."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
+from tribolab.friction.oscillation.examine import Examined, Limits, examine
+from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.slip_table import (
+    class_of,
+    class_table,
+    event_list,
+    line_table,
+    oscillates,
+    ranked,
+    ringing,
+    spectra,
+    table,
+)
+from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
+from tribolab.friction.segments.stretches import name_of
+from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.quantities import stamp
+
+_SOME = 100_000  # samples of a segment that tell its sign
+_CUT = 3  # stretches of three samples at an extreme that say that the signal is cut off
+
+# of a run that has only forces, these are in N and have "force_" before their name
+_IN_SIGNAL_UNIT = (
+    "drop",
+    "drop_std",
+    "oscillation_swing",
+    "background_noise",
+    "sample_noise",
+    "hysteresis",
+    "mains_amplitude",
+    "loading_slope",
+    "event_drop",
+    "line_swing",
+    "psd",
+    "psd_background",
+    "psd_significant",
+    "distance_psd",
+)
+
+
+REVERSED = (
+    "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
+    "turned: look at the sensor's sense, and set `sign = -1` for the friction force in the dialect "
+    "if it is so"
+)
+
+
+class Signal(NamedTuple):
+    """Friction of one segment, positive as resistance, and what the sensor gave."""
+
+    time: np.ndarray
+    values: np.ndarray
+    raw: np.ndarray
+    load: float
+
+
+def stick_slip(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    *,
+    hysteresis: float = 0.5,
+    noise_levels: float = 4.0,
+    fewest_samples: int = 16,
+) -> xr.Dataset:
+    """Stick-slip of each segment: spectrum in time and distance, events, and class of waveform.
+
+    Parameters
+    ----------
+    run
+        The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
+        ``friction_force`` alone.
+    segments
+        From `find_segments` on the same run; the trimmed part of each is looked at.
+    hysteresis
+        Smallest swing of an event, relative to the swing of the segment's oscillation.
+    noise_levels
+        Smallest swing of an event in standard deviations of the noise.
+    fewest_samples
+        Segments with fewer samples are not evaluated.
+
+    Returns
+    -------
+    xarray.Dataset
+        On dim ``segment``, beside ``sliding_speed``, ``direction`` and ``sliding_distance``:
+        ``waveform`` (text: one of ``waveform.CLASSES``, "not decided" or "not evaluated") and
+        ``class_probability`` (segment, waveform_class); ``regularity`` (text: "regular",
+        "irregular" or "intermittent") and ``oscillating_time_share``; ``periods`` in the segment;
+        ``dominant_frequency`` [Hz] and ``dominant_wavelength`` [m] of the spectrum (with ``_sem``;
+        of the drops where these are alike and agree), ``false_alarm_probability``,
+        ``peak_prominence``, ``oscillation_swing``, ``oscillation_share``, ``background_noise``,
+        ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
+        ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
+        ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m];
+        ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
+        ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``spike_share``;
+        ``instrument`` (text: mains and resonances), ``method``, ``remark`` (text).
+        Where the class is smooth sliding or not decided, only what describes the noise is a number;
+        its ``oscillation_swing`` bounds what could be hidden.
+        On (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
+        ``line_swing``, ``line_false_alarm_probability`` of all oscillations that are significant.
+        On (segment, frequency): ``psd``, ``psd_background``, ``psd_significant`` [1/Hz]; on
+        (segment, inverse_wavelength): ``distance_psd`` [m]. On dim ``event``: ``event_segment``,
+        ``event_time`` [s], ``event_drop``, ``event_stick``, ``event_slip`` [s].
+        Of a run with forces only, what carries the signal's unit is called ``force_...``.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has no friction or the segments are another run's.
+
+    Notes
+    -----
+    Beside this module in `tribolab.friction.oscillation`: the spectrum, its background and
+    significance (`oscillation`), `events`, the class and its limits (`waveform`). Distance is
+    speed times time, S_x(1/lambda) = v S(f) with 1/lambda = f/v: a segment has one speed. Periods
+    are counted from the middle of one sharp fall to that of the next (of a reversed sawtooth, of
+    its rises), pauses left out. Of ten cycles at an amplitude three times the noise, a mean drop is
+    known to some 5 % (``tests/benchmarks/stick_slip_table.py``).
+    Irregular stick-slip has no period: its dominant wavelength is that of the mean frequency of its
+    spectrum (`oscillation.mean_frequency`), or of its line where there is a sharp one; the mean
+    distance between drops is another number, ``recurrence_distance``.
+    Spectrum and drops have to agree on the period within 15 % or three errors (where periods
+    scatter, within a factor of 1.8), and the segment has to hold four periods: else the class is
+    "not decided", and the remark says why. An oscillation with fewer than four periods is not told
+    from a slow wander.
+    A line of the mains is taken out before anything else is sought; an oscillation that keeps its
+    frequency within 3 % over speeds that differ by a factor of two or more is named as a resonance.
+
+    Examples
+    --------
+    >>> from tribolab.friction.segments.find import find_segments
+    >>> import xarray as xr
+    >>> t = np.arange(4000) / 100
+    >>> run = xr.Dataset(
+    ...     {
+    ...         "friction_coefficient": ("time", 0.5 + 0.1 * (t % 1.0)),
+    ...         "sliding_velocity": ("time", np.full(4000, 1e-5)),
+    ...     },
+    ...     {"time": t},
+    ... )
+    >>> found = stick_slip(run, find_segments(run))
+    >>> found.waveform.item(), round(found.dominant_wavelength.item() * 1e6, 2)
+    ('sawtooth stick-slip', 10.0)
+    """
+    belong(run, segments)
+    limits = Limits(hysteresis, noise_levels, fewest_samples)
+    speed = segments["sliding_speed"].values.astype(float)
+    force = "friction_force" in run and "normal_force" not in run
+    found, loads, remarks = [], [], []
+    for one, v in zip(_signals(run, segments), speed, strict=True):
+        seen = examine(one.time, one.values, limits, force=force)
+        found.append(seen)
+        loads.append(one.load)
+        remarks.append(_remark(seen, _cut_off(one.raw), v))
+    data = table(found, speed, np.array(loads))
+    data["instrument"] = _texts(_instrument(found, speed))
+    data["remark"] = _texts(remarks)
+    result = xr.Dataset({name: ("segment", values) for name, values in data.items()})
+    kept = ("trimmed_start", "trimmed_stop", "sliding_speed", "direction", "sliding_distance")
+    result = result.assign({k: ("segment", segments[k].values) for k in kept if k in segments})
+    result["class_probability"] = ("segment", "waveform_class"), class_table(found)
+    result = result.assign_coords(
+        segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
+    )
+    result = result.merge(spectra(found, speed)).merge(event_list(found))
+    result = result.merge(line_table(found, speed))
+    if force:
+        names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
+        result = result.rename(names)
+    return stamp(result, **run.attrs)
+
+
+def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
+    """Friction of each segment, one at a time: a long run is never held twice."""
+    time, parts = run["time"].values, trimmed_slices(run, segments)
+    direction = segments["direction"].values.astype(float)
+    if "friction_force" in run:
+        force = run["friction_force"].values
+        # a sensor whose sign is turned would turn sticks into slips
+        means = [
+            d * np.nanmean(force[s][:_SOME])
+            for s, d in zip(parts, direction, strict=True)
+            if np.isfinite(force[s][:_SOME]).any()
+        ]
+        if means and max(means) < 0:
+            direction = -direction
+        normal = run["normal_force"].values if "normal_force" in run else None
+        zero = 0.0
+        if normal is not None and "omitted_reason" in segments and len(parts):
+            first = np.concatenate([normal[s][:1000] for s in parts])
+            if np.isfinite(first).any():
+                rests = unloaded_rests(run, segments, float(np.nanmedian(first)))[1]
+                zero = float(rests.value.mean()) if rests else 0.0
+        for part, sign in zip(parts, direction, strict=True):
+            raw = force[part]
+            if normal is None:
+                yield Signal(time[part], _signed(raw, sign), raw, np.nan)
+                continue
+            pressed = normal[part] - zero
+            load = float(np.mean(pressed)) if pressed.size else np.nan
+            if not load > 0:  # no contact, or a gap
+                known = pressed[np.isfinite(pressed) & (pressed > 0)]
+                load = float(known.mean()) if known.size > 0.5 * pressed.size else np.nan
+            if np.isfinite(load):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    ratio = np.divide(_signed(raw, sign), pressed, out=pressed)
+                yield Signal(time[part], ratio, raw, load)
+            else:
+                yield Signal(time[part], np.full(raw.size, np.nan), raw, load)
+    elif "friction_coefficient" in run:
+        ratio = run["friction_coefficient"].values
+        # a coefficient that never changes sign carries no direction
+        first = [ratio[s][:_SOME] for s in parts]
+        signed = any(np.nanmean(x) < 0 for x in first if np.isfinite(x).any())
+        for part, sign in zip(parts, direction, strict=True):
+            raw = ratio[part]
+            yield Signal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
+    else:
+        raise AnalysisError(
+            f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
+        )
+
+
+def _signed(values: np.ndarray, sign: float) -> np.ndarray:
+    if sign == 0:
+        sign = -1.0 if np.nanmean(values) < 0 else 1.0
+    return -values if sign < 0 else values
+
+
+def _cut_off(values: np.ndarray) -> bool:
+    """Whether the signal stays at its largest or smallest value again and again."""
+    if values.size < 32 or values.size > 1 << 21:
+        return False
+    for end in (np.nanmax(values), np.nanmin(values)) if np.isfinite(values).any() else ():
+        at = values == end
+        three = at[2:] & at[1:-1] & at[:-2]
+        if at.all() or int((three[1:] & ~three[:-1]).sum()) >= _CUT:
+            return not at.all()
+    return False
+
+
+def _texts(values: list[str]) -> np.ndarray:
+    return np.array(values, dtype=object)
+
+
+def _remark(found: Examined | str, cut: bool, speed: float) -> str:
+    if isinstance(found, str):
+        return found
+    words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
+    if not np.isfinite(speed):
+        words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
+    if found.verdict.kind == UNDECIDED:
+        return "; ".join([*words, f"not decided: {found.verdict.doubt}"])
+    words += _form_words(found, speed)
+    second = ranked(found)[1]
+    if class_of(found) == CLASSES[0] and second[1] > DOUBT:
+        words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
+        if found.oscillation.share < 0.5:
+            words.append("noise and spikes hold more of the fluctuation")
+    return "; ".join(words)
+
+
+def _form_words(found: Examined, speed: float) -> list[str]:
+    """Say what is special of an oscillation that is claimed."""
+    if not oscillates(found):
+        return []
+    words, seen = [], found.regularity
+    if class_of(found) == CLASSES[3]:
+        words.append(REVERSED)
+    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
+        words.append("noise and spikes hold more of the fluctuation than the oscillation")
+    if seen.kind == KINDS[2]:
+        words.append(f"oscillates {seen.share:.0%} of the time")
+    if seen.kind == KINDS[1] and speed > 0:
+        spectral = 1e6 * speed / found.verdict.frequency
+        apart = 1e6 * speed * float(seen.periods.mean())
+        words.append(
+            f"periods scatter by {found.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
+            f"apart in the mean, the spectrum tells a wavelength of {spectral:.3g} µm"
+        )
+    if len(found.lines) > 1:
+        listed = ", ".join(f"{line.frequency:.4g} Hz" for line in found.lines)
+        words.append(f"{len(found.lines)} frequencies, the strongest first: {listed}")
+    return words
+
+
+def _instrument(found: list[Examined | str], speed: np.ndarray) -> list[str]:
+    """Name what is the instrument's: lines of the mains, and lines that ignore the speed."""
+    kind = np.array([class_of(e) for e in found], dtype=object)
+    own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in found])
+    texts = []
+    for e, rings in zip(found, ringing(kind, own, speed), strict=True):
+        if isinstance(e, str):
+            texts.append("")
+            continue
+        names = [f"mains at {line.name}" for line in e.oscillation.mains]
+        if rings:
+            names.append(f"resonance at {e.oscillation.frequency:.4g} Hz")
+        texts.append("; ".join(names))
+    return texts

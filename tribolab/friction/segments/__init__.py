@@ -1,0 +1,1 @@
+"""Pieces of constant speed: found, and judged."""

@@ -1,0 +1,256 @@
+"""Whether a piece of a velocity record holds its speed, by its own data and by how it ends.
+
+Notes
+-----
+A plateau and the flat top of a sinusoid look alike from within. Three questions part them, and
+none of them looks at what the rest of the record does:
+
+1. The cubic through the piece may change by no more than `drift` of the speed: a triangle has no
+   trend, but it has a curvature.
+2. A plateau ends. Where the speed leaves it slowly, over more than `GRADUAL` of its length, the
+   quartic through the piece and what lies beside it shows whether both are one motion: it then
+   describes the piece better than a constant does.
+3. Ends that stand off the level by more than half of `drift` belong to the ramp beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.friction.segments.plateaus import running_median
+
+INSIDE = 16  # bins within a piece
+BESIDE = 1.5  # of its length are looked at on each side
+GRADUAL = 0.3  # of its length: a plateau is left faster
+NEAR = 2.5  # times the drift: what is farther off in speed is not beside it
+BETTER = 0.35  # share of the variance about a constant that is left by one smooth motion
+SURE = 40.0  # squares (in variances) by which a cubic is better than a constant, if not by chance
+FEWEST = 6  # bins that tell a curvature
+
+
+class Record:
+    """Mean velocities of a record over any bins, from its velocity or from its position.
+
+    Parameters
+    ----------
+    time
+        Finite samples [s].
+    velocity, position
+        One of them [m/s], [m].
+    """
+
+    def __init__(
+        self,
+        time: np.ndarray,
+        velocity: np.ndarray | None = None,
+        position: np.ndarray | None = None,
+    ) -> None:
+        self.time = time
+        self._from_position = position is not None
+        # what white noise of a bin becomes in one of twice the width
+        self.averaging = 2**-1.5 if self._from_position else 2**-0.5
+        values = running_median(position) if position is not None else velocity
+        if values is None:
+            raise ValueError("a velocity or a position is wanted")
+        # small numbers add up without loss
+        self._total = np.concatenate([[0.0], np.cumsum(values - values[0])])
+        self._first = float(values[0])
+        self._moment = np.concatenate([[0.0], np.cumsum(time - time[0])])
+
+    def means(self, edges: np.ndarray) -> np.ndarray:
+        """Mean velocity between successive times; NaN without samples.
+
+        From the velocity it is, where there are enough samples, the mean of the middle half of
+        eight parts, so that a spike is outvoted; from the position the slope between its means
+        around the two times.
+        """
+        return self._slopes(edges) if self._from_position else self._levels(edges)
+
+    def _levels(self, edges: np.ndarray) -> np.ndarray:
+        at = np.searchsorted(self.time, edges)
+        count = np.diff(at)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if count.size and np.median(count) >= 16:
+                fine = at[:-1, None] + (count[:, None] * np.arange(8) / 8).astype(int)
+                fine = np.append(fine.ravel(), at[-1])
+                parts = np.diff(self._total[fine]) / np.diff(fine)
+                return np.sort(parts.reshape(-1, 8), axis=1)[:, 2:-2].mean(axis=1) + self._first
+            return np.diff(self._total[at]) / count + self._first
+
+    def _slopes(self, edges: np.ndarray) -> np.ndarray:
+        half = np.diff(edges).mean() / 2 if edges.size > 1 else 0.0
+        around = np.clip([edges - half, edges + half], edges[0], edges[-1])
+        at = np.searchsorted(self.time, around)
+        count = at[1] - at[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            where, when = (
+                (total[at[1]] - total[at[0]]) / count for total in (self._total, self._moment)
+            )
+            return np.diff(where) / np.diff(when)
+
+
+def _fit(place: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
+    """Polynomial of least squares at the places it was fitted to."""
+    basis = np.polynomial.legendre.legvander(place, degree)
+    return basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+
+
+def _scatter(values: np.ndarray) -> float:
+    """Return the standard deviation of bins from bin to bin, which no slow change adds to."""
+    if values.size < 4:
+        return 0.0
+    return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
+
+
+def _smoothed(values: np.ndarray) -> np.ndarray:
+    """Return the running median of three bins."""
+    if values.size < 3:
+        return values
+    padded = np.concatenate([values[:1], values, values[-1:]])
+    return np.median(np.stack([padded[i : i + values.size] for i in range(3)]), axis=0)
+
+
+def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, int]:
+    """Return the samples [first, last) of a piece without the ends that stand off its level.
+
+    Parameters
+    ----------
+    data
+        The record.
+    first, last
+        The piece: samples [first, last).
+    drift
+        Relative change that a constant speed may show.
+    """
+    noise = 0.0
+    for count in (4 * INSIDE, 2 * INSIDE, INSIDE):  # coarser where noise hides the ends
+        count = min(count, (last - first) // 2)
+        if count < 2 * FEWEST:
+            break
+        at = first + (last - first) * np.arange(count + 1) // count
+        values = data.means(data.time[np.minimum(at, data.time.size - 1)])
+        middle = values[count // 4 : count - count // 4]
+        if not np.isfinite(middle).any():
+            break
+        level = float(np.nanmedian(middle))
+        # few bins tell their scatter poorly: no less than the finer ones'
+        noise = max(_scatter(middle), noise)
+        limit = max(drift / 2 * abs(level), 4 * noise)
+        off = np.abs(values - level) > limit
+        off &= np.isfinite(values)
+        before = int(np.argmin(np.append(off, False)))
+        after = int(np.argmin(np.append(off[::-1], False)))
+        if before + after >= count // 2:  # not the ends: the piece has no level
+            break
+        first, last = int(at[before]), int(at[count - after])
+        if limit > 4 * noise:
+            break
+        noise *= data.averaging
+    return first, last
+
+
+def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
+    """Whether a piece holds its speed.
+
+    Parameters
+    ----------
+    data
+        The record.
+    first, last
+        The piece: samples [first, last).
+    drift
+        Relative change that a constant speed may show.
+
+    Returns
+    -------
+    bool
+        False only where the data are sure of it: see the notes of this module.
+    """
+    count = min(INSIDE, last - first)
+    if count < FEWEST:
+        return True
+    begin, end = float(data.time[first]), float(data.time[last - 1])
+    width = (end - begin) / count
+    if not width > 0:
+        return True
+    edges = begin + width * np.arange(count + 1)
+    inside = data.means(edges)
+    known = np.isfinite(inside)
+    if np.count_nonzero(known) < FEWEST:
+        return True
+    place = np.linspace(-1, 1, count)[known]
+    inside = inside[known]
+    level = float(inside.mean())
+    core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
+    if _changes(place[core], inside[core], drift * abs(level)):
+        return False
+    if _fluctuates(data, begin, end, last - first, NEAR * drift * abs(level)):
+        return False
+    return not _goes_on(data, inside, begin, end, level, drift)
+
+
+def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
+    """Whether bins surely change by more than `most` along the piece."""
+    cubic = _fit(place, values, 3)
+    left = float(((values - cubic) ** 2).sum())
+    about = float(((values - values.mean()) ** 2).sum())
+    variance = max(left, 1e-12 * float((values**2).sum())) / max(values.size - 4, 1)
+    if np.ptp(cubic) > most and about - left > SURE * variance:
+        return True
+    # a kink is no cubic: means of quarters, whose range is three quarters of a ramp's
+    parts = np.array_split(values, 4)
+    apart = float(np.ptp([part.mean() for part in parts])) * 4 / 3
+    scatter = float(np.sqrt(np.mean(np.diff(values, 2) ** 2) / 6))
+    sure = 8 * (1 + 8 / values.size)  # few bins tell their scatter poorly
+    return apart > most and apart > sure * scatter / np.sqrt(values.size / 4)
+
+
+def _fluctuates(data: Record, begin: float, end: float, samples: int, most: float) -> bool:
+    """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
+    values = data.means(np.linspace(begin, end, min(samples, 1024) + 1))
+    values = values[np.isfinite(values)]
+    if values.size < 4 * FEWEST:
+        return False
+    variance = float(values.var())
+    # von Neumann: white noise differs between neighbours as much as anywhere
+    alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    return alike > 0.4 and alike * variance > most**2
+
+
+def _goes_on(
+    data: Record,
+    inside: np.ndarray,
+    begin: float,
+    end: float,
+    level: float,
+    drift: float,
+) -> bool:
+    """Whether one smooth motion passes through the piece and what lies beside it."""
+    count = inside.size
+    width = (end - begin) / count
+    steps = np.arange(int(BESIDE * count) + 1)
+    sides = []
+    for edges in (begin - width * steps[::-1], end + width * steps):
+        inner = (edges >= data.time[0] - width / 2) & (edges <= data.time[-1] + width / 2)
+        values = data.means(edges[inner]) if inner.any() else np.zeros(0)
+        sides.append(values)
+    sides[0] = sides[0][::-1]  # from the piece outwards
+    near = []
+    for values in sides:
+        close = np.abs(_smoothed(values) - level) <= NEAR * drift * abs(level)
+        near.append(values[: int(np.argmin(np.append(close, False)))])
+    longest = max(len(values) for values in near)
+    if longest < GRADUAL * count:
+        return False
+    beside = np.concatenate([near[0][::-1], near[1]])
+    if np.abs(beside - level).max() <= drift / 4 * abs(level):
+        return False
+    values = np.concatenate([near[0][::-1], inside, near[1]])
+    if values.size < count + 3:
+        return False
+    smooth = _fit(np.linspace(-1, 1, values.size), values, 4)
+    own = slice(near[0].size, near[0].size + count)
+    about = float(((inside - level) ** 2).sum()) / (count - 1)
+    left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
+    # the longer the way on which a plateau is left, the more it has to prove that it is one
+    return left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about

@@ -1,0 +1,291 @@
+"""Constant-speed segments of a run, and what was left out of them, and why."""
+
+from __future__ import annotations
+
+from numbers import Real
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, shown
+from tribolab.friction.segments.loaded import loaded
+from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.slopes import line
+from tribolab.friction.segments.stretches import (
+    Stretch,
+    finite,
+    from_position,
+    from_set_speed,
+    from_steps,
+    from_velocity,
+    name_of,
+    track,
+    velocity_source,
+)
+from tribolab.quantities import stamp
+from tribolab.units import to_si
+
+LABELS = ("set_speed", "set_normal_force", "step", "cycle")
+
+
+def find_segments(
+    run: xr.Dataset,
+    trim: float = 0.10,
+    *,
+    resolution: float = 0.02,
+    drift: float = 0.10,
+    min_samples: int = 10,
+    min_duration: str | float = 0.0,
+    max_gap: str | float | None = None,
+    rest_speed: str | float | None = None,
+    position_range: tuple[str | float, str | float] | None = None,
+) -> xr.Dataset:
+    """Find the segments of a run that slide at constant speed.
+
+    Parameters
+    ----------
+    run
+        Dataset with dim ``time`` and one of ``sliding_velocity``, ``position``, ``step``; the
+        first of these that is there is used (see Notes).
+    trim
+        Share of each segment's duration that is left out at each end, 0 <= trim < 0.5.
+    resolution
+        Relative difference of speed that separates two neighbouring plateaus.
+    drift
+        Relative change of speed within one plateau above which it is a ramp.
+    min_samples
+        Fewest samples in a segment.
+    min_duration
+        Shortest segment [s].
+    max_gap
+        Longest pause between two samples within a segment [s]; by default a twentieth of the
+        segment (a quarter if ``position`` shows that the speed held) and no less than 20 usual
+        sample spacings.
+    rest_speed
+        Speed below which the slider is at rest [m/s]; by default a twentieth of the noise of a
+        reading, or 1e-5 of the highest speed, unless more than a hundredth of the longest slide
+        is covered so slowly.
+    position_range
+        Only the part of each trimmed segment between these positions [m] counts.
+
+    Returns
+    -------
+    xarray.Dataset
+        On dim ``segment``: ``start``, ``stop``, ``trimmed_start``, ``trimmed_stop`` [s],
+        ``sliding_speed`` [m/s], ``direction`` (+1, -1; 0 unknown), ``sliding_distance`` [m] and
+        ``samples`` of the trimmed part, and the run's labels (``set_speed``, ``step`` ...) where
+        it has them. On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and
+        ``omitted_reason``. Attributes ``trim`` and ``velocity_source`` (``"recorded"``,
+        ``"position"``, ``"step"`` or ``"set speed"``); with a `position_range`,
+        ``position_low_m`` and ``position_high_m``.
+
+    Raises
+    ------
+    AnalysisError
+        If `trim` is out of range, the run has no samples, or nothing tells its speed.
+
+    Notes
+    -----
+    The segments of the paper [1]_ (Appendix C): "for each imposed sliding speed, the
+    corresponding constant-velocity segment was identified from the velocity signal. The first
+    and final 10 % of each segment were excluded". A step of relative height s between two
+    plateaus of N samples with white relative noise r is resolved where
+    s > max(resolution, 18 r sqrt(2/N)).
+
+    From ``position`` the velocity is a robust slope over blocks that are just long enough.
+    Without velocity and position each ``step`` is a segment (speed from ``set_speed`` where
+    known, direction from the sign of the mean friction force); with a set speed alone
+    (variable or attribute ``set_speed_m_s``) the whole record is one segment.
+
+    References
+    ----------
+    .. [1] Xu et al. (2026), Appendix C.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> v = np.repeat([0.0, 1e-3, 0.0, -1e-3, 0.0], 100)
+    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
+    >>> found = find_segments(run)
+    >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
+    ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
+    """
+    if not isinstance(trim, Real) or not 0 <= trim < 0.5:
+        raise AnalysisError(
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
+            f"{shown(repr(trim))}"
+        )
+    if "time" not in run.dims or run.sizes["time"] == 0:
+        raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
+    shortest = to_si(min_duration, "s", name="min_duration")
+    gap = None if max_gap is None else to_si(max_gap, "s", name="max_gap")
+    slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
+    limits = Limits(resolution, drift, min_samples, slow)
+
+    source = velocity_source(run)
+    if source == "recorded":
+        stretches = from_velocity(run, limits, gap)
+    elif source == "position":
+        stretches = from_position(run, limits, gap)
+    elif source == "step":
+        stretches = from_steps(run, min_samples)
+    else:
+        stretches = from_set_speed(run, min_samples)
+    stretches = [
+        s._replace(kind="too short") if s.kind == "constant" and s.stop - s.start < shortest else s
+        for s in stretches
+    ]
+    stretches = loaded(run, stretches, limits)
+    return _dataset(run, stretches, source, trim, position_range)
+
+
+def why_no_segment(segments: xr.Dataset) -> str:
+    """Say in a sentence why a run has no segment; empty where it has one.
+
+    Parameters
+    ----------
+    segments
+        From `find_segments`.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> v = 1e-3 * np.arange(500.0)
+    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
+    >>> why_no_segment(find_segments(run))
+    'no segment: the run never slides at constant speed (ramp 100 % of the time)'
+    """
+    if segments.sizes["segment"]:
+        return ""
+    start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
+    reason = segments["omitted_reason"].values.astype(str)
+    whole = float((stop - start).sum())
+    lasted = {one: float((stop - start)[reason == one].sum()) for one in dict.fromkeys(reason)}
+    shares = [
+        f"{one} {lasted[one] / whole:.0%}".replace("%", " %")
+        for one in sorted(lasted, key=lambda one: -lasted[one])
+        if whole > 0 and lasted[one] >= 0.005 * whole
+    ]
+    detail = f" ({', '.join(shares)} of the time)" if shares else ""
+    return f"no segment: the run never slides at constant speed{detail}"
+
+
+def _dataset(
+    run: xr.Dataset,
+    stretches: list[Stretch],
+    source: str,
+    trim: float,
+    position_range: tuple[str | float, str | float] | None,
+) -> xr.Dataset:
+    kept = [s for s in stretches if s.kind == "constant"]
+    left = [s for s in stretches if s.kind != "constant"]
+    time = run["time"].values
+    start, stop = (np.array([getattr(s, k) for s in kept], float) for k in ("start", "stop"))
+    velocity = np.array([s.velocity for s in kept], float)
+    trimmed_start = start + trim * (stop - start)
+    trimmed_stop = stop - trim * (stop - start)
+    settings = {"trim": float(trim), "velocity_source": source}
+    if position_range is not None:
+        low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
+        trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, low, high)
+        settings |= {"position_low_m": low, "position_high_m": high}
+    first = np.searchsorted(time, trimmed_start, side="left")
+    last = np.searchsorted(time, trimmed_stop, side="right")
+    if source == "recorded":
+        velocity = _mean_velocity(run, first, last, velocity)
+    elif source == "position":
+        velocity = _mean_slope(run, trimmed_start, trimmed_stop, velocity)
+    direction = np.where(np.isnan(velocity) & (source == "recorded"), 0, np.sign(velocity))
+    if source in ("step", "set speed"):
+        direction = np.where(np.signbit(velocity), -1, 1)
+    speed = np.abs(velocity)
+    data = {
+        "start": start,
+        "stop": stop,
+        "trimmed_start": trimmed_start,
+        "trimmed_stop": trimmed_stop,
+        "sliding_speed": speed,
+        "direction": direction.astype(np.int8),
+        "sliding_distance": speed * (trimmed_stop - trimmed_start),
+        "samples": last - first,
+    }
+    for label in LABELS:
+        if label in run:
+            data[label] = _label(np.asarray(run[label].values, float), first, last)
+    result = xr.Dataset(
+        {name: ("segment", values) for name, values in data.items()},
+        coords={"segment": np.arange(len(kept))},
+    )
+    result["omitted_start"] = "omitted", np.array([s.start for s in left], float)
+    result["omitted_stop"] = "omitted", np.array([s.stop for s in left], float)
+    result["omitted_reason"] = "omitted", np.array([s.kind for s in left], dtype=object)
+    return stamp(result, **(run.attrs | settings))
+
+
+def _within(
+    run: xr.Dataset,
+    start: np.ndarray,
+    stop: np.ndarray,
+    low: float,
+    high: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Narrow each segment to the part between two positions."""
+    if "position" not in run:
+        raise AnalysisError(
+            f"{name_of(run)}: position_range is given, but the run has no 'position'"
+        )
+    time, position = finite(run, "position")
+    start, stop = start.copy(), stop.copy()
+    for i in range(start.size):
+        first, last = np.searchsorted(time, [start[i], stop[i]])
+        part = position[first:last]
+        inside = first + np.flatnonzero((part >= low) & (part <= high))
+        if inside.size == 0:
+            stop[i] = start[i]
+            continue
+        start[i], stop[i] = time[inside[0]], time[inside[-1]]
+    return start, stop
+
+
+def _mean_velocity(
+    run: xr.Dataset, first: np.ndarray, last: np.ndarray, guess: np.ndarray
+) -> np.ndarray:
+    """Mean of the recorded velocity over each trimmed segment, wild readings left out."""
+    velocity = run["sliding_velocity"].values
+    result = guess.copy()
+    for i in range(first.size):
+        part = velocity[first[i] : last[i]]
+        size = max(1, part.size // 4096)
+        part = part[: part.size // size * size].reshape(-1, size).mean(axis=1)
+        part = part[np.isfinite(part)]
+        if part.size == 0:
+            continue
+        rest = np.abs(part - np.median(part))
+        # quantised readings have no median deviation: their mean deviation stands in
+        keep = rest <= 6 * max(np.median(rest) / 0.6745, np.mean(rest))
+        result[i] = part[keep].mean()
+    return result
+
+
+def _mean_slope(
+    run: xr.Dataset, start: np.ndarray, stop: np.ndarray, guess: np.ndarray
+) -> np.ndarray:
+    """Slope of the position over each trimmed segment."""
+    time, position = track(run)
+    first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
+    result = guess.copy()
+    for i in range(first.size):
+        if last[i] - first[i] >= 3:
+            result[i] = line(time[first[i] : last[i]], position[first[i] : last[i]])[1]
+    return result
+
+
+def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Median of the run's label over each segment, NaN where it has none."""
+    result = np.full(first.size, np.nan)
+    for i in range(first.size):
+        part = values[first[i] : last[i]]
+        part = part[np.isfinite(part)]
+        if part.size:
+            result[i] = np.median(part)
+    return result

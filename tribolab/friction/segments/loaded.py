@@ -1,0 +1,109 @@
+"""Sliding without load is no friction: what of the constant stretches of a run is loaded."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.stretches import Stretch
+
+NO_LOAD = "no load"
+NO_CONTACT = 0.02  # share of the run's load below which there is no contact
+UNLOADED = 0.1  # share of the load below which a rest can tell the zero of the normal force
+LOADED = 0.9  # share of a stretch's load from which on its load is there
+LOST = 0.05  # a smaller share of a segment without contact is left to its mean
+BINS = 200  # in a stretch
+MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
+
+
+def loaded(run: xr.Dataset, stretches: list[Stretch], limits: Limits) -> list[Stretch]:
+    """Take out of the constant stretches what slides without load.
+
+    Parameters
+    ----------
+    run
+        The run; without ``normal_force`` nothing is taken out.
+    stretches
+        All stretches of the run in order.
+    limits
+        `min_samples` of a segment.
+
+    Returns
+    -------
+    list of Stretch
+        The stretches with those without load of kind ``"no load"``; a stretch whose load was taken
+        off or put on in its course is cut there.
+    """
+    if "normal_force" not in run:
+        return stretches
+    time, force = run["time"].values, np.asarray(run["normal_force"].values, float)
+    middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
+    sliding = middles["constant"]
+    usual = float(np.median(sliding[sliding > 0])) if (sliding > 0).any() else 0.0
+    if not usual > 0:
+        return stretches
+    rests = middles["at rest"]
+    rests = rests[np.abs(rests) < UNLOADED * usual]
+    zero = float(np.median(rests)) if rests.size else 0.0
+    least = NO_CONTACT * (usual - zero)
+    result: list[Stretch] = []
+    for one in stretches:
+        if one.kind == "constant":
+            result += _cut(time, force - zero, one, least, limits.min_samples)
+        else:
+            result.append(one)
+    return result
+
+
+def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind: str) -> np.ndarray:
+    found = []
+    for one in stretches:
+        if one.kind == kind:
+            first, last = np.searchsorted(time, [one.start, one.stop])
+            part = force[first:last][:: max(1, (last - first) // 4096)]
+            part = part[np.isfinite(part)]
+            if part.size:
+                found.append(float(np.median(part)))
+    return np.array(found)
+
+
+def _cut(
+    time: np.ndarray, force: np.ndarray, one: Stretch, least: float, min_samples: int
+) -> list[Stretch]:
+    """One stretch, cut where its load comes or goes."""
+    first, last = np.searchsorted(time, [one.start, one.stop])
+    count = min(BINS, last - first)
+    if count < 1:
+        return [one]
+    at = first + (last - first) * np.arange(count + 1) // count
+    mean = np.add.reduceat(np.nan_to_num(force[first:last]), at[:-1] - first) / np.diff(at)
+    bare = mean < least
+    if not bare.mean() > LOST:
+        return [one]
+    if bare.all():
+        return [one._replace(kind=NO_LOAD)]
+    away = _grown(bare, mean < LOADED * float(np.median(mean[~bare])))
+    edges = np.flatnonzero(np.diff(away)) + 1
+    if edges.size > 2 * MOST_CUTS:
+        return [one]
+    if away.all():
+        return [one._replace(kind=NO_LOAD)]
+    marks = np.concatenate([[0], edges, [count]])
+    result = []
+    for a, b in zip(marks[:-1], marks[1:], strict=True):
+        kind = NO_LOAD if away[a] else "constant"
+        if kind == "constant" and at[b] - at[a] < min_samples:
+            kind = "too short"
+        start = one.start if a == 0 else float(time[at[a]])
+        stop = one.stop if b == count else float(time[at[b]])
+        result.append(one._replace(start=start, stop=stop, kind=kind))
+    return result
+
+
+def _grown(seed: np.ndarray, allowed: np.ndarray) -> np.ndarray:
+    """Return the runs of allowed bins that hold a seed: the load's way down and up again."""
+    allowed = allowed | seed
+    number = np.cumsum(np.diff(allowed, prepend=False) & allowed)
+    holding = np.unique(number[seed])
+    return allowed & np.isin(number, holding)

@@ -1,0 +1,320 @@
+"""Where the plateaus of a velocity record lie: block reduction, classes of pieces, recursion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.segments.constancy import Record, held_part, is_constant
+from tribolab.friction.segments.plateaus import (
+    Noise,
+    estimate_noise,
+    find_breaks,
+    quantum,
+    running_median,
+    straight_pieces,
+)
+
+MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
+FEW_BLOCKS = 512  # in a second look
+PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
+KEPT = ("constant", "at rest")
+STILL = 1e-7  # of the highest speed: nothing slower is told from rest
+SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
+SOMEWHERE = 0.01  # of the longest way of a piece
+PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
+MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
+
+
+class Piece(NamedTuple):
+    """Samples [first, last), the mean velocity, and what the piece is."""
+
+    first: int
+    last: int
+    kind: str
+    velocity: float
+    change: float
+    error: float
+
+
+class Limits(NamedTuple):
+    """What counts as constant; see `find_segments`."""
+
+    resolution: float
+    drift: float
+    min_samples: int
+    rest_speed: float | None
+
+
+def locate(
+    time: np.ndarray, velocity: np.ndarray, limits: Limits, floor: float = 0.0
+) -> list[Piece]:
+    """Return the pieces of a record without gaps in it, in order and touching.
+
+    Parameters
+    ----------
+    time, velocity
+        Finite samples [s], [m/s]; the spacing may change.
+    limits
+        What counts as constant.
+    floor
+        Least noise of a sample [m/s], where it is known.
+    """
+    pieces = _locate(time, velocity, limits, None, None, floor)
+    pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
+    return _proven(pieces, limits)
+
+
+def moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
+
+    Parameters
+    ----------
+    time, pieces
+        Samples [s], and pieces of the whole record.
+    limits
+        A `rest_speed` of these decides alone.
+    """
+    kept = [p for p in pieces if p.kind == "constant"]
+    if limits.rest_speed is not None or not kept:
+        return pieces
+    top = max(abs(p.velocity) for p in kept)
+    way = [abs(p.velocity) * (time[p.last - 1] - time[p.first]) for p in pieces]
+    least = SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
+    return _fused(
+        [
+            p._replace(kind="at rest")
+            if p.kind == "constant" and abs(p.velocity) <= SLOW * top and d < least
+            else p
+            for d, p in zip(way, pieces, strict=True)
+        ],
+        limits,
+    )
+
+
+def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
+
+    Parameters
+    ----------
+    data
+        The record that the pieces are of.
+    pieces
+        From `locate`, in samples of the record.
+    limits
+        What counts as constant.
+    """
+    result: list[Piece] = []
+    for piece in pieces:
+        if piece.kind != "constant":
+            result.append(piece)
+            continue
+        first, last = held_part(data, piece.first, piece.last, limits.drift)
+        kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
+        parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
+        result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
+    return _paused(_fused(result, limits), limits)
+
+
+def _paused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
+    result = list(pieces)
+    for i in range(1, len(pieces) - 1):
+        before, piece, after = pieces[i - 1 : i + 2]
+        if piece.kind != "constant" or before.kind != "ramp" or after.kind != "ramp":
+            continue
+        shortest = min(before.last - before.first, after.last - after.first)
+        one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
+        if one_way and shortest > PAUSE * (piece.last - piece.first):
+            result[i] = piece._replace(kind="ramp")
+    return _fused(result, limits)
+
+
+def block_size(samples: int, most: int = MOST_BLOCKS) -> int:
+    """Return the samples per block: 1 for small records, else a power of two, `PARTS` or more."""
+    if samples <= most:
+        return 1
+    return max(PARTS, 2 ** int(np.ceil(np.log2(samples / most))))
+
+
+def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Time and robust mean velocity of each block."""
+    if size == 1:
+        return time, velocity
+    count = time.size // size
+    parts = velocity[: count * size].reshape(count * PARTS, size // PARTS).mean(axis=1)
+    parts = np.sort(parts.reshape(count, PARTS), axis=1)
+    robust = parts[:, 2:-2].mean(axis=1)  # the middle half: nearly the mean's efficiency
+    begin, end = time[: count * size : size], time[size - 1 : count * size : size]
+    return (begin + end) / 2, robust
+
+
+def _despiked(velocity: np.ndarray, noise: Noise) -> np.ndarray:
+    """Replace single samples that stand far from their neighbours' median."""
+    median = running_median(velocity)
+    limit = 6 * np.sqrt(noise.variance(median))
+    limit = np.maximum(limit, 1e-3 * np.abs(median))
+    return np.where(np.abs(velocity - median) > limit, median, velocity)
+
+
+def _locate(
+    time: np.ndarray,
+    velocity: np.ndarray,
+    limits: Limits,
+    noise: Noise | None,
+    rest_speed: float | None,
+    floor: float = 0.0,
+) -> list[Piece]:
+    size = block_size(time.size, MOST_BLOCKS if noise is None else FEW_BLOCKS)
+    t, v = _blocks(time, velocity, size)
+    if noise is None:
+        noise = estimate_noise(v, floor / np.sqrt(size))
+        # a steady reading may be half a step off, and says nothing of it
+        step = quantum(velocity)
+        noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
+    else:  # the parent's noise per sample, averaged over a block
+        noise = noise.scaled(size**-0.5)
+    single = noise.scaled(size**0.5)
+    if rest_speed is None:
+        rest_speed = limits.rest_speed
+    if rest_speed is None:
+        top = float(np.quantile(np.abs(v), 0.98))
+        rest_speed = max(STILL * top, 0.05 * single.floor)
+    if size == 1:
+        v = _despiked(v, noise)
+    breaks = find_breaks(v, noise, limits.resolution, rest_speed)
+    found = straight_pieces(t, v, noise, breaks, limits.resolution)
+
+    pieces: list[Piece] = []
+    pending = 0  # first sample that no kept piece has taken yet
+    edges = np.append(found.first * size, time.size)
+    fewest = limits.min_samples if size == 1 else 4 * size
+    for i in range(found.first.size):
+        first, last = int(edges[i]), int(edges[i + 1])
+        mean, change = float(found.mean[i]), float(found.change[i])
+        kind = _kind(
+            mean, change, found.mean_error[i], found.change_error[i], rest_speed, limits.drift
+        )
+        if last - first < fewest and kind != "ramp":
+            kind = "too short"
+        if size > 1:
+            if kind not in KEPT and not (kind == "ramp" and last - first >= 4 * size):
+                continue
+            pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
+            pending = last
+        pieces.append(Piece(first, last, kind, mean, change, float(found.mean_error[i])))
+    if size > 1:
+        pieces += _leftover(time, velocity, limits, single, rest_speed, pending, time.size)
+    return pieces
+
+
+def _leftover(
+    time: np.ndarray,
+    velocity: np.ndarray,
+    limits: Limits,
+    noise: Noise,
+    rest_speed: float,
+    first: int,
+    last: int,
+) -> list[Piece]:
+    """Look again, with finer blocks, at what lies between two kept pieces."""
+    if first >= last:
+        return []
+    if last - first == time.size:  # nothing was kept: go on with shorter stretches
+        middle = (first + last) // 2
+        return [
+            piece
+            for begin, end in ((first, middle), (middle, last))
+            for piece in _leftover(time, velocity, limits, noise, rest_speed, begin, end)
+        ]
+    inner = _locate(time[first:last], velocity[first:last], limits, noise, rest_speed)
+    return [p._replace(first=p.first + first, last=p.last + first) for p in inner]
+
+
+def _kind(
+    mean: float, change: float, error: float, change_error: float, rest_speed: float, drift: float
+) -> str:
+    sure = abs(change) - 3 * change_error
+    if abs(mean) <= max(rest_speed, MOVING * error):
+        return "ramp" if sure > 2 * rest_speed else "at rest"
+    return "ramp" if sure > drift * abs(mean) else "constant"
+
+
+def _fused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Join touching pieces of one kind and one velocity, such as a plateau and its last samples."""
+    result: list[Piece] = []
+    for piece in pieces:
+        if result and _same(result[-1], piece, limits):
+            last = result.pop()
+            n, k = last.last - last.first, piece.last - piece.first
+            kind = max(last, piece, key=lambda p: p.last - p.first).kind
+            piece = Piece(
+                last.first,
+                piece.last,
+                kind,
+                (n * last.velocity + k * piece.velocity) / (n + k),
+                last.change if n > k else piece.change,
+                min(last.error, piece.error),
+            )
+        result.append(piece)
+    return result
+
+
+def _same(a: Piece, b: Piece, limits: Limits) -> bool:
+    if a.kind == b.kind and a.kind != "constant":
+        return True
+    short, long = sorted((a, b), key=lambda p: p.last - p.first)
+    if long.kind not in KEPT or short.kind not in (long.kind, "too short"):
+        return False
+    apart = abs(a.velocity - b.velocity)
+    size = max(abs(a.velocity), abs(b.velocity))
+    return apart <= max(limits.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
+
+
+def _bridged(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Join two plateaus of one velocity across a disturbance that is short beside both."""
+    result: list[Piece] = []
+    for piece in pieces:
+        if len(result) > 1 and piece.kind == "constant" == result[-2].kind:
+            left, odd = result[-2], result[-1]
+            brief = 20 * (odd.last - odd.first) < piece.last - left.first
+            wide = limits._replace(resolution=2 * limits.resolution)
+            if odd.kind == "too short" and brief and _same(left, piece, wide):
+                del result[-2:]
+                result += _fused([left, piece._replace(first=odd.first)], wide)
+                continue
+        result.append(piece)
+    return result
+
+
+def _proven(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
+    result = list(pieces)
+    for i, piece in enumerate(pieces):
+        around = pieces[max(i - 2, 0) : i] + pieces[i + 1 : i + 3]
+        size = piece.last - piece.first
+        longest = max((p.last - p.first for p in around), default=0)
+        uncertain = np.sqrt(12) * piece.error * 3 > limits.drift * abs(piece.velocity)
+        speck = 10 * size < max((p.last - p.first for p in around if p.kind == "ramp"), default=0)
+        if piece.kind == "constant" and ((uncertain and 4 * size < longest) or speck):
+            result[i] = piece._replace(kind="ramp")
+    return _fused(result, limits)
+
+
+def _settled(pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call the tail of a ramp a ramp: a short drifting piece that leads into a long plateau."""
+    result = list(pieces)
+    for i, piece in enumerate(pieces):
+        if piece.kind != "constant":
+            continue
+        for other in pieces[max(i - 1, 0) : i] + pieces[i + 1 : i + 2]:
+            apart = abs(piece.velocity - other.velocity)
+            if (
+                other.kind == "constant"
+                and 4 * (piece.last - piece.first) < other.last - other.first
+                and apart < 2 * limits.drift * abs(other.velocity)
+                and abs(piece.change) > apart / 2
+            ):
+                result[i] = piece._replace(kind="ramp")
+    return _fused(result, limits)

@@ -1,0 +1,155 @@
+"""Velocity from a position record: robust slopes over blocks; pointwise dx/dt is useless."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.friction.segments.plateaus import quantum
+
+WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
+FEWEST = 8  # samples in a block
+JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
+FASTER = 3.0  # times the rate around it, for a single sample
+ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
+AROUND = 8  # samples on each side that tell the rate
+
+
+def position_noise(time: np.ndarray, position: np.ndarray) -> float:
+    """Estimate the standard deviation of the position readings [m].
+
+    From their distance to the chord of both neighbours, which a constant speed leaves at zero.
+    """
+    if time.size < 3:
+        return 0.0
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    chord = position[:-2] + share * (position[2:] - position[:-2])
+    size = np.sqrt(1 + share**2 + (1 - share) ** 2)
+    noise = float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    # readings that mostly repeat have no median distance
+    return noise if noise > 0 else quantum(position) / np.sqrt(12)
+
+
+def is_staircase(position: np.ndarray) -> bool:
+    """Whether most readings repeat the one before: the digits are coarser than the motion."""
+    return bool(position.size > 2 and np.mean(np.diff(position) == 0) > 0.5)
+
+
+def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join a position record where it jumps without a motion: set to zero in mid-run, wrapped.
+
+    Parameters
+    ----------
+    time, position
+        Finite samples [s], [m].
+
+    Returns
+    -------
+    tuple
+        The position without its jumps [m], and the samples before which they stood.
+
+    Notes
+    -----
+    A jump is a single difference of `JUMP` of the range or more that stands off from the rates
+    around it; it is replaced by what their median would give.
+    """
+    steps, spacing = np.diff(position), np.diff(time)
+    span = float(np.ptp(position)) if position.size else 0.0
+    far = np.flatnonzero((np.abs(steps) > JUMP * span) & (spacing > 0))
+    if far.size == 0 or steps.size < 2 * AROUND:
+        return position, np.zeros(0, dtype=int)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.where(spacing > 0, steps / spacing, np.nan)
+    near = far[:, None] + np.concatenate([np.arange(-AROUND, 0), np.arange(1, AROUND + 1)])
+    beside = np.where((near >= 0) & (near < rate.size), near, far[:, None])
+    around = rate[beside]
+    around[beside == far[:, None]] = np.nan
+    usual = np.nanmedian(around, axis=1)
+    size = np.where(around == 0, np.nan, np.abs(around))
+    still = np.isnan(size).all(axis=1)
+    size[still] = 0.0
+    scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
+    limit = np.maximum(FASTER * np.nanmedian(size, axis=1), ISOLATED * scatter)
+    jump = np.abs(rate[far] - usual) > limit
+    at = far[jump]
+    moved = np.zeros(position.size)
+    moved[at + 1] = steps[at] - usual[jump] * spacing[at]
+    return position - np.cumsum(moved), at + 1
+
+
+def block_slopes(
+    time: np.ndarray, position: np.ndarray, size: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean time and least-squares slope of each block of `size` samples."""
+    count = time.size // size
+    t = time[: count * size].reshape(count, size)
+    x = position[: count * size].reshape(count, size)
+    middle = t.mean(axis=1, keepdims=True)
+    t, x = t - middle, x - x.mean(axis=1, keepdims=True)
+    slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)
+    # one reweighting: readings that stand off (a stale or a wild one) are left out
+    rest = x - slope[:, None] * t
+    limit = 4 * np.median(np.abs(rest), axis=1, keepdims=True) / 0.6745
+    weight = (np.abs(rest) <= np.maximum(limit, 1e-300)).astype(float)
+    total = weight.sum(axis=1, keepdims=True)
+    t = t - (weight * t).sum(axis=1, keepdims=True) / np.maximum(total, 1)
+    spread = (weight * t * t).sum(axis=1)
+    good = spread > 0
+    better = (weight * t * x).sum(axis=1) / np.where(good, spread, 1.0)
+    return middle[:, 0], np.where(good, better, slope)
+
+
+def velocity_blocks(
+    time: np.ndarray, position: np.ndarray, least: int = FEWEST
+) -> tuple[np.ndarray, np.ndarray, int, float]:
+    """Velocity on blocks just long enough for a slope good to a few percent.
+
+    Good at the speeds at which most of the way is covered: what is slower is looked at again.
+
+    Parameters
+    ----------
+    time, position
+        Finite samples [s], [m].
+    least
+        Fewest samples in a block.
+
+    Returns
+    -------
+    tuple
+        Mean time of each block [s], velocity [m/s], samples in a block, and the usual error of
+        a block's velocity [m/s].
+    """
+    noise = position_noise(time, position)
+    size, error = least, 0.0
+    while True:
+        t, v = block_slopes(time, position, size)
+        spacing = np.median(np.diff(t)) / size if t.size > 1 else np.inf
+        error = float(noise * np.sqrt(12 / size) / (size * spacing)) if spacing > 0 else 0.0
+        if size * 64 > time.size or _fine(np.abs(v), error):
+            return t, v, size, error
+        size *= 2
+
+
+def _fine(speed: np.ndarray, error: float) -> bool:
+    """Whether the blocks' velocities are good where most of the way is covered."""
+    sure = np.maximum(speed - 3 * error, 0.0)  # what noise covers is no way
+    if not sure.any():
+        return False
+    order = np.argsort(speed)
+    share = np.cumsum(sure[order])
+    usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
+    return bool(error <= WANTED_ERROR * np.median(speed[speed > 0.2 * usual]))
+
+
+def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
+    """Offset and slope of the straight line through a stretch, single wild readings left out."""
+    t0 = time.mean()
+    keep = np.ones(time.size, dtype=bool)
+    offset = slope = 0.0
+    for _ in range(3):
+        slope, offset = np.polyfit(time[keep] - t0, position[keep], 1)
+        rest = np.abs(position - offset - slope * (time - t0))
+        limit = 4 * np.median(rest[keep]) / 0.6745
+        if limit == 0:
+            break
+        keep = rest <= limit
+    return float(offset - slope * t0), float(slope)

@@ -1,0 +1,274 @@
+"""Stretches of a run, from whatever tells its speed: velocity, position, steps or set speed."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.friction.segments import slopes
+from tribolab.friction.segments.constancy import Record
+from tribolab.friction.segments.locate import Limits, Piece, held, locate, moving
+
+RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
+
+
+class Stretch(NamedTuple):
+    """One stretch of the run [s] and what it is; `kind` "constant" makes it a segment."""
+
+    start: float
+    stop: float
+    kind: str
+    velocity: float
+
+
+def name_of(run: xr.Dataset) -> str:
+    """Return what errors call the run: its source file if known."""
+    return str(run.attrs.get("source", "run"))
+
+
+def velocity_source(run: xr.Dataset) -> str:
+    """Say what tells the speed of the run: the best of what it has."""
+    for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
+        if name in run and _any_number(run[name].values):
+            return source
+    if "step" in run:
+        return "step"
+    if "sliding_velocity" in run or "position" in run:
+        # nothing but NaN: an empty result that says so
+        return "recorded" if "sliding_velocity" in run else "position"
+    if "set_speed" in run or "set_speed_m_s" in run.attrs:
+        return "set speed"
+    raise AnalysisError(
+        f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
+        " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign file may "
+        'say it: sliding_speed = "1 mm/s" in its [[run]]'
+    )
+
+
+def _any_number(values: np.ndarray) -> bool:
+    """Whether there is a number among the values; the first few nearly always tell."""
+    return bool(np.isfinite(values[:1000]).any() or np.isfinite(values).any())
+
+
+def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Time and values where the values are numbers."""
+    time, values = run["time"].values, np.asarray(run[name].values, dtype=float)
+    if np.isfinite(values.sum()):  # one number says that there is no NaN, without a mask
+        return time, values
+    good = np.isfinite(values)
+    return time[good], values[good]
+
+
+def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Time and position where there is one, joined where its sensor was reset."""
+    time, position = finite(run, "position")
+    return time, slopes.without_resets(time, position)[0]
+
+
+def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
+    """Stretches from the recorded velocity."""
+    time, velocity = finite(run, "sliding_velocity")
+    if time.size < 2:
+        return _nothing(run, time.size)
+    pieces, share = locate(time, velocity, limits), 0.05
+    pieces = moving(time, pieces, limits)
+    pieces = held(Record(time, velocity=velocity), pieces, limits)
+    return _in_time(run, time, pieces, limits, max_gap, share)
+
+
+def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
+    """Stretches from the position, by slopes over blocks."""
+    time, position = track(run)
+    if time.size < 3 * slopes.FEWEST:
+        return _nothing(run, time.size)
+    pieces = _by_slopes(time, position, limits, slopes.FEWEST)
+    pieces = moving(time, pieces, limits)
+    pieces = held(Record(time, position=position), pieces, limits)
+    pieces = [_with_slope(time, position, p) for p in pieces]
+    share = 0.25  # one straight line on both sides of a pause shows that the speed held
+    return _in_time(run, time, pieces, limits, max_gap, share)
+
+
+def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: int) -> list[Piece]:
+    """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
+    t, v, size, error = slopes.velocity_blocks(time, position, least)
+    fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
+    # a staircase of its digits has blocks without noise beside such that hold a whole step
+    floor = error if slopes.is_staircase(position) else 0.0
+    blocks = locate(t, v, fewest, floor)
+    pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
+    pieces[-1] = pieces[-1]._replace(last=time.size)
+    pieces = _kinks(time, position, pieces, size)
+    if error == 0:
+        return pieces
+    result: list[Piece] = []
+    slow = [abs(p.velocity) < RESOLVED * error for p in pieces]
+    for is_slow, some in groupby(zip(slow, pieces, strict=True), key=lambda pair: pair[0]):
+        group = [piece for _, piece in some]
+        first, last = group[0].first, group[-1].last
+        if is_slow and last - first >= 128 * size:
+            inner = _by_slopes(time[first:last], position[first:last], limits, 2 * size)
+            group = [p._replace(first=p.first + first, last=p.last + first) for p in inner]
+        result += group
+    return result
+
+
+def _with_slope(time: np.ndarray, position: np.ndarray, piece: Piece) -> Piece:
+    if piece.kind != "constant":
+        return piece
+    inside = slice(piece.first, piece.last)
+    return piece._replace(velocity=slopes.line(time[inside], position[inside])[1])
+
+
+def _kinks(time: np.ndarray, position: np.ndarray, pieces: list[Piece], size: int) -> list[Piece]:
+    """Put the border of two neighbouring plateaus where their straight lines cross."""
+    kept = [i for i, p in enumerate(pieces) if p.kind == "constant"]
+    result = list(pieces)
+    for i, j in zip(kept[:-1], kept[1:], strict=True):
+        left, right = result[i], result[j]
+        if right.first - left.last > 3 * size:
+            continue
+        near = 20 * size  # the speed wanders within a plateau: only its end tells where it ends
+        (a, va), (b, vb) = (
+            slopes.line(time[first:last], position[first:last])
+            for first, last in (
+                (max(left.first, left.last - near), left.last),
+                (right.first, min(right.last, right.first + near)),
+            )
+        )
+        crossing = (a - b) / (vb - va) if va != vb else np.nan
+        index = int(np.searchsorted(time, crossing)) if np.isfinite(crossing) else -1
+        if left.last - 2 * size <= index <= right.first + 2 * size:
+            result[i] = left._replace(last=index)
+            result[j] = right._replace(first=index)
+            for k in range(i + 1, j):
+                result[k] = result[k]._replace(first=index, last=index)
+    return [p for p in result if p.last > p.first]
+
+
+def _nothing(run: xr.Dataset, finite: int) -> list[Stretch]:
+    time = run["time"].values
+    reason = "too short" if finite else "not a number"
+    return [Stretch(float(time[0]), float(time[-1]), reason, np.nan)]
+
+
+def _in_time(
+    run: xr.Dataset,
+    time: np.ndarray,
+    pieces: list[Piece],
+    limits: Limits,
+    max_gap: float | None,
+    share: float,
+) -> list[Stretch]:
+    """Pieces in run time, split at gaps; a gap is where samples are missing or not numbers."""
+    result: list[Stretch] = []
+    whole = run["time"].values
+    if time[0] > whole[0]:
+        result.append(Stretch(float(whole[0]), float(time[0]), "not a number", np.nan))
+    for piece in pieces:
+        at = _gaps(time, piece, max_gap, share)
+        edges = [piece.first, *(at + 1), piece.last]
+        for first, last in zip(edges[:-1], edges[1:], strict=True):
+            kind = piece.kind
+            if kind == "constant" and last - first < limits.min_samples:
+                kind = "too short"
+            stop = time[last - 1]
+            if last == piece.last and last < time.size and not _wide(time, last - 1, piece):
+                stop = time[last]
+            result.append(Stretch(float(time[first]), float(stop), kind, piece.velocity))
+            if last < piece.last:
+                result.append(Stretch(float(stop), float(time[last]), "gap", np.nan))
+    if time[-1] < whole[-1]:
+        result.append(Stretch(float(time[-1]), float(whole[-1]), "not a number", np.nan))
+    return result
+
+
+def _wide(time: np.ndarray, index: int, piece: Piece) -> bool:
+    """Whether the pause after a sample is much longer than usual in its piece."""
+    usual = (time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
+    return bool(time[index + 1] - time[index] > 3 * usual)
+
+
+def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -> np.ndarray:
+    """Return the samples of a plateau after which too long a pause follows."""
+    inside = time[piece.first : piece.last]
+    if piece.kind != "constant" or inside.size < 2:
+        return np.zeros(0, dtype=int)
+    step = max(1, inside.size // 4096)
+    marks = np.append(inside[::step], inside[-1])
+    spans = np.diff(marks)
+    longest = max_gap
+    if longest is None:
+        usual = float(np.median(spans)) / step
+        longest = max(20 * usual, share * float(inside[-1] - inside[0]))
+    wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
+    found = []
+    for block in wide:
+        part = inside[block * step : (block + 1) * step + 1]
+        found.append(block * step + np.flatnonzero(np.diff(part) > longest))
+    return piece.first + np.concatenate(found) if found else np.zeros(0, dtype=int)
+
+
+def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:
+    """Each step (or stroke) of the instrument is a segment."""
+    time, step = run["time"].values, run["step"].values
+    known = ~np.isnan(step.astype(float))
+    edges = np.flatnonzero((step[1:] != step[:-1]) & (known[1:] | known[:-1])) + 1
+    edges = np.concatenate([[0], edges, [time.size]])
+    result = []
+    for first, last in zip(edges[:-1], edges[1:], strict=True):
+        kind = "constant" if last - first >= min_samples else "too short"
+        if not known[first]:
+            kind = "not a number"
+        speed = _set_speed(run, first, last)
+        result.append(
+            Stretch(
+                float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed)
+            )
+        )
+    return result
+
+
+def from_set_speed(run: xr.Dataset, min_samples: int) -> list[Stretch]:
+    """One stretch for each set speed; the whole record if only an attribute holds it."""
+    time = run["time"].values
+    if "set_speed" in run:
+        value = np.asarray(run["set_speed"].values, dtype=float)
+        edges = np.flatnonzero(np.diff(value) != 0) + 1
+        edges = np.concatenate([[0], edges, [time.size]])
+    else:
+        edges = np.array([0, time.size])
+    result = []
+    for first, last in zip(edges[:-1], edges[1:], strict=True):
+        speed = _set_speed(run, first, last)
+        kind = "constant" if last - first >= min_samples else "too short"
+        if speed == 0:
+            kind = "at rest"
+        result.append(
+            Stretch(
+                float(time[first]), float(time[last - 1]), kind, _signed(run, first, last, speed)
+            )
+        )
+    return result
+
+
+def _set_speed(run: xr.Dataset, first: int, last: int) -> float:
+    if "set_speed" in run:
+        values = np.asarray(run["set_speed"].values[first:last], dtype=float)
+        values = values[np.isfinite(values)]
+        return float(np.median(values)) if values.size else np.nan
+    return float(run.attrs.get("set_speed_m_s", np.nan))
+
+
+def _signed(run: xr.Dataset, first: int, last: int, speed: float) -> float:
+    """Set speed with the sign of the mean friction, NaN's sign lost: 0 where nothing tells it."""
+    for name in ("friction_force", "friction_coefficient"):
+        if name in run:
+            values = run[name].values[first:last]
+            if np.isfinite(values).any():
+                return float(np.copysign(speed, np.nanmean(values)))
+    return speed

@@ -1,0 +1,196 @@
+"""Middles of the loops: the zero of a force from strokes both ways, followed as it drifts."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.zero.offsets import Wander, wander
+
+STEEPEST = 2.0  # how much steeper than between the next two loops a drift may be: a jump is none
+
+
+class Middles(NamedTuple):
+    """Pairs of strokes in the order of time.
+
+    Parameters
+    ----------
+    member
+        Numbers of the forward and the backward stroke (pair, 2).
+    share
+        With which weights their forces make the middle [1] (pair, 2).
+    time, value
+        Moment [s] and middle of each loop (pair).
+    slope
+        Drift of the zero at each pair, per second (pair).
+    ends, part
+        Pairs between which the slope was taken, and the part of it that is believed (pair, 2),
+        (pair).
+    """
+
+    member: np.ndarray
+    share: np.ndarray
+    time: np.ndarray
+    value: np.ndarray
+    slope: np.ndarray
+    ends: np.ndarray
+    part: np.ndarray
+
+
+def middles(
+    mean: np.ndarray, load: np.ndarray, sign: np.ndarray, pair: np.ndarray, time: np.ndarray
+) -> Middles | None:
+    """Return the middle of each pair's loop and how it drifts; None without a pair.
+
+    Parameters
+    ----------
+    mean, load, sign, pair, time
+        Of each segment: mean force, mean normal force (or one for all), direction, number of the
+        pair (-1 for none), moment [s].
+
+    Notes
+    -----
+    With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the sum (F_f N_b + F_b N_f)/(N_f + N_b)
+    is Z at the moment (t_f N_b + t_b N_f)/(N_f + N_b), exactly so for a linear drift: what
+    the load did between the strokes does not pass for an offset. The slope at a pair is that from
+    the pair before to the pair after, no steeper than twice either of the two parts and zero where
+    these differ in sign: a zero that jumps once does not drift.
+
+    Examples
+    --------
+    >>> time = np.arange(6.0)
+    >>> sign = np.array([1, -1, 1, -1, 1, -1])
+    >>> found = middles(9.0 * sign + 0.5 * time, np.ones(6), sign, np.arange(6) // 2, time)
+    >>> found.value.tolist(), found.slope.tolist()
+    ([0.25, 1.25, 2.25], [0.5, 0.5, 0.5])
+    """
+    count = pair.max(initial=-1) + 1
+    if count == 0:
+        return None
+    member = np.empty((count, 2), dtype=int)
+    for column, which in enumerate((1, -1)):
+        chosen = np.flatnonzero((pair >= 0) & (sign == which))
+        member[pair[chosen], column] = chosen
+    both = load[member]
+    share = both[:, ::-1] / both.sum(axis=1, keepdims=True)
+    value = (share * mean[member]).sum(axis=1)
+    when = (share * time[member]).sum(axis=1)
+    known = np.flatnonzero(np.isfinite(value))
+    slope, part = np.zeros(count), np.zeros(count)
+    ends = np.repeat(np.arange(count)[:, None], 2, axis=1)
+    if known.size > 1:
+        t, m = when[known], value[known]
+        step = np.diff(m) / np.diff(t)
+        before, after = np.append(step[0], step), np.append(step, step[-1])
+        place = np.arange(known.size)
+        low, high = np.maximum(place - 1, 0), np.minimum(place + 1, known.size - 1)
+        chord = (m[high] - m[low]) / (t[high] - t[low])
+        if known.size > 2:  # the first and last: what the next step says
+            before[0], after[-1] = step[1], step[-2]
+        limit = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
+        limited = np.sign(chord) * np.minimum(np.abs(chord), STEEPEST * limit)
+        slope[known] = limited
+        part[known] = np.where(chord != 0, limited / np.where(chord != 0, chord, 1), 0.0)
+        ends[known, 0], ends[known, 1] = known[low], known[high]
+    return Middles(member, share, when, value, slope, ends, part)
+
+
+class Rows(NamedTuple):
+    """Each force without its zero as a sum over strokes: which, and how much (segment, term)."""
+
+    stroke: np.ndarray
+    weight: np.ndarray
+
+
+def interpolated(
+    found: Middles, pair: np.ndarray, time: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, Rows]:
+    """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
+
+    Returns
+    -------
+    tuple
+        Zero of each segment (segment) in the unit u of the middles, its drift [u/s] (segment), and
+        of which strokes each force without its zero consists. A stroke of a pair takes its own
+        loop's middle and slope, as does one before the first or after the last loop; one between
+        two loops the straight line between them.
+    """
+    count = time.size
+    known = np.flatnonzero(np.isfinite(found.value))
+    order = known[np.argsort(found.time[known])]
+    loop, weight = np.zeros((count, 3), dtype=int), np.zeros((count, 3))
+    slope = np.zeros(count)
+    for i in range(count):
+        p = pair[i]
+        if p < 0 and order.size:
+            after = int(np.searchsorted(found.time[order], time[i]))
+            if 0 < after < order.size:
+                a, b = order[after - 1], order[after]
+                u = (time[i] - found.time[a]) / (found.time[b] - found.time[a])
+                loop[i], weight[i] = (a, b, b), (1 - u, u, 0.0)
+                slope[i] = (found.value[b] - found.value[a]) / (found.time[b] - found.time[a])
+                continue
+            p = order[min(after, order.size - 1)]
+        a, b = found.ends[p]
+        apart = found.time[b] - found.time[a]
+        ahead = found.part[p] * (time[i] - found.time[p]) / apart if apart > 0 else 0.0
+        loop[i], weight[i] = (p, a, b), (1.0, -ahead, ahead)
+        slope[i] = found.slope[p]
+    value = (weight * np.where(weight != 0, found.value[loop], 0.0)).sum(axis=1)
+    own = np.arange(count)[:, None]
+    stroke = np.concatenate([own, found.member[loop].reshape(count, 6)], axis=1)
+    of_loops = -(weight[:, :, None] * found.share[loop]).reshape(count, 6)
+    return value, slope, Rows(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
+
+
+def error_of_rows(rows: Rows, found: Middles, own: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the standard error of each segment's force without its zero.
+
+    Parameters
+    ----------
+    rows, found
+        From `interpolated` and `middles`.
+    own
+        Standard error of the mean force of each stroke (segment).
+    time
+        Moment of each stroke [s] (segment).
+
+    Notes
+    -----
+    The variance of a sum over strokes is that of their own errors, or that of the zero's fast
+    movements (new at every stroke) where those are larger: a stroke that lasts longer than they do
+    shows them in its own error; and that of the zero's walk, <Z(t) Z(t')> = D min(t, t'). Both
+    movements are what the middles show beyond their errors and beyond a common drift.
+    """
+    error = np.sqrt(((found.share * own[found.member]) ** 2).sum(axis=1))
+    same = rows.stroke[:, :, None] == rows.stroke[:, None, :]
+    product = rows.weight[:, :, None] * rows.weight[:, None, :]
+    squares = np.nan_to_num(own)[rows.stroke] ** 2
+    variance = (product * same * squares[:, :, None]).sum(axis=(1, 2))
+    variance = np.where(np.isfinite(own), variance, np.nan)
+    fast = (product * same).sum(axis=(1, 2))
+    when = time[rows.stroke]
+    when = when - when.min(axis=1, keepdims=True)
+    walk = np.minimum(when[:, :, None], when[:, None, :])
+    slow = np.maximum((product * walk).sum(axis=(1, 2)), 0.0)
+    # a common drift is taken out and need not be paid for; of few loops it takes what they tell
+    moved = [
+        np.maximum(variance, moves.fast * fast) + moves.rate * slow
+        for moves in _movements(found, error)
+    ]
+    return np.sqrt(np.minimum(*moved))
+
+
+def _movements(found: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
+    """Return how the zero moves from loop to loop: all in all, and beyond a common drift."""
+    order = np.flatnonzero(np.isfinite(found.value))
+    order = order[np.argsort(found.time[order], kind="stable")]
+    value, error, time = found.value[order], error[order], found.time[order]
+    plain = wander(value, error, time)
+    if order.size < 3:
+        return plain, plain
+    level = value - (value[-1] - value[0]) / (time[-1] - time[0]) * (time - time[0])
+    freedom = (order.size - 1) / (order.size - 2)
+    beyond = wander(level, error, time)
+    return plain, Wander(freedom * beyond.fast, freedom * beyond.rate)

@@ -1,0 +1,188 @@
+"""What a run says of the zero of its friction signal: rests, strokes, sign, and what is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.zero.offsets import pair_strokes
+from tribolab.friction.zero.parts import Known, Reference, Strokes
+from tribolab.friction.zero.rectified import SIGNED, Fold, Trace, folded
+from tribolab.friction.zero.reference import find_reference
+from tribolab.friction.zero.rests import UNLOADED, Zeros
+from tribolab.friction.zero.unequal import TOO_FAR
+from tribolab.friction.zero.words import of_fold
+from tribolab.quantities import quantity
+from tribolab.units import to_si
+
+WITHOUT_SIGN = "mean of both directions: recorded without sign"
+# offsets that are removed from both strokes of a pair, which are then one observation
+PAIRED = ("half loop", WITHOUT_SIGN)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What somebody wants or knows of the zero.
+
+    Parameters
+    ----------
+    offset
+        "auto", "half loop", "zero load" or "none".
+    pair_tolerance
+        Largest relative difference of speed between the two strokes of a pair.
+    zero_uncertainty
+        Standard uncertainty of the friction signal's zero, in its unit or as text with one; None
+        where only the run's attribute ``<signal>_zero_uncertainty`` may say it.
+    rectified
+        Whether the signal was recorded without sign; None where the run's attribute
+        ``<signal>_rectified`` or the signal itself tells.
+    other_zeros
+        Zeros of other runs on the same instrument, in the unit of the signal.
+    """
+
+    offset: str = "auto"
+    pair_tolerance: float = 0.25
+    zero_uncertainty: str | float | None = None
+    rectified: bool | None = None
+    other_zeros: Sequence[float] = ()
+
+
+@dataclass(frozen=True)
+class Signs:
+    """Direction of each segment, and by what its signal is multiplied before anything else."""
+
+    sign: np.ndarray
+    unfold: np.ndarray
+
+
+def zero_of_run(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    name: str,
+    parts: list[slice],
+    mean: np.ndarray,
+    error: np.ndarray,
+    load: np.ndarray,
+    middle: np.ndarray,
+    rests: Zeros | None,
+    settings: Settings,
+) -> tuple[Reference, Signs, np.ndarray]:
+    """Decide what the zero of the friction signal rests on.
+
+    Parameters
+    ----------
+    run, segments
+        The run and its segments.
+    name
+        The signal: "friction_force" or "friction_coefficient".
+    parts
+        Samples of each trimmed segment.
+    mean, error
+        Of the signal over each segment (segment).
+    load
+        Mean normal force of each segment [N], or one for all where it is not known (segment).
+    middle
+        Mean moment of the samples of each segment [s] (segment).
+    rests
+        Zeros from rests without load.
+    settings
+        What is wanted and known.
+
+    Returns
+    -------
+    tuple
+        The reference, the signs, and the number of each segment's pair (segment).
+    """
+    direction = segments["direction"].values.astype(float)
+    sign = np.where(direction != 0, direction, np.where(mean < 0, -1.0, 1.0))
+    unfold = np.ones(mean.size)
+    stated = _stated(run, name, settings.zero_uncertainty)
+    fold = _fold(run, segments, name, parts, mean, error, direction, rests, settings)
+    if (direction > 0).any() and (direction < 0).any() and _lost(fold):
+        unfold = sign * (1.0 if np.nanmedian(mean) >= 0 else -1.0)
+    if fold.kind != "signed" and settings.offset != "zero load":
+        rests = None  # they read the size of the zero
+    pair = _pairs(segments, settings, rests, stated)
+    unit = quantity(name).unit
+    strokes = Strokes(
+        mean=unfold * mean,
+        error=error,
+        load=load,
+        sign=sign,
+        speed=segments["sliding_speed"].values,
+        time=middle,
+        pair=pair,
+        number=_numbers(segments),
+        unit="" if unit == "1" else f" {unit}",
+    )
+    known = Known(rests, stated, tuple(settings.other_zeros), settings.pair_tolerance)
+    source = str(run.attrs.get("source", "run"))
+    found = find_reference(strokes, known, settings.offset, fold, source)
+    if _lost(fold):
+        words = [f"recorded without sign: {text}" for text in found.zero_from]
+        method = WITHOUT_SIGN if found.method == "half loop" else found.method
+        found = replace(found, zero_from=np.array(words, dtype=object), method=method)
+    doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *found.doubts)
+    return replace(found, doubts=doubts), Signs(sign, unfold), pair
+
+
+def _lost(fold: Fold) -> bool:
+    return fold.kind in ("rectified", "undecided: alike")
+
+
+def _stated(run: xr.Dataset, name: str, given: str | float | None) -> float:
+    unit = quantity(name).unit
+    if given is None:
+        ending = "" if unit == "1" else f"_{unit}"
+        return float(run.attrs.get(f"{name}_zero_uncertainty{ending}", np.nan))
+    return abs(to_si(given, unit, name="zero_uncertainty"))
+
+
+def _numbers(segments: xr.Dataset) -> np.ndarray:
+    """Return what tables call the segments: counted from 1 as found, some taken out or not."""
+    if "segment" in segments.coords:
+        return segments["segment"].values + 1
+    return np.arange(segments.sizes["segment"]) + 1
+
+
+def _pairs(
+    segments: xr.Dataset, settings: Settings, rests: Zeros | None, stated: float
+) -> np.ndarray:
+    """Pairs of one speed; of any speeds where the zero would rest on nothing else."""
+    pair = pair_strokes(segments, settings.pair_tolerance)
+    wanted = settings.offset == "half loop" or (
+        settings.offset == "auto" and rests is None and not np.isfinite(stated)
+    )
+    if (pair >= 0).any() or not wanted:
+        return pair
+    return pair_strokes(segments, max(TOO_FAR, settings.pair_tolerance))
+
+
+def _fold(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    name: str,
+    parts: list[slice],
+    mean: np.ndarray,
+    error: np.ndarray,
+    direction: np.ndarray,
+    rests: Zeros | None,
+    settings: Settings,
+) -> Fold:
+    stated = settings.rectified
+    if stated is None:
+        stated = run.attrs.get(f"{name}_rectified")
+    if stated is not None:
+        return Fold("rectified", "") if stated else SIGNED
+    if segments.attrs.get("velocity_source") not in ("recorded", "position"):
+        return SIGNED  # the direction was taken from the force, or there is none
+    loaded = np.ones(run.sizes["time"], dtype=bool)
+    if "normal_force" in run and parts:
+        normal = np.abs(run["normal_force"].values)
+        usual = np.nanmedian(np.concatenate([normal[part] for part in parts]))
+        loaded = normal > max(0.5, UNLOADED) * usual
+    rest = float(np.median(rests.value)) if rests is not None else float("nan")
+    return folded(Trace(run[name].values, loaded, parts, mean, error, direction, rest))

@@ -1,0 +1,114 @@
+"""What a zero is sought from, and what is found: the strokes, what else is known, the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tribolab.friction.zero.rests import Zeros
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """What a zero is sought from: one entry for each segment.
+
+    Parameters
+    ----------
+    mean, error
+        Mean force and its standard error, in the unit u of the signal.
+    load
+        Mean normal force [N], or one for all where it is not known.
+    sign
+        Direction.
+    speed, time
+        Sliding speed [m/s] and middle [s].
+    pair
+        Number of the pair, -1 for none.
+    number
+        What each segment is called.
+    unit
+        The unit u, as text that follows a number.
+    """
+
+    mean: np.ndarray
+    error: np.ndarray
+    load: np.ndarray
+    sign: np.ndarray
+    speed: np.ndarray
+    time: np.ndarray
+    pair: np.ndarray
+    number: np.ndarray
+    unit: str = " N"
+
+    @property
+    def size(self) -> int:
+        """Number of segments."""
+        return self.mean.size
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of the zero besides the strokes.
+
+    Parameters
+    ----------
+    rests
+        Zeros from rests without load, of a signal that has its sign.
+    stated
+        Standard uncertainty of a zero that was set to zero, as somebody stated [u], or NaN.
+    others
+        Zeros of other runs on the same instrument [u].
+    tolerance
+        Relative difference of speed up to which somebody says that friction is alike.
+    """
+
+    rests: Zeros | None = None
+    stated: float = float("nan")
+    others: tuple[float, ...] = ()
+    tolerance: float = 0.25
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The zero of each segment and what it rests on.
+
+    Parameters
+    ----------
+    value
+        Zero of each segment at its middle [u] (segment).
+    slope
+        Its drift [u/s] (segment).
+    error
+        Function: own errors of the strokes -> errors of their forces without the zero (segment).
+    zero_from
+        What it rests on, in words (segment).
+    half_loop
+        Half the loop of each stroke's pair, its zero's drift taken out [u]; NaN without a pair.
+    method
+        One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
+    doubts
+        What is not sure: dictionaries with "check", "message", "cure", "segments" and "status".
+    """
+
+    value: np.ndarray
+    slope: np.ndarray
+    error: Callable[[np.ndarray], np.ndarray]
+    zero_from: np.ndarray
+    half_loop: np.ndarray
+    method: str
+    doubts: tuple[dict[str, Any], ...] = field(default=())
+
+
+def doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> dict[str, Any]:
+    """Return what is not sure of the zero of some segments, and what settles it."""
+    return {
+        "check": "zero_reference",
+        "status": status,
+        "message": text,
+        "cure": cure,
+        "segments": [int(i) for i in which],
+        "noted": status == "pass",
+    }

@@ -1,0 +1,268 @@
+"""What the zero of the friction force rests on, for each segment, and what is in doubt about it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import AnalysisError, Cure
+from tribolab.friction.zero.middles import Middles, error_of_rows, interpolated, middles
+from tribolab.friction.zero.parts import Known, Reference, Strokes, doubt
+from tribolab.friction.zero.rectified import Fold
+from tribolab.friction.zero.rests import Zeros
+from tribolab.friction.zero.unequal import across_speeds
+from tribolab.friction.zero.words import of_speeds, words_of
+
+ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
+MISSED = 3.0  # standard errors of the same
+
+_OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
+
+
+def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name: str) -> Reference:
+    """Decide what the zero of each segment rests on.
+
+    Parameters
+    ----------
+    strokes
+        Mean force of each segment; of a force that lost its sign, with the sign put back.
+    known
+        What else is known.
+    wanted
+        "auto", "half loop", "zero load" or "none".
+    fold
+        Whether the sign was lost.
+    name
+        What the run is called in errors.
+
+    Returns
+    -------
+    Reference
+        With "auto": the middles of the loops where strokes pair; rests without load where they
+        do not, or where they contradict the middles; else a stated uncertainty of the zero; else
+        the zeros of other runs; else nothing, and that is a doubt.
+
+    Raises
+    ------
+    AnalysisError
+        If the zero that is wanted cannot be had.
+    """
+    loops = middles(strokes.mean, strokes.load, strokes.sign, strokes.pair, strokes.time)
+    if loops is not None and not np.isfinite(loops.value).any():
+        loops = None
+    if wanted == "half loop" and loops is None:
+        raise AnalysisError(
+            "offset 'half loop' needs two neighbouring strokes of one speed and opposite direction,"
+            " and there are none",
+            where=name,
+            cure=Cure(
+                notebook="use offset='auto', or widen pair_tolerance",
+                campaign=f"{_OFFSET_OF_ITSELF}, or widen pair_tolerance there",
+            ),
+        )
+    if wanted == "zero load" and known.rests is None:
+        raise AnalysisError(
+            "offset 'zero load' needs a rest without load, and there is none (or no velocity or"
+            " normal force that would show it)",
+            where=name,
+            cure=Cure(notebook="use offset='auto'", campaign=_OFFSET_OF_ITSELF),
+        )
+    nothing = np.full(strokes.size, np.nan)
+    if not strokes.size:
+        return _constant(strokes, 0.0, 0.0, "", "none: no segment")
+    if loops is not None:
+        loop = _from_loops(strokes, known, loops)
+        nothing = loop.half_loop
+    if wanted == "none":
+        result = _constant(strokes, 0.0, 0.0, "not wanted", "none: not wanted")
+    elif wanted == "zero load" and known.rests is not None:
+        result = _from_rests(strokes, known, known.rests)
+    elif loops is not None:
+        result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop)
+    elif known.rests is not None:
+        result = _from_rests(strokes, known, known.rests)
+    else:
+        result = _from_outside(strokes, known, fold)
+    return replace(result, half_loop=nothing)
+
+
+def _constant(strokes: Strokes, value: float, error: float, words: str, method: str) -> Reference:
+    size = strokes.size
+    return Reference(
+        np.full(size, value),
+        np.zeros(size),
+        lambda own: np.hypot(own, error),
+        np.full(size, words, dtype=object),
+        np.full(size, np.nan),
+        method,
+    )
+
+
+def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
+    value, error = rests.at(strokes.time)
+    words = "a rest without load"
+    if rests.time.size > 1:
+        words = f"{rests.time.size} rests without load, interpolated in time"
+    lonely = ~rests.around(strokes.time)
+    doubts: tuple[dict[str, Any], ...] = ()
+    if np.isfinite(known.stated):
+        error = np.where(lonely, np.hypot(error, known.stated), error)
+    elif lonely.any():
+        text = (
+            "the zero was measured on one side of the strokes only: what it drifted from there is "
+            "in the friction and not in its error"
+        )
+        cure = (
+            "Measure a rest without load before and after the strokes; or state `zero_uncertainty` "
+            '(e.g. "0.2 N"), by how much the zero drifts, in the [[run]].'
+        )
+        doubts = (doubt(text, cure, np.flatnonzero(lonely)),)
+    return Reference(
+        value,
+        rests.slope(strokes.time),
+        lambda own: np.hypot(own, error),
+        np.full(strokes.size, words, dtype=object),
+        np.full(strokes.size, np.nan),
+        "zero load",
+        doubts,
+    )
+
+
+def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
+    """Zeros from the middles of the loops; strokes without a partner from rests, if there are."""
+    good = np.isfinite(loops.value)
+    pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
+    paired = pair >= 0
+    value, slope, rows = interpolated(loops, pair, strokes.time)
+    forward, backward = loops.member.T
+    half = (strokes.mean[forward] - strokes.mean[backward]) / 2
+    half -= loops.slope * (strokes.time[forward] - strokes.time[backward]) / 2
+    half_loop = np.where(paired, half[pair.clip(0)], np.nan)
+    speeds = strokes.speed[loops.member]
+    allowance, measured = across_speeds(half, speeds)
+    extra = np.where(paired, allowance[pair.clip(0)], np.nanmax(allowance, initial=0.0))
+    extra = np.nan_to_num(extra)
+    at_rest, rest_error = np.zeros(strokes.size), np.zeros(strokes.size)
+    by_rest = np.zeros(strokes.size, dtype=bool)
+    if known.rests is not None:
+        at_rest, rest_error = known.rests.at(strokes.time)
+        by_rest = ~paired & known.rests.around(strokes.time)
+        slope = np.where(by_rest, known.rests.slope(strokes.time), slope)
+
+    def error(own: np.ndarray) -> np.ndarray:
+        of_loops = np.hypot(error_of_rows(rows, loops, own, strokes.time), extra)
+        return np.where(by_rest, np.hypot(own, rest_error), of_loops)
+
+    own = [words_of(strokes, loops, pair, allowance, i) for i in range(strokes.size)]
+    words = np.where(by_rest, "rests without load, interpolated in time", own).astype(object)
+    doubts = of_speeds(strokes, loops, known, allowance, measured)
+    value = np.where(by_rest, at_rest, value)
+    return Reference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
+
+
+def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) -> Reference:
+    """Compare the middles of the loops with a zero that does not rest on them.
+
+    Where the two differ by more than their errors and by more than `ASYMMETRY` of friction,
+    friction depends on direction, or the load tilts the zero: the other zero is used, and that is
+    a doubt. Where they differ by less, the difference is carried in the error.
+    """
+    if known.rests is not None:
+        other = _from_rests(strokes, known, known.rests)
+        value, error = known.rests.at(loops.time)
+        by = "the rests without load"
+    elif np.isfinite(known.stated):
+        other = _from_outside(strokes, known, Fold("signed", ""))
+        value, error = np.zeros(loops.time.size), np.full(loops.time.size, known.stated)
+        by = "the stated zero"
+    else:
+        return _ambiguous(strokes, loops, loop)
+    apart = loops.value - value
+    half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
+    own = np.sqrt(((loops.share * strokes.error[loops.member]) ** 2).sum(axis=1))
+    fine = np.isfinite(apart + half)
+    if not fine.any():
+        return loop
+    mean, friction = float(np.mean(apart[fine])), float(np.mean(np.abs(half[fine])))
+    spread = float(np.std(apart[fine], ddof=1)) if fine.sum() > 1 else 0.0
+    of_loops = np.nan_to_num(own[fine]).mean() / np.sqrt(fine.sum())
+    limit = MISSED * float(np.hypot(np.hypot(spread, error[fine].mean()), of_loops))
+    if not abs(mean) > limit:
+        return loop
+    share = mean / friction
+    if abs(share) < ASYMMETRY:
+        carried = abs(mean) / np.sqrt(3)
+        return replace(loop, error=lambda errors: np.hypot(loop.error(errors), carried))
+    force = (strokes.sign * (strokes.mean - other.value)) / strokes.load
+    forward, backward = (float(np.nanmean(force[strokes.sign * s > 0])) for s in (1, -1))
+    what, unit = "friction", strokes.unit
+    if np.any(strokes.load != 1) or not unit:
+        what, unit = "the friction coefficient", ""
+    text = (
+        f"friction differs between the directions: the middle of the loops lies {mean:+.3g}"
+        f"{strokes.unit} ({share:+.1%} of friction) beside {by}, by which {what} is "
+        f"{forward:.3g}{unit} forward and {backward:.3g}{unit} backward; that zero was used"
+    )
+    cure = (
+        'If friction depends on direction, say `offset = "zero load"` under [friction]; if the '
+        'load moves the zero (a tilted or cross-talking cell), say `offset = "half loop"`.'
+    )
+    if by == "the stated zero":
+        cure = (
+            'If friction does not depend on direction, say `offset = "half loop"` under '
+            "[friction]; else measure a rest without load."
+        )
+    doubts = (*loop.doubts, doubt(text, cure, np.arange(strokes.size)))
+    return replace(other, doubts=doubts)
+
+
+def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
+    """Say that an offset and an asymmetry look the same where no other zero tells them apart."""
+    half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.abs(loops.value / half)
+    share = float(np.nanmedian(share[np.isfinite(share)])) if np.isfinite(share).any() else 0.0
+    text = (
+        "no rest without load: friction that depends on direction and an offset cannot be told "
+        f"apart. The offset that was removed, {np.nanmedian(loops.value):+.3g}{strokes.unit}, "
+    )
+    if share < 1:
+        text += f"would be {share:.1%} more friction one way and less the other; "
+    else:
+        text += "is larger than friction; what part of it is an asymmetry is not known; "
+    text += "their mean does not change"
+    found = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
+    return replace(loop, doubts=(*loop.doubts, found | {"noted": ASYMMETRY < share < 1}))
+
+
+def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
+    """Zero that the run itself does not tell: stated, from other runs, or nothing."""
+    if np.isfinite(known.stated):
+        words = f"stated: zero within {known.stated:.3g}{strokes.unit}"
+        return _constant(strokes, 0.0, known.stated, words, "stated")
+    others = np.asarray(known.others, float)
+    if others.size > 1 and fold.kind == "signed":
+        # of so few, the next one scatters as Student's t with size - 1 degrees of freedom
+        few = (
+            np.sqrt((1 + 1 / others.size) * max((others.size - 1) / (others.size - 3), 1.0))
+            if (others.size > 3)
+            else 3.0
+        )
+        error = max(few * float(np.std(others, ddof=1)), 1e-3 * float(np.abs(others).max()))
+        words = f"zeros of {others.size} other runs on this instrument"
+        return _constant(strokes, float(others.mean()), error, words, "other runs")
+    result = _constant(
+        strokes, 0.0, 0.0, "nothing", "none: no pair of strokes, no rest without load"
+    )
+    text = (
+        "the zero of the friction signal is not known: no strokes both ways at one speed, no rest "
+        "without load; its offset is in the friction and not in its error"
+    )
+    example = "0.2 N" if strokes.unit else "1 %"
+    cure = (
+        f'State `zero_uncertainty` (e.g. "{example}") in the [[run]], or of the column in the '
+        "dialect; or measure strokes both ways, or a rest without load."
+    )
+    return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))

@@ -1,0 +1,132 @@
+"""Zeros of the sensors from rests without load, and what they are at another time."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.coefficient.statistics import describe
+
+UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
+LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
+FEWEST = 10  # samples that an unloaded rest needs
+
+
+class Zeros(NamedTuple):
+    """Readings of a sensor without load: when [s], how much, and standard error [N] (rest)."""
+
+    time: np.ndarray
+    value: np.ndarray
+    error: np.ndarray
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the zero and its standard error at other times [s].
+
+        Parameters
+        ----------
+        time
+            [s] (any one dim)
+
+        Notes
+        -----
+        Between two rests on the straight line. Where the zero changed by d between them, at a
+        part u of the way, its error holds d^2 u (1 - u)/3: the variance of a step at an unknown
+        moment is d^2 u (1 - u), and of a steady drift nothing; what is known is neither. Before
+        the first rest and after the last the zero stays as it was there.
+
+        Examples
+        --------
+        >>> zeros = Zeros(np.array([0.0, 10.0]), np.array([1.0, 2.0]), np.array([0.0, 0.0]))
+        >>> value, error = zeros.at(np.array([0.0, 5.0, 20.0]))
+        >>> value.tolist(), error.round(3).tolist()
+        ([1.0, 1.5, 2.0], [0.0, 0.289, 0.0])
+        """
+        last = np.searchsorted(self.time, time).clip(1, max(self.time.size - 1, 1))
+        last = np.minimum(last, self.time.size - 1)
+        first = np.maximum(last - 1, 0)
+        apart = self.time[last] - self.time[first]
+        u = np.where(apart > 0, (time - self.time[first]) / np.where(apart > 0, apart, 1), 0.0)
+        u = u.clip(0, 1)
+        value = (1 - u) * self.value[first] + u * self.value[last]
+        noise = ((1 - u) * self.error[first]) ** 2 + (u * self.error[last]) ** 2
+        moved = (self.value[last] - self.value[first]) ** 2
+        moved = np.maximum(moved - self.error[first] ** 2 - self.error[last] ** 2, 0.0)
+        return value, np.sqrt(noise + moved * u * (1 - u) / 3)
+
+    def slope(self, time: np.ndarray) -> np.ndarray:
+        """Return the drift between the rests around other times [u/s]; 0 beyond them."""
+        after = np.searchsorted(self.time, time)
+        inside = (after > 0) & (after < self.time.size)
+        last = after.clip(1, max(self.time.size - 1, 1)) * inside
+        first = np.maximum(last - 1, 0)
+        apart = np.where(inside, self.time[last] - self.time[first], 1.0)
+        return np.where(inside, (self.value[last] - self.value[first]) / apart, 0.0)
+
+    def around(self, time: np.ndarray) -> np.ndarray:
+        """Return which times lie between two rests."""
+        return (time > self.time[0]) & (time < self.time[-1])
+
+
+def unloaded_rests(
+    run: xr.Dataset, segments: xr.Dataset, load: float
+) -> tuple[Zeros | None, Zeros | None]:
+    """Zeros of the friction force and of the normal force from rests without load.
+
+    Parameters
+    ----------
+    run, segments
+        The run and its segments, whose omitted stretches say where it was at rest.
+    load
+        Usual normal force of the segments [N].
+
+    Returns
+    -------
+    tuple
+        Zeros of the friction force and of the normal force, in the order of time; None where no
+        rest tells them. The first reads less than a tenth of the load; a later one no more than
+        that above the one before, so that a zero may drift further.
+    """
+    if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
+        return None, None
+    time = run["time"].values
+    normal = run["normal_force"].values
+    friction = run["friction_force"].values if "friction_force" in run else None
+    zeros: dict[str, list[tuple[float, float, float]]] = {"normal": [], "friction": []}
+    resting = segments["omitted_reason"].values == "at rest"
+    limits = zip(
+        segments["omitted_start"].values[resting],
+        segments["omitted_stop"].values[resting],
+        strict=True,
+    )
+    before = 0.0
+    for start, stop in limits:
+        first, last = np.searchsorted(time, [start, stop])
+        level = _level(normal, first, last, load)
+        # more than the zero before may be a light load; less is none, surfaces hardly pull
+        if level.size < FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
+            continue
+        before = float(np.mean(normal[level]))
+        when = float(time[level].mean())
+        found = describe(time[level], normal[level])
+        zeros["normal"].append((when, found.mean, found.sem))
+        if friction is not None:
+            found = describe(time[level], friction[level])
+            if found.samples >= FEWEST:
+                zeros["friction"].append((when, found.mean, found.sem))
+    return _zeros(zeros["friction"]), _zeros(zeros["normal"])
+
+
+def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
+    """Return the samples of a rest that lie at one level far below the load, if there is one."""
+    light = first + np.flatnonzero(np.abs(normal[first:last]) < LIGHT * load)
+    if light.size < FEWEST:
+        return light
+    # the load's ramp begins in the same rest: readings far from the usual one are left out
+    rest = np.abs(normal[light] - np.median(normal[light]))
+    return light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
+
+
+def _zeros(found: list[tuple[float, float, float]]) -> Zeros | None:
+    return Zeros(*np.array(found).T) if found else None

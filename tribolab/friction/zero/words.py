@@ -1,0 +1,84 @@
+"""What the zero of a segment rests on, in words, and what is in doubt about it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tribolab.friction.zero.middles import Middles
+from tribolab.friction.zero.parts import Known, Strokes, doubt
+from tribolab.friction.zero.rectified import Fold
+
+
+def words_of(
+    strokes: Strokes, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
+) -> str:
+    """Say what the zero of a segment rests on."""
+    number = strokes.number
+    drift = ", drift between the loops taken out" if np.any(loops.slope != 0) else ""
+    if pair[i] >= 0:
+        member = loops.member[pair[i]]
+        partner = int(member[0] if member[1] == i else member[1])
+        own, other = strokes.speed[i], strokes.speed[partner]
+        text = f"half loop with segment {number[partner]}"
+        if np.isfinite(own) and abs(own - other) > 0.05 * own:
+            text += f" at {other / own:.3g} of its speed (+-{allowance[pair[i]]:.2g}{strokes.unit})"
+        between = np.arange(min(number[i], number[partner]) + 1, max(number[i], number[partner]))
+        if between.size:
+            text += f", {_listed(between)} between them left out"
+        return text + drift
+    known = np.flatnonzero(np.isfinite(loops.value))
+    order = known[np.argsort(loops.time[known])]
+    after = int(np.searchsorted(loops.time[order], strokes.time[i]))
+    near = order[max(after - 1, 0) : after + 1]
+    named = ("-".join(str(number[s]) for s in sorted(loops.member[p])) for p in near)
+    return f"no partner: half loops of segments {' and '.join(named)}{drift}"
+
+
+def _listed(numbers: np.ndarray) -> str:
+    some = f"segment {numbers[0]}" if numbers.size == 1 else f"segments {numbers[0]}-{numbers[-1]}"
+    return some
+
+
+def of_speeds(
+    strokes: Strokes,
+    loops: Middles,
+    known: Known,
+    allowance: np.ndarray,
+    measured: bool,
+) -> list[dict[str, Any]]:
+    """Doubt pairs across speeds that nobody stated to be alike and the run does not measure."""
+    speed = strokes.speed[loops.member]
+    mean = speed.mean(axis=1)
+    apart = np.abs(speed[:, 0] - speed[:, 1])
+    far = apart > known.tolerance * mean
+    if not far.any():
+        return []
+    worst = int(np.argmax(np.where(far, apart / mean, 0)))
+    slow, fast = np.sort(speed[worst])
+    text = (
+        f"strokes of {slow:.3g} and {fast:.3g} m/s were taken for one loop; what friction changes "
+        f"between these speeds is in the error, with {allowance[worst]:.2g}{strokes.unit}"
+    )
+    wanted = np.ceil(10 * (apart / mean).max()) / 10
+    cure = (
+        f"If friction hardly changes between them, say `pair_tolerance = {wanted:.1f}` under "
+        "[friction]; else measure both directions at one speed, or a rest without load."
+    )
+    # what the run measures is in the error; what it does not, is guessed there
+    status = "pass" if measured else "suspect"
+    return [doubt(text, cure, np.flatnonzero(np.isin(strokes.pair, np.flatnonzero(far))), status)]
+
+
+def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[dict[str, Any], ...]:
+    """Return the doubt about a sign that was lost, if there is one."""
+    if fold.kind == "signed" or not fold.why:
+        return ()
+    done = "the direction of sliding was put back as its sign" if unfolded else "it was left as is"
+    cure = (
+        "State `rectified = true` if the record holds no sign, `rectified = false` if its offset "
+        "is real: in the [[run]], or of the column in the dialect."
+    )
+    found = doubt(f"{fold.why}; {done}", cure, np.arange(size))
+    return (found | {"check": "rectified"},)

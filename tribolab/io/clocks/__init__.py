@@ -1,0 +1,1 @@
+"""One clock for a run, or two that are matched."""

@@ -1,0 +1,56 @@
+"""What is known of a run's second log: whether it is there, and how its clock was matched."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.io.dialects.find import load_dialect, recognise
+from tribolab.io.dialects.signature import peek
+from tribolab.io.runs import read
+
+
+def describe_companion(path: str | Path, instrument: str | Path | None = None) -> dict[str, Any]:
+    """Say what was found of a raw file's companion log, and how the clocks were matched.
+
+    Parameters
+    ----------
+    path
+        The main log.
+    instrument
+        As for `tribolab.read`.
+
+    Returns
+    -------
+    dict
+        Empty if the instrument writes one log only. ``missing`` is the name of a companion that
+        is not there, ``refused`` why it cannot be used or its clock not be matched. Else
+        ``instrument``, ``shift_s``, ``uncertainty_s``, ``source`` ("estimated" or "none") and
+        ``ways`` (name of a way to tell the shift -> what it tells).
+    """
+    try:
+        if peek(Path(path)).format == "netcdf":
+            return {}
+        dialect = load_dialect(instrument) if instrument else recognise(Path(path))
+        if dialect.pair is None:
+            return {}
+        attrs = read(path, instrument).attrs
+    except ReadError as error:
+        return {"refused": error.told("terminal")}
+    if "companion_missing" in attrs:
+        return {"missing": attrs["companion_missing"]}
+    told: dict[str, Any] = {
+        "instrument": attrs["companion_instrument"],
+        "shift_s": float(attrs["clock_shift_s"]),
+        "uncertainty_s": float(attrs["clock_shift_uncertainty_s"]),
+        "source": attrs["clock_shift_source"],
+        "ways": dict(attrs.get("clock_shift_ways", {})),
+    }
+    if not np.isfinite(told["uncertainty_s"]):
+        told["refused"] = attrs.get(
+            "clock_shift_refused", "the friction force does not follow the motion"
+        )
+    return told

@@ -1,0 +1,401 @@
+"""How far apart two clocks are, from one fit of the friction force by all that the motion does.
+
+At a trial shift the force is a sum, linear in its amplitudes, of
+
+    what rises with the distance moved since the way turned: stops S_r(x) = x - play_r(x) with
+        lengths r on a grid (a stick is a stop, slack a difference of two, hysteresis a sum);
+    what goes with the speed: sign(v) times hat functions of log |v|;
+    the inertia of what hangs on the sensor: dv/dt;
+    a slow drift: hat functions of time.
+
+The residual as a function of the shift is its profile likelihood. Where the motion log shows the
+sample and not the stage, the force rises elastically before the log shows motion: in a second
+model the turns of the force are ramps that end where motion begins, as long as the distance takes
+that the stage goes. The answers of both models are weighed by how well they fit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribolab.io.clocks.motion import Motion
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 2000  # of the force, looked at in one fit
+_LENGTHS = 9  # stops
+_SHORTEST = 1e-4  # of the longest stroke: length of the shortest stop
+_LONGEST = 0.3
+_DRIFT = 8  # hat functions of time, at most
+_SPEEDS = 6  # hat functions of the speed, at most
+_TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
+_BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
+_SHORT = 0.1  # of the longest fast stroke's duration: what is shorter is noise
+_STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
+_POWERS = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
+_POWER_OF_NOISE = 0.01  # of the independent residuals
+_NO_MODEL = 1.5  # times the error by the models, as the truth is none of them
+_BEFORE = 0.5  # how likely it is beforehand that force leads; else any slack is as likely
+_LARGEST_SLACK = 3e-4  # m
+_MOST_UNEXPLAINED = 0.5
+_MOST_EVENTS = 60
+_FAST = 0.03  # of the fastest speed: slower motion is not looked at
+_RIDGE = 1e-7
+_SHIFTS = 17  # on a grid
+_SLACKS = (0.003, 0.01, 0.03)  # of the longest stroke
+
+
+class Joint(NamedTuple):
+    """Shift [s], its standard deviation [s], the mean moment it refers to [s], each model's answer.
+
+    `stroke` is the duration of the shortest of the fast strokes [s].
+    """
+
+    shift: float
+    uncertainty: float
+    time: float
+    stroke: float
+    answers: list[Answer]
+
+    @property
+    def unexplained(self) -> float:
+        """Part of the force that the best model leaves unexplained."""
+        return min(answer.unexplained for answer in self.answers)
+
+
+class Answer(NamedTuple):
+    """What one model says: shift [s], its error [s], the parts left unexplained and of inertia.
+
+    `freedom` is the number of independent residuals, `prior` how likely the model is beforehand.
+    """
+
+    model: str
+    shift: float
+    error: float
+    unexplained: float
+    inertia: float
+    freedom: float
+    prior: float
+
+
+class Basis:
+    """Functions of the motion that make up the force, on the motion log's clock."""
+
+    def __init__(self, time: Array, motion: Motion):
+        self.time = time
+        way = motion.way
+        change = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
+        path = _path(time, motion.velocity)
+        strokes = np.abs(np.diff(path[change]))
+        self.longest = float(strokes.max())
+        self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
+        # a slow start tells the moment badly, and its friction is another
+        speed = np.abs(motion.velocity)
+        fastest = np.maximum.reduceat(speed, change[:-1])
+        fast = fastest > _FAST * np.percentile(speed, 99.5)
+        moving = fast & (way[change[:-1]] != 0)
+        lasted = np.diff(time[change])[moving]
+        self.stroke = float(lasted[lasted > _SHORT * lasted.max()].min())
+        seen = fast[1:] | fast[:-1]
+        self.events = change[1:-1][seen]
+        self.begins = self.events[way[self.events] != 0]
+        halfway = 0.5 * (time[change[1:]] + time[change[:-1]])
+        self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
+        self.models: list[tuple[str, Array]] = []
+        for slack in (0.0, *_SLACKS):
+            driven = play(path, 0.5 * min(slack * self.longest, _LARGEST_SLACK))
+            velocity = np.gradient(driven, time) if slack else motion.velocity
+            self.models.append((f"slack {slack:g}", self._after(velocity, driven)))
+        self.models.append(("before", self._before(motion.velocity, way, path)))
+
+    def _after(self, velocity: Array, path: Array) -> Array:
+        """List what happens to the force once the table has moved."""
+        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        stops = [(path - play(path, r)) / r for r in lengths]
+        way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
+        last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
+        return np.stack([last, *stops, *self._more(velocity, way, last)], axis=1)
+
+    def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
+        """List what happens to the force before the sample moves."""
+        last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
+        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        ramps = [self._ramps(velocity, way, last, r) for r in lengths]
+        stop = (path - play(path, lengths[-3])) / lengths[-3]
+        return np.stack([*ramps, stop, *self._more(velocity, way, last)], axis=1)
+
+    def _more(self, velocity: Array, way: Array, last: Array) -> list[Array]:
+        """List what goes with the speed, what relaxes at rest, and the inertia."""
+        acceleration = np.gradient(velocity, self.time)
+        return [*_speeds(velocity, last), *self._relaxed(velocity, way, last), acceleration]
+
+    def _relaxed(self, velocity: Array, way: Array, last: Array) -> list[Array]:
+        """List what the force loses at rest, and gets back within a distance."""
+        stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
+        stops = stops[stops > 0]
+        if not len(stops):
+            return []
+        moved = _path(self.time, np.abs(velocity))
+        ends = np.append(stops[1:], len(way))
+        rested, slid = np.zeros(len(way)), np.full(len(way), np.inf)
+        held = np.zeros(len(way))
+        for first, end in zip(stops, ends, strict=True):
+            part = slice(first, end)
+            begun = np.flatnonzero(way[part])
+            start = first + int(begun[0]) if len(begun) else end - 1
+            rested[part] = np.minimum(self.time[part], self.time[start]) - self.time[first]
+            slid[part] = moved[part] - moved[start - 1]
+            slid[first:start] = 0.0
+            held[part] = last[first]
+        usual = float(np.median(rested[np.minimum(ends, len(way)) - 1]))
+        return [
+            held * -np.expm1(-rested / (usual * tau)) * np.exp(-slid / (self.longest * length))
+            for tau in _TIMES
+            for length in _BACK
+        ]
+
+    def _ramps(
+        self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
+    ) -> Array:
+        """Way of the last motion, turning before a motion is seen, as far as the stage moves."""
+        out = last.astype(float)
+        starts = [k for k in self.events if way[k] != 0]
+        for k, after in zip(starts, [*starts[1:], len(way) - 1], strict=True):
+            turn = way[k] - (last[k - 1] if k else 0)
+            speed = np.abs(velocity[k : min(k + 9, after + 1)]).max(initial=0.0)
+            begin = self.time[k] - length / max(speed, 1e-300)
+            before = slice(min(int(np.searchsorted(self.time, begin)), k), k)
+            out[before] += turn * (1.0 + (self.time[before] - self.time[k]) * speed / length)
+        return out
+
+
+def _path(time: Array, velocity: Array) -> Array:
+    steps = 0.5 * np.diff(time) * (velocity[1:] + velocity[:-1])
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _speeds(velocity: Array, last: Array) -> list[Array]:
+    """Hat functions of log |v| times the way; held at rest."""
+    speed = np.abs(velocity)
+    moving = speed > 0
+    level = np.log10(speed[moving])
+    high = float(np.percentile(level, 99))
+    low = max(float(np.percentile(level, 5)), high - 4.0)
+    if high - low < 0.1:
+        return []
+    knots = np.linspace(low, high, min(_SPEEDS, 2 + int(2 * (high - low))))
+    index = np.maximum.accumulate(np.where(moving, np.arange(len(speed)), 0))
+    held = np.log10(np.maximum(speed, 10.0 ** (low - 1)))[index]
+    return [last * np.interp(held, knots, hat) for hat in np.eye(len(knots))[1:]]
+
+
+def play(position: Array, half: float) -> Array:
+    """Follow a position with slack: what is driven stays within `half` of the driver.
+
+    >>> play(np.array([0.0, 3.0, 1.0, -3.0]), 1.0).tolist()
+    [0.0, 2.0, 2.0, -2.0]
+    """
+    # a turning point still belongs to the way that led to it
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
+    edges = np.concatenate([[0], turns, [len(position)]])
+    out, last = np.empty_like(position), float(position[0])
+    for first, end in zip(edges[:-1], edges[1:], strict=True):
+        at = position[first:end]
+        lower, upper = at - half, at + half
+        rising = at[-1] >= (position[first - 1] if first else at[0])
+        out[first:end] = np.maximum(last, lower) if rising else np.minimum(last, upper)
+        last = float(out[end - 1])
+    return out
+
+
+def told_by_motion(
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    motion: Motion,
+    shift: float,
+    span: float,
+    least: float = 0.0,
+) -> Joint | None:
+    """Tell the shift by fitting the force by the motion, around a first estimate.
+
+    Parameters
+    ----------
+    force_time, force
+        Force log: its own clock [s] and the friction force.
+    motion_time, motion
+        Motion log: its clock [s] and what it shows.
+    shift, span
+        Where to begin, and how far on either side of it to look [s]: no further than half of a
+        fast stroke, but for at least `least` [s].
+
+    Returns
+    -------
+    Joint or None
+        None if too few samples lie around the changes of the motion, or nothing is explained.
+    """
+    basis = Basis(motion_time, motion)
+    period = np.hypot(
+        *(_interval(t, basis, s) for t, s in ((force_time, shift), (motion_time, 0.0)))
+    )
+    span = min(span, max(least, 0.5 * basis.stroke))
+    answers = joint_fit(force_time, force, basis, shift, span, float(period))
+    if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
+        return None
+    mean, error = mixture(answers)
+    least = float(np.hypot(0.5 * period, 0.2 * motion.averaged))
+    when = float(motion_time[basis.events].mean())
+    return Joint(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
+
+
+def _interval(time: Array, basis: Basis, shift: float) -> float:
+    """Tell the sampling interval [s] after the starts of the motion."""
+    at = np.searchsorted(time, basis.time[basis.begins] + shift)
+    at = np.clip(at[:, None] + np.arange(1, 12), 0, len(time) - 1)
+    return float(np.median(np.diff(time[at], axis=1)))
+
+
+def joint_fit(
+    force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
+) -> list[Answer]:
+    """Ask each model; `finest` is the sampling interval [s] that limits it."""
+    models = [
+        (name, table, told)
+        for name, table in basis.models
+        if (told := _one(force_time, force, basis, table, shift, span, finest)) is not None
+    ]
+    if not models:
+        return []
+    shifts = np.array([told[0] for _, _, told in models])
+    # the same samples for all, so that their residuals can be compared
+    half = 0.5 * float(np.ptp(shifts)) + finest
+    used = _chosen(force_time, basis, 0.5 * float(shifts.min() + shifts.max()), half)
+    answers = []
+    for name, table, (at, error) in models:
+        prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(_SLACKS))
+        fit = _Fit(force_time[used], force[used], basis.time, table)
+        found = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
+        answers.append(Answer(name, at, error, *found[1:], prior))
+    return answers
+
+
+def mixture(answers: list[Answer]) -> tuple[float, float]:
+    """Mean and standard deviation of the answers of all models, by how well they fit."""
+    unexplained = np.array([answer.unexplained for answer in answers])
+    best = int(np.argmin(unexplained))
+    # what is left is noise if it hangs together little; else no model is quite right
+    power = np.clip(_POWER_OF_NOISE * answers[best].freedom, *_POWERS)
+    weight = np.array([answer.prior for answer in answers])
+    weight *= (unexplained / unexplained[best]) ** -power
+    weight /= weight.sum()
+    shift = np.array([answer.shift for answer in answers])
+    error = np.array([answer.error for answer in answers])
+    mean = float(weight @ shift)
+    return mean, _NO_MODEL * float(np.sqrt(weight @ (error**2 + (shift - mean) ** 2)))
+
+
+def _one(
+    force_time: Array,
+    force: Array,
+    basis: Basis,
+    table: Array,
+    shift: float,
+    span: float,
+    finest: float,
+) -> tuple[float, float] | None:
+    """Shift and its error by one model; the range narrows as they become known."""
+    at, half = shift, span
+    for _ in range(12):
+        used = _chosen(force_time, basis, at, half)
+        if len(used) < 3 * table.shape[1] + 30:
+            return None
+        fit = _Fit(force_time[used], force[used], basis.time, table)
+        shifts = at + half * np.linspace(-1.0, 1.0, _SHIFTS)
+        likelihood = fit.profile(shifts)[0]
+        weight = np.exp(likelihood - likelihood.max())
+        weight /= weight.sum()
+        mean = float(weight @ shifts)
+        error = float(np.sqrt(weight @ (shifts - mean) ** 2))
+        if error > 0.45 * half:
+            break
+        at = mean
+        if half <= max(6.0 * error, finest):
+            break
+        half = max(6.0 * error, 0.15 * half, 0.5 * finest)
+    # it has wandered off: this model tells nothing
+    return None if abs(mean - shift) > 1.2 * span else (mean, error)
+
+
+def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArray[np.int64]:
+    """Choose samples of the force around the changes of the motion, closer the nearer to one."""
+    events = basis.time[basis.events] + shift
+    inside = (events > force_time[0] + half) & (events < force_time[-1] - half)
+    inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MOST_EVENTS) == 0
+    events, around = events[inside], basis.around[inside] + shift
+    if not len(events):
+        return np.zeros(0, dtype=np.int64)
+    each = max(20, _SAMPLES // len(events))
+    first = max(basis.time[0] + shift + half, force_time[0])
+    last = min(basis.time[-1] + shift - half, force_time[-1])
+    chosen = []
+    for event, (low, high) in zip(events, around, strict=True):
+        a, k, b = np.searchsorted(force_time, [low, event, high])
+        flat = 2.0 * half  # evenly within the span, more and more thinly beyond it
+        n_flat = int(np.searchsorted(force_time, event + flat) - k)
+        for n, sign in ((b - k, 1), (k - a, -1)):
+            if n <= 0:
+                continue
+            m = each // 2
+            if n <= m:
+                steps = np.arange(n)
+            else:
+                scale = max(min(n_flat, n), 4)
+                u = np.linspace(0.0, np.arcsinh(n / scale), m)
+                steps = np.unique((scale * np.sinh(u)).astype(np.int64))
+            chosen.append(k + sign * steps)
+    chosen = np.unique(np.concatenate(chosen))
+    good = (chosen >= 0) & (chosen < len(force_time))
+    chosen = chosen[good]
+    return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
+
+
+class _Fit:
+    def __init__(self, time: Array, force: Array, motion_time: Array, table: Array):
+        self.time, self.motion_time = time, motion_time
+        knots = np.linspace(time[0], time[-1], _DRIFT)
+        drift = np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT)], axis=1)
+        self.basis, _ = np.linalg.qr(drift)
+        self.table = table / np.maximum(np.abs(table).max(axis=0), 1e-300)
+        self.force = force - self.basis @ (self.basis.T @ force)
+
+    def residual(self, shift: float) -> tuple[Array, float]:
+        at = self.time - shift
+        i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.motion_time) - 2)
+        part = (at - self.motion_time[i]) / (self.motion_time[i + 1] - self.motion_time[i])
+        part = np.clip(part, 0.0, 1.0)[:, None]
+        columns = self.table[i] * (1.0 - part) + self.table[i + 1] * part
+        columns -= self.basis @ (self.basis.T @ columns)
+        normal = columns.T @ columns
+        ridge = _RIDGE * np.diag(np.diag(normal)) + 1e-12 * np.trace(normal) * np.eye(len(normal))
+        amplitudes = np.linalg.solve(normal + ridge, columns.T @ self.force)
+        inertia = np.sqrt(normal[-1, -1]) * abs(amplitudes[-1])
+        return self.force - columns @ amplitudes, float(inertia / np.linalg.norm(self.force))
+
+    def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
+        squares = np.empty(len(shifts))
+        best = None
+        for k, s in enumerate(shifts):
+            residual, part = self.residual(s)
+            squares[k] = residual @ residual
+            if best is None or squares[k] < best[0]:
+                best = (squares[k], residual, part)
+        residual = best[1]
+        alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
+        hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
+        freedom = max(len(residual) - self.table.shape[1] - _DRIFT, 1) / hanging
+        whole = float(self.force @ self.force)
+        squares = np.maximum(squares, 1e-12 * whole)
+        return -0.5 * freedom * np.log(squares), float(squares.min()) / whole, best[2], freedom

@@ -1,0 +1,265 @@
+"""How far apart two clocks are, told from the signals: friction answers to motion, never before.
+
+Several ways tell it, each with its own error:
+
+classes
+    how well classes of velocity explain the force (`tribolab.io.clocks.classes`): robust, late;
+starts
+    when the force begins to change at each start of motion (`tribolab.io.clocks.starts`), sharpened
+    by the fast strokes' beginnings (`tribolab.io.clocks.onset`);
+motion
+    one fit of the force by distance, speed and acceleration, with slack or a stick before the
+    motion (`tribolab.io.clocks.joint`).
+
+What the ways cannot tell apart (a stick, slack) is in the uncertainty. Where they contradict one
+another, none is sharp, or the motion repeats so that another shift fits as well, no shift is told.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from tribolab.io.clocks.classes import Classes, Coarse, coarse_shift, motion_classes
+from tribolab.io.clocks.joint import told_by_motion
+from tribolab.io.clocks.motion import Motion, clean_motion
+from tribolab.io.clocks.onset import refine_by_onsets
+from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
+
+Array = NDArray[np.float64]
+
+_LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
+_LEAST_AT_ALL = 1.5  # with the other ways' consent
+_CONSENT = 0.3  # most that a fit by the motion leaves unexplained for that
+_SHARP = 0.1  # most that the uncertainty may be, in mean durations of a class
+_WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
+_ALMOST_NOTHING = 1e-3  # and this,
+_STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
+_POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
+_PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit tells more
+_LOST = 10.0  # times the error by classes: starts that know less contradict one another
+_UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
+_WIDE = 300.0  # times the slowest speed
+_LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
+_HELD = 0.15  # least part of the square of the ways' difference that is in the error's
+_AGREE = 3.0  # standard deviations that two ways may lie apart
+_RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
+_AS_GOOD = 0.8  # nor explains less than this part of what the best does
+_DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
+
+
+class Told(NamedTuple):
+    """What one way tells: shift in the middle of the motion log [s], standard deviation [s]."""
+
+    shift: float
+    uncertainty: float
+
+
+class Estimate(NamedTuple):
+    """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
+
+    Away from the middle, `rate` times the time since then on the motion clock is added.
+    `explained` is the part of the force's variance that the classes of velocity explain, `ways`
+    what each way tells, and `refused` why the shift cannot be relied on ("" if it can).
+    """
+
+    shift: float
+    uncertainty: float
+    explained: float
+    rate: float = 0.0
+    rate_uncertainty: float = QUARTZ
+    ways: dict[str, Told] = {}  # noqa: RUF012 - never changed
+    refused: str = ""
+
+
+# on matrices this small two threads of BLAS wait for each other: ten times as long
+@threadpool_limits.wrap(limits=1, user_api="blas")
+def estimate_clock_shift(
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    expected: float = 0.0,
+    dated: bool = False,
+) -> Estimate | None:
+    """Estimate the shift between the clocks of a force log and a motion log.
+
+    Parameters
+    ----------
+    force_time, force
+        Force log: its own clock [s] and the friction force [N].
+    motion_time, velocity
+        Motion log: its own clock [s] and the signed velocity [m/s].
+    expected
+        Shift [s] that is preferred where several explain the force equally well.
+    dated
+        Whether `expected` is known, from the dates in both logs.
+
+    Returns
+    -------
+    Estimate or None
+        None if the force does not vary with the motion. An estimate with `refused` is a guess.
+
+    Notes
+    -----
+    The uncertainty is a standard deviation and holds the sampling of both logs, the noise, the
+    clocks' rates as far as the starts leave them open (10 ppm if they tell nothing), and by how
+    much the ways differ: friction that rises before the sample slides, or only after slack is
+    taken up, moves the shift by what that lasts.
+    """
+    good = np.abs(force) < _POSSIBLE
+    force_time, force = force_time[good], force[good]
+    velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
+    if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
+        return None
+    motion = clean_motion(motion_time, velocity)
+    if not motion.velocity.any():
+        return None
+    classes, way = motion_classes(motion.velocity)
+    if classes.min() == classes.max():
+        return None
+    force = (force - force.mean()) / force.std()
+    coarse = coarse_shift(force_time, force, motion_time, classes, expected)
+    if coarse is None:
+        return None
+    fit = Classes(force_time, force, motion_time, classes)
+    shift = _refined(fit, coarse.shift, coarse.half)
+    significance = fit.significance(shift)
+    if significance < _LEAST_AT_ALL:
+        return None
+    # a drift is explained by any classes that follow one another, but no shift fits it sharply
+    uncertainty = fit.uncertainty(shift)
+    sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
+    if uncertainty > sharp:
+        return None
+    weak = significance < _LEAST_SIGNIFICANCE
+    ways = {"classes": Told(shift, uncertainty)}
+    # late by up to a rest, as the force stays on
+    span = max(8.0 * coarse.half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
+    logs = Logs(force_time, force, motion_time, motion.velocity, way)
+    ratio = fit.ratio(shift)
+    unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
+    told = shift_from_starts(logs, shift, span, lambda s: 1.0 - fit.ratio(s) < unexplained)
+    found = Estimate(shift, uncertainty, ratio)
+    if told is not None:
+        found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    if found.rate == 0.0:
+        found = _sharpened(found, force_time, force, motion_time, motion.velocity, fit)
+    if found.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
+        anew = Estimate(shift, uncertainty, ratio)
+        anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
+        found = anew if anew.uncertainty < found.uncertainty else found
+    ways["starts"] = Told(found.shift, found.uncertainty)
+    middle = 0.5 * (motion_time[0] + motion_time[-1])
+    paced = motion_time + found.rate * (motion_time - middle)
+    durations = np.diff(motion_time[changes(way)])
+    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
+    ends = durations[[0, -1]]
+    least = 5.0 * found.uncertainty
+    near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
+    joint = told_by_motion(force_time, force, paced, motion, found.shift, near, least)
+    if weak and (joint is None or joint.unexplained > _CONSENT):
+        return None
+    if joint is not None:
+        apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
+        error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
+        ways["motion"] = Told(joint.shift, error)
+        if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
+            return None
+        stroke = joint.stroke
+    sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
+    wide = _wide(motion, way)
+    if wide and "motion" in ways and _agree(ways["starts"], ways["motion"]):
+        combined, part = ways["starts"], _LEAST_PART
+    elif sharp_fit:
+        first = "starts" if found.uncertainty < _SHARP * stroke else "classes"
+        combined, part = _combined(ways[first], ways["motion"]), _PART
+    elif _agree(ways["starts"], ways["classes"]):
+        combined, part = ways["starts"], _PART
+    else:
+        return found._replace(ways=ways, refused="no two ways tell it")
+    error = float(np.hypot(combined.uncertainty, part * stroke))
+    found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
+    found = found._replace(explained=fit.ratio(combined.shift))
+    if (
+        wide
+    ):  # strokes of so different speeds do not repeat; a rest only looks like the stroke before
+        coarse = coarse._replace(rivals=np.zeros(0))
+    doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
+    return found._replace(refused=doubt)
+
+
+def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
+    """Whether strokes differ so much in speed that what delays a slow start shows in the starts."""
+    change = changes(way)[:-1]
+    fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
+    return bool(fastest.max() > _WIDE * fastest.min())
+
+
+def _agree(first: Told, second: Told) -> bool:
+    """Whether two ways lie no further apart than their errors allow."""
+    error = np.hypot(first.uncertainty, second.uncertainty)
+    return bool(abs(first.shift - second.shift) <= _AGREE * error)
+
+
+def _refined(fit: Classes, shift: float, around: float) -> float:
+    """Shift near a coarse one at which the classes explain most."""
+    while around > 0.2 * fit.period:
+        shifts = shift + around * np.linspace(-1.0, 1.0, 33)
+        shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
+        around /= 8.0
+    return shift
+
+
+def _combined(first: Told, second: Told) -> Told:
+    """Mean of two ways and its standard deviation, which holds how far they lie apart."""
+    apart = second.shift - first.shift
+    weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
+    share = float(weights[1] / weights.sum())
+    inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
+    error = np.sqrt(inner**2 + max(share * (1.0 - share), _HELD) * apart**2)
+    return Told(first.shift + share * apart, _UNSEEN * float(error))
+
+
+def _doubt(
+    found: Estimate, fit: Classes, coarse: Coarse, stroke: float, expected: float | None
+) -> str:
+    """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
+    if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
+        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in found.ways.items())
+        return f"the ways to tell it disagree: {told}"
+    if found.uncertainty > _SHARP * stroke:
+        return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
+    left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
+    for rival in coarse.rivals:
+        at = _refined(fit, float(rival), coarse.half)
+        known = expected is not None and abs(found.shift - expected) < _DATED < abs(at - expected)
+        ratio = fit.ratio(at)
+        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
+        if abs(at - found.shift) > 0.5 * stroke and as_good and not known:
+            return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
+    return ""
+
+
+def _sharpened(
+    found: Estimate,
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    fit: Classes,
+) -> Estimate:
+    """Sharpen an estimate by the fast strokes' beginnings taken together."""
+    onsets = refine_by_onsets(force_time, force, motion_time, velocity, found.shift, fit.period)
+    if onsets is None:
+        return found
+    apart = abs(onsets.shift - found.shift)
+    # known where the fast strokes are; the clocks' rates leave it open elsewhere
+    middle = 0.5 * (motion_time[0] + motion_time[-1])
+    error = float(np.hypot(onsets.uncertainty, QUARTZ * (onsets.time - middle)))
+    if apart > 3.0 * found.uncertainty:  # the two ways disagree, and neither can be trusted more
+        error = max(error, apart)
+    return Estimate(onsets.shift, error, fit.ratio(onsets.shift))

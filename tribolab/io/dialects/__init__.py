@@ -1,0 +1,1 @@
+"""Instruments as data: how delimited text is read by its dialect."""

@@ -1,0 +1,184 @@
+"""Dialects: descriptions of instruments' raw files as TOML, found by name or by content."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tribolab.errors import ConfigError, ReadError, brief, nearest, shown
+from tribolab.io import cures
+from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.signature import File, peek
+from tribolab.io.schema_folder import schema_folder
+
+__all__ = [
+    "Dialect",
+    "is_scan",
+    "json_schema",
+    "known_dialects",
+    "load_dialect",
+    "recognise",
+    "scan_dialects",
+    "unknown",
+]
+
+
+_SHOWN = 5  # mistakes of a dialect that are told at once
+
+
+def known_dialects() -> dict[str, Path]:
+    """Names of the instruments that are described, and the TOML file of each.
+
+    Examples
+    --------
+    >>> "linear_slider" in known_dialects()
+    True
+    """
+    return {path.stem: path for path in sorted((schema_folder() / "instruments").glob("*.toml"))}
+
+
+def load_dialect(name_or_path: str | Path) -> Dialect:
+    """Return the dialect of a known instrument, or of a TOML file of your own.
+
+    Parameters
+    ----------
+    name_or_path
+        Name of a known instrument, or path of a TOML file.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such dialect, or it says something that cannot be.
+
+    Examples
+    --------
+    >>> load_dialect("linear_slider").text.delimiter
+    ','
+    """
+    known = known_dialects()
+    if str(name_or_path) in known:
+        return _load(known[str(name_or_path)])
+    path = Path(name_or_path)
+    if path.suffix == ".toml":
+        if not path.is_file():
+            raise ConfigError(f"{path}: there is no such dialect file")
+        return _parse(path)
+    raise ConfigError(
+        f"no instrument is called '{shown(str(name_or_path))}'{nearest(str(name_or_path), known)}; "
+        "a description of your own is given by its path, ending in .toml"
+    )
+
+
+def recognise(path: str | Path) -> Dialect:
+    """Tell from a file's content which known instrument wrote it.
+
+    Raises
+    ------
+    ReadError
+        If no dialect fits, or more than one; the message names the candidates and how to say
+        which.
+    """
+    from tribolab.io.dialects.recognise import mismatch
+    from tribolab.io.scans.results import is_results
+
+    file = peek(path)
+    every = [load_dialect(name) for name in known_dialects()]
+    fitting = [dialect for dialect in every if mismatch(file, dialect) is None]
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        names = ", ".join(repr(dialect.name) for dialect in fitting)
+        raise ReadError(
+            f"more than one instrument fits: {names}",
+            where=file.path,
+            cure=cures.name_instrument(cures.RUN),
+        )
+    if is_results(file.head):
+        raise ReadError(
+            "this looks like the results of a roughness tester",
+            where=file.path,
+            cure=cures.TESTER_RESULTS,
+        )
+    raise unknown(file, cures.RUN)
+
+
+def unknown(file: File, table: str) -> ReadError:
+    """Return what is said of a file that no dialect fits."""
+    what = f"no known instrument writes such a file ({file.format})"
+    if file.format != "text":
+        folder = "describe it as raw_data_schema/README.md says"
+        cure = cures.name_instrument(table, say=f"{folder}, and name that with")
+        return ReadError(what, where=file.path, cure=cure)
+    return ReadError(what, where=file.path, cure=cures.draft_dialect(file.path, table))
+
+
+def is_scan(dialect: Dialect) -> bool:
+    """Whether a dialect's files hold a profile or map, and no run.
+
+    Examples
+    --------
+    >>> is_scan(load_dialect("surftest_csv")), is_scan(load_dialect("linear_slider"))
+    (True, False)
+    """
+    return {"x", "height"} <= {column.quantity for column in dialect.column}
+
+
+def scan_dialects() -> list[Dialect]:
+    """Return the known dialects whose files hold a profile or map.
+
+    Examples
+    --------
+    >>> "nanovea_map" in [dialect.name for dialect in scan_dialects()]
+    True
+    """
+    return [dialect for dialect in map(load_dialect, known_dialects()) if is_scan(dialect)]
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a dialect file, for editors and other programs."""
+    schema = Dialect.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+@functools.lru_cache(maxsize=64)
+def _load(path: Path) -> Dialect:
+    return _parse(path)
+
+
+def _parse(path: Path) -> Dialect:
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except RecursionError as error:
+        raise ConfigError(
+            f"{path}: the dialect cannot be read: its lists or tables lie hundreds deep in one "
+            "another; write them flat"
+        ) from error
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
+    try:
+        return Dialect.model_validate(content)
+    except ValidationError as error:
+        said = [_explain(one) for one in error.errors()]
+        more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
+        raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
+
+
+def _explain(problem: Any) -> str:
+    where = ".".join(shown(str(part)) for part in problem["loc"])
+    if problem["type"] != "extra_forbidden":
+        return f"{where}: {problem['msg'].removeprefix('Value error, ')}".removeprefix(": ")
+    model = _model_at(problem["loc"][:-1])
+    word = str(problem["loc"][-1])
+    return f"{where}: there is no such key{nearest(word, model)}"
+
+
+def _model_at(loc: tuple[str | int, ...]) -> list[str]:
+    """Names of the keys that are allowed at a place of the dialect."""
+    from tribolab.io.dialects import model as dialect_model
+
+    name = next((str(part) for part in reversed(loc) if isinstance(part, str)), "dialect")
+    return list(getattr(dialect_model, name.capitalize()).model_fields)

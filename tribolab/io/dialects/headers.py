@@ -1,0 +1,249 @@
+"""Delimited text: where its tables start and end, and what their headers say."""
+
+from __future__ import annotations
+
+import mmap
+import re
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import ReadError, shown
+from tribolab.io import cures
+from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import Guarded
+from tribolab.io.dialects.signature import File, peek
+
+_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_BOM = b"\xef\xbb\xbf"
+_BLANK = re.compile(rb"(?:[ \t]*\r*\n)*")
+
+
+class Table(NamedTuple):
+    """One table of a text file: offsets of its first byte and of the byte after its last."""
+
+    names: tuple[str, ...]
+    units: tuple[str | None, ...]
+    width: int
+    start: int
+    stop: int
+    line: int
+    before: str
+
+
+class RawText(NamedTuple):
+    """A text file on disk, or its content in memory if its line ends had to be mended."""
+
+    file: File
+    memory: bytes | None
+    tables: tuple[Table, ...]
+
+    @property
+    def preamble(self) -> str:
+        """Text before the first table."""
+        return self.tables[0].before
+
+
+def split_name(text: str) -> tuple[str, str | None]:
+    """Separate a header's name from the unit in its brackets.
+
+    >>> split_name("Fx [N]")
+    ('Fx', 'N')
+    >>> split_name("COF")
+    ('COF', None)
+    """
+    match = _BRACKETS.match(text.strip())
+    if match is None:
+        return text.strip(), None
+    return match["name"].strip(), match["unit"].strip() or None
+
+
+def split_row(line: str, delimiter: str) -> list[str]:
+    """Cells of one line, without quotes and blanks around them."""
+    cells = line.split() if delimiter == "whitespace" else line.split(delimiter)
+    return [cell.strip().strip('"').strip() for cell in cells]
+
+
+def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
+    """Find the tables of a text file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        How the file is written.
+
+    Raises
+    ------
+    ReadError
+        If there is no header where the dialect expects it, or nothing stands below it.
+    """
+    file = path if isinstance(path, File) else peek(path)
+    memory = _without_lines(file, _mended(file, dialect), dialect)
+    if memory is not None:
+        return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
+    if not dialect.header.repeats:
+        return RawText(file, None, tuple(_scan(file, file.head, file.size, dialect)))
+    try:
+        with file.path.open("rb") as handle, mmap.mmap(handle.fileno(), 0, prot=1) as content:
+            return RawText(file, None, tuple(_scan(file, content, len(content), dialect)))
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{file.path}: the file cannot be read any more: {error}") from error
+
+
+def _mended(file: File, dialect: Dialect) -> bytes | None:
+    """Whole content as UTF-8 with LF, where line ends or encoding forbid reading it as it lies."""
+    head = file.head
+    wide = dialect.text.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
+    wide = wide or head.startswith((b"\xff\xfe", b"\xfe\xff"))
+    odd_ends = b"\r" in head and re.search(rb"\r(?!\n)", head[:-1]) is not None
+    spaced = dialect.text.delimiter == "whitespace"
+    if not (wide or odd_ends or spaced):
+        return None
+    try:
+        content = file.path.read_bytes()
+        if wide:
+            content = content.decode(
+                "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
+            ).encode()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    content = re.sub(rb"\r+\n|\r", b"\n", content)
+    if spaced:
+        content = re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", content)
+        content = re.sub(rb"[ \t]+", b"\t", content)
+    return content
+
+
+def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
+    """Whole content without the lines below the first header that are to be passed over."""
+    if dialect.text.skip_lines is None:
+        return content
+    try:
+        content = file.path.read_bytes() if content is None else content
+    except OSError as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    header = dialect.header
+    starts = _header_starts(file, content, dialect)
+    first = content.count(b"\n", 0, starts[0])
+    deep = header.skip + (header.units == "row")
+    whole = header.line is not None or header.pattern is not None
+    kept = {content.count(b"\n", 0, start) + k for start in starts for k in range(deep + whole)}
+    pattern = compiled(dialect.text.skip_lines, dialect)
+    return b"\n".join(
+        line
+        for number, line in enumerate(content.split(b"\n"))
+        if number < first or number in kept or not pattern.search(line)
+    )
+
+
+def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[Table]:
+    """Tables in `content`, the start of (or the whole of) a file of `size` bytes."""
+    header, text = dialect.header, dialect.text
+    starts = _header_starts(file, content, dialect)
+    end = compiled(text.end, dialect) if text.end else None
+    tables: list[Table] = []
+    origin = 3 if content[:3] == _BOM else 0
+    line, counted = 1, 0
+    for number, start in enumerate(starts):
+        limit = starts[number + 1] if number + 1 < len(starts) else size
+        here, names, units = _read_header(file, content, start, dialect)
+        body = _BLANK.match(content, here).end()
+        stop = limit
+        if end is not None and (found := end.search(content, body, min(limit, len(content)))):
+            stop = found.start()
+        width = len(split_row(_line(content, body, dialect)[0], text.delimiter))
+        before = _decode(content[origin : start if start > origin else body], file, dialect)
+        if header.line is None and header.pattern is None:
+            before = ""
+        line, counted = line + content[counted:body].count(b"\n"), body
+        if body < stop:
+            tables.append(Table(names, units, width, body, stop, line, before))
+        origin = min(stop, len(content))
+    if not tables:
+        raise ReadError(f"{file.path}: the file has a header, but no row of numbers below it")
+    return tables
+
+
+def _header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> list[int]:
+    """Offsets of the header lines."""
+    header = dialect.header
+    first = 3 if content[:3] == _BOM else 0
+    if header.pattern is not None:
+        found = compiled(header.pattern, dialect).all(content, first)
+        wanted = None if header.repeats else 1  # looking for more would read the whole head
+        starts = [
+            max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(found, wanted)
+        ]
+        if not starts:
+            raise ReadError(
+                f"no line matches '{shown(header.pattern)}', which begins the table in files of "
+                f"'{dialect.name}'",
+                where=file.path,
+                cure=cures.name_instrument(say="if another instrument wrote it, say so with"),
+            )
+        return starts
+    position = first
+    for _ in range((header.line or 1) - 1):
+        position = content.find(b"\n", position) + 1
+        if position == 0:
+            raise ReadError(
+                f"{file.path}: the header should stand in line {header.line}, but the file (or "
+                "its first megabyte) has fewer lines"
+            )
+    return [position]
+
+
+def _read_header(
+    file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect
+) -> tuple[int, tuple[str, ...], tuple[str | None, ...]]:
+    """Offset after the header block, names and units."""
+    header, delimiter = dialect.header, dialect.text.delimiter
+    if header.line is None and header.pattern is None:
+        for _ in range(header.skip):
+            start = _line(content, start, dialect)[1]
+        return start, (), ()
+    line, here = _line(content, start, dialect)
+    cells = split_row(line, delimiter)
+    names, units = tuple(cells), tuple[str | None, ...](None for _ in cells)
+    if header.units == "brackets":
+        names, units = zip(*map(split_name, cells), strict=True)
+    elif header.units == "row":
+        line, here = _line(content, here, dialect)
+        row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
+        units = tuple((row + [None] * len(cells))[: len(cells)])
+    for _ in range(header.skip):
+        here = _line(content, here, dialect)[1]
+    return here, names, units
+
+
+def _line(content: bytes | mmap.mmap, start: int, dialect: Dialect) -> tuple[str, int]:
+    """Return the line that starts at an offset, and the offset of the next."""
+    end = content.find(b"\n", start)
+    end = len(content) if end < 0 else end
+    text = content[start:end].decode(_encoding(dialect), errors="replace")
+    return text.rstrip("\r"), min(end + 1, len(content))
+
+
+def _encoding(dialect: Dialect) -> str:
+    wide = dialect.text.encoding.lower().startswith(("utf-16", "utf-32", "utf_16", "utf_32"))
+    return "utf-8" if wide else dialect.text.encoding
+
+
+def _decode(content: bytes, file: File, dialect: Dialect) -> str:
+    try:
+        return content.decode(_encoding(dialect)).replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        raise ReadError(
+            f"{file.path}: byte {error.start} is not {dialect.text.encoding}; name the encoding "
+            "in the dialect, e.g. encoding = 'latin-1'"
+        ) from error
+
+
+def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
+    """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
+    # behind "\s*", a second wish for blanks would take a time that grows with their number squared
+    if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
+        pattern = pattern[:-1] + r"[ \t\r]*$"
+    return Guarded(pattern.encode(_encoding(dialect), errors="replace"))

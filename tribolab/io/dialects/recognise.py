@@ -1,0 +1,105 @@
+"""Does a file's content fit a dialect? Every rule that the dialect states has to hold."""
+
+from __future__ import annotations
+
+import functools
+import re
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.headers import find_tables, split_row
+from tribolab.io.dialects.model import Dialect, Recognise
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.signature import File
+
+_ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
+_FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
+_PREAMBLE = 1 << 13  # characters in which the marks of a preamble are sought
+_LINKED = 0.999  # correlation of the same signal in volts and in its unit
+
+
+def mismatch(file: File, dialect: Dialect) -> str | None:
+    """Why a file cannot be this instrument's, or None if it can.
+
+    Parameters
+    ----------
+    file
+        The file, looked at by `tribolab.io.dialects.signature.peek`.
+    dialect
+        The dialect in question.
+    """
+    rules = dialect.recognise
+    if dialect.format != file.format:
+        return f"it is {file.format}, not {dialect.format}"
+    if rules == Recognise():
+        return "the dialect has no rules to recognise it by"
+    if rules.file_name and not guarded(rules.file_name).search(file.path.name):
+        return "its name does not fit"
+    if dialect.format == "mat":
+        from tribolab.io.tables.mat import variable_names
+
+        return _names_missing(rules, variable_names(file.path))
+    if dialect.format == "tdms":
+        from tribolab.io.tables.tdms import channel_names
+
+        return _names_missing(rules, channel_names(file.path))
+    return _text_mismatch(file, dialect)
+
+
+def _names_missing(rules: Recognise, names: set[str]) -> str | None:
+    missing = [name for name in rules.header if name not in names]
+    return f"it has no '{shown(missing[0])}'" if missing else None
+
+
+def _text_mismatch(file: File, dialect: Dialect) -> str | None:
+    rules = dialect.recognise
+    encoding = "utf-16" if file.head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
+    text = _text(file.head[: 1 << 16], encoding)
+    for pattern in rules.preamble:
+        if not guarded(pattern).search(text[:_PREAMBLE]):
+            return f"nothing in it matches '{shown(pattern)}'"
+    try:
+        raw = find_tables(file, dialect)
+    except ReadError as error:
+        # a file that is otherwise this instrument's is recognised, so that the error is told
+        return None if rules.preamble else str(error)
+    names = {
+        f"{name} [{unit}]" if unit else name
+        for name, unit in zip(raw.tables[0].names, raw.tables[0].units, strict=True)
+    } | set(raw.tables[0].names)
+    wanted = _names_missing(rules, names)
+    if wanted:
+        return wanted
+    if rules.columns is not None:
+        return _numbers_mismatch(text, dialect)
+    return None
+
+
+@functools.lru_cache(maxsize=4)  # a dozen dialects look at the same file, one after the other
+def _text(head: bytes, encoding: str) -> str:
+    text = head.decode(encoding, errors="replace").replace("\r\n", "\n")
+    return text.removeprefix("\ufeff")
+
+
+def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
+    """Check a table without a header by the number and the kinship of its columns."""
+    columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
+    first = _FIRST_LINE.match(text)[1]  # of most files it tells
+    rows = []
+    if len(split_row(first, delimiter)) == columns:
+        lines = text.splitlines()[:-1][:_ROWS]
+        rows = [split_row(line, delimiter) for line in lines if line.strip()]
+    if not rows or any(len(row) != columns for row in rows):
+        return f"it does not have {columns} columns"
+    try:
+        numbers = np.array(rows, dtype=float)
+    except ValueError:
+        return "it is not all numbers"
+    for one, other in dialect.recognise.linked:
+        a, b = numbers[:, one - 1], numbers[:, other - 1]
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            linked = np.ptp(a) > 0 and np.ptp(b) > 0 and abs(np.corrcoef(a, b)[0, 1]) >= _LINKED
+        if not linked:
+            return f"columns {one} and {other} are not the same signal"
+    return None

@@ -1,0 +1,74 @@
+"""Single values outside the table: in the preamble, in a step's text, in the file's name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.model import Dialect, Value
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.tables.pieces import Content, last_match
+from tribolab.quantities import QUANTITIES
+from tribolab.units import conversion
+
+
+def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
+    """Attributes from the preamble and the file's name; the unit is in an attribute's name.
+
+    Raises
+    ------
+    ReadError
+        If a value that has a unit is no number.
+    """
+    attrs: dict[str, str | float] = {}
+    for value in dialect.value:
+        if value.source == "step":
+            continue
+        text = content.path.name if value.source == "file name" else content.pieces[0].before
+        found = _first_match(value.pattern, text)
+        if found:
+            attrs[value.attribute] = _converted(found, value, content, dialect)
+    return attrs
+
+
+def step_values(
+    contents: list[Content], dialect: Dialect
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Values that each step has: numbers as variables along time, texts as one attribute each."""
+    variables: dict[str, np.ndarray] = {}
+    attrs: dict[str, str] = {}
+    places = [(content, piece) for content in contents for piece in content.pieces]
+    for value in dialect.value:
+        if value.source != "step":
+            continue
+        found = [last_match(value.pattern, piece.before) or "" for _, piece in places]
+        if value.unit is None:
+            attrs[f"{value.name}s"] = "; ".join(
+                f"{piece.step}: {text}" for text, (_, piece) in zip(found, places, strict=True)
+            )
+        elif value.name in QUANTITIES:
+            numbers = [
+                _converted(text, value, content, dialect) if text else np.nan
+                for text, (content, _) in zip(found, places, strict=True)
+            ]
+            lengths = [len(piece.columns["time"]) for _, piece in places]
+            variables[value.name] = np.repeat(np.array(numbers, dtype=float), lengths)
+    return variables, attrs
+
+
+def _first_match(pattern: str, text: str) -> str | None:
+    return guarded(pattern).first(text)
+
+
+def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
+    if value.unit is None:
+        return text
+    try:
+        number = float(text.replace(dialect.text.decimal, "."))
+    except ValueError as error:
+        raise ReadError(
+            f"{content.path}: '{shown(text)}' ({value.name}) is not a number; see the value's "
+            f"pattern in the dialect '{dialect.name}'"
+        ) from error
+    scale, offset = conversion(value.unit, value.si_unit, value.bare)
+    return float(f"{value.sign * value.scale * number * scale + offset:.15g}")

@@ -1,0 +1,178 @@
+"""What has to hold before a file is given to SurfaceTopography, whose readers trust files."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.seal import is_sealed, try_out
+
+_MEGABYTE = 1 << 20
+_UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
+_RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
+_DEEPEST = 500  # elements of XML within one another; office files have a dozen
+_DAMAGE = (zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError)
+_DAMAGE += (ValueError,)
+_MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
+_HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
+_LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square
+_NUMBERS = re.compile(rb"(?:[-+0-9.,;eE\s]|nan|NaN|bad|inf)*")
+# SurfaceTopography's formats for text, in its own order of trial; "xyz" tries every line of a
+# file's start as the first row, so it is for tables that are numbers to their end.
+_TEXT = ("sdf", "xyz", "asc")
+
+
+def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str]:
+    """Say which formats SurfaceTopography may try on a file, in this order.
+
+    Parameters
+    ----------
+    path
+        The file.
+    sure, possible
+        SurfaceTopography's formats that the file's first bytes show, and do not exclude.
+
+    Raises
+    ------
+    ReadError
+        If the file would unpack to more than it can hold, its structure is damaged in a way that
+        could crash native code, or it is text that is no profile.
+    """
+    with path.open("rb") as file:
+        head = file.read(_MEGABYTE)
+    if head.startswith(b"PK\x03\x04"):
+        _unpacks(path)
+    elif head.startswith(b"MATLAB 5.0"):
+        _arrays_only(path)
+    elif head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")):
+        if not is_sealed(path):
+            try_out(path)
+    elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return list(dict.fromkeys([*sure, *_text_formats(path)]))
+    # any bytes of twice a square number make a map of "hgt", which has no mark but its name
+    unmarked = {*_TEXT} if path.suffix.lower() == ".hgt" else {*_TEXT, "hgt"}
+    every = dict.fromkeys([*sure, *possible])
+    return [name for name in every if name not in unmarked or name in sure]
+
+
+def _unpacks(path: Path) -> None:
+    """Refuse an archive that unfolds to far more than it is."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            unpacked = sum(member.file_size for member in archive.infolist())
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        ValueError,
+        OSError,
+        EOFError,
+        NotImplementedError,
+    ) as e:
+        raise ReadError(
+            f"{path}: the zip or Office file is damaged: {e}; copy or save it again"
+        ) from e
+    if unpacked > max(_UNPACKED, _RATIO * path.stat().st_size):
+        raise ReadError(
+            f"{path}: the file unpacks to {unpacked / _MEGABYTE:.0f} MB, "
+            f"{unpacked / path.stat().st_size:.0f} times its size; that is no measurement. Export "
+            "the profile as text (csv)"
+        )
+    with contextlib.suppress(*_DAMAGE):  # what reads it says how it is damaged
+        _shallow(path)
+
+
+def _shallow(path: Path) -> None:
+    """Refuse XML whose elements lie so deep in one another that its parsers take for ever."""
+    with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            if not member.filename.lower().endswith((".xml", ".rels")):
+                continue
+            depth = 0
+            with archive.open(member) as file:
+                while block := file.read(_MEGABYTE):
+                    steps = _steps(block)
+                    if depth + steps.cumsum().max(initial=0) > _DEEPEST:
+                        raise ReadError(
+                            f"{path}: in '{shown(member.filename)}' more than {_DEEPEST} elements "
+                            "lie in one another, as no office program writes it; export the "
+                            "profile as text (csv)"
+                        )
+                    depth += int(steps.sum())
+
+
+def _steps(block: bytes) -> np.ndarray:
+    """Down (1) and up (-1) of each tag whose first two letters stand in a block."""
+    letters = np.frombuffer(block, dtype=np.uint8)
+    starts = np.flatnonzero(letters[:-1] == ord("<"))
+    second = letters[starts + 1]
+    steps = np.ones(starts.size, dtype=np.int64)
+    steps[second == ord("/")] = -1
+    steps[(second == ord("?")) | (second == ord("!"))] = 0
+    ends = np.flatnonzero(letters[1:] == ord(">"))
+    ends = ends[letters[ends] == ord("/")]  # of an empty element: <a/>
+    empty = np.searchsorted(starts, ends) - 1
+    steps[empty[empty >= 0]] = 0
+    return steps
+
+
+def _arrays_only(path: Path) -> None:
+    """Read the MAT file with our own reader first: it holds every size against the file's."""
+    from tribolab.io.tables.mat5 import read_variables
+
+    if any(variable.numbers is None for variable in read_variables(path)):
+        raise ReadError(
+            f"{path}: the MAT file holds more than arrays of numbers; save the heights alone"
+        )
+
+
+def _text_formats(path: Path) -> list[str]:
+    content = path.read_bytes()
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        content = content.decode("utf-16", errors="replace").encode()
+    _no_endless_lines(path, content)
+    lines = re.split(rb"\r\n|\r|\n", content)
+    words = [number for number, line in enumerate(lines) if not _NUMBERS.fullmatch(line)]
+    for number in words:
+        if len(lines[number]) > _LONG:
+            raise ReadError(
+                f"{path}: line {number + 1} has {len(lines[number])} characters that are not all "
+                "numbers; a profile's text has short lines of words. Is the file damaged?"
+            )
+    last = words[-1] if words else -1
+    widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
+    columns = last < _HEADER_LINES and len(widths) == 1 and None not in widths
+    return [name for name in _TEXT if columns or name != "xyz"]
+
+
+def _no_endless_lines(path: Path, content: bytes) -> None:
+    """Refuse text whose lines, or whose one line, would take all memory."""
+    count = content.count(b"\n") + content.count(b"\r")  # before a list of them is made
+    if count > _MOST_LINES:
+        raise ReadError(
+            f"{path}: {count} lines are more than a profile or map without a dialect may have "
+            f"({_MOST_LINES}); describe the file in a TOML dialect"
+        )
+    letters = np.frombuffer(content, dtype=np.uint8)
+    ends = np.flatnonzero((letters == ord("\n")) | (letters == ord("\r")))
+    longest = int(np.diff(ends, prepend=-1, append=len(content)).max()) - 1
+    if longest > _LONGEST_ROW:
+        raise ReadError(
+            f"{path}: a line of {longest} characters is longer than any row of a map "
+            f"({_LONGEST_ROW}); is the file damaged?"
+        )
+
+
+def _width(line: bytes) -> int | None:
+    """Count the cells of a row of numbers; None if one is no number."""
+    cells = re.split(rb"[\s,;]+", line.strip())
+    try:
+        [float(cell) for cell in cells]
+    except ValueError:
+        return None
+    return len(cells)

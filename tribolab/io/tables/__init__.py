@@ -1,0 +1,1 @@
+"""Tables of numbers: schemas, binary formats, pieces."""

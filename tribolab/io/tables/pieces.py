@@ -1,0 +1,220 @@
+"""Pieces of a run as they lie in one file: a table at each of the instrument's steps, in SI."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.columns import resolve
+from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.signature import File, peek
+from tribolab.provenance import sha256_of_file
+
+LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
+_PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
+
+
+class Piece(NamedTuple):
+    """One table: arrays in SI by quantity, and what the text before it says."""
+
+    columns: dict[str, np.ndarray]
+    step: int | None = None
+    started: dt.datetime | None = None
+    before: str = ""
+
+
+class Content(NamedTuple):
+    """What one file holds."""
+
+    path: Path
+    sha256: str
+    pieces: list[Piece]
+    labels: Mapping[str, str]
+    not_used: tuple[str, ...]
+    left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
+    notes: Mapping[str, str] = {}
+
+
+def read_content(path: Path, dialect: Dialect) -> Content:
+    """Read one raw file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        The instrument's dialect.
+
+    Returns
+    -------
+    Content
+        The pieces; the label and unit that each quantity has in the file; what is not used.
+
+    Raises
+    ------
+    ReadError
+        If the file is not what the dialect says.
+    """
+    file = peek(path)
+    if file.format != dialect.format:
+        raise ReadError(
+            f"{path}: this is a {file.format} file, instrument '{dialect.name}' writes "
+            f"{dialect.format}"
+        )
+    if dialect.format == "mat":
+        from tribolab.io.tables.mat import read_mat
+
+        content = read_mat(path, dialect)
+    elif dialect.format == "tdms":
+        from tribolab.io.tables.tdms import read_tdms
+
+        content = read_tdms(path, dialect)
+    else:
+        content = _read_text(file, dialect)
+    return _checked(content, dialect)
+
+
+def _read_text(file: File, dialect: Dialect) -> Content:
+    from tribolab.io.dialects.headers import find_tables
+    from tribolab.io.dialects.rows_outside import rows_outside
+    from tribolab.io.dialects.text import Hasher, read_table
+
+    raw = find_tables(file, dialect)
+    whole = raw.memory is None and len(raw.tables) == 1
+    hasher = Hasher() if whole else None
+    pieces: list[Piece] = []
+    labels: dict[str, str] = {}
+    unused: dict[str, None] = {}
+    cut = 0
+    for table in raw.tables:
+        where = f"{file.path}" if len(raw.tables) == 1 else f"{file.path}: line {table.line}"
+        signals, not_used = resolve(where, table.names, table.units, table.width, dialect)
+        columns, incomplete = read_table(raw, table, signals, dialect, hasher)
+        cut += incomplete
+        labels.update({s.quantity: f"{s.label} [{s.unit}]" for s in signals})
+        unused.update(dict.fromkeys(not_used))
+        step = last_match(dialect.header.step, table.before) if dialect.header.step else None
+        if step is None and dialect.header.repeats:
+            step = str(len(pieces) + 1)
+        pieces.append(
+            Piece(
+                columns,
+                _whole_number(file.path, step),
+                started(table.before, file.path, dialect),
+                table.before,
+            )
+        )
+    sha256 = hasher.hexdigest() if hasher else sha256_of_file(file.path)
+    outside = rows_outside(raw, dialect.text.delimiter)
+    left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
+    left_out = {reason: count for reason, count in left_out.items() if count}
+    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out)
+
+
+def measurable(values: np.ndarray) -> np.ndarray:
+    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
+
+    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
+    infinite stays so: it is refused or left out where it is met.
+
+    >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
+    [1.0, nan, 0.0]
+    """
+    if values.dtype.kind != "f":
+        return values
+    size = np.abs(values)
+    beyond, nothing = (size > LARGEST) & np.isfinite(size), (size < 1 / LARGEST) & (size > 0)
+    if not (beyond.any() or nothing.any()):
+        return values
+    return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
+
+
+def _checked(content: Content, dialect: Dialect) -> Content:
+    """Leave out optional columns without a value; a wanted one without a value is an error."""
+    content = _possible(content)
+    rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
+    if rows == 0:
+        raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
+    optional = {column.quantity for column in dialect.column if column.optional}
+    present = dict.fromkeys(name for piece in content.pieces for name in piece.columns)
+    empty = [
+        name
+        for name in present
+        if all(
+            np.isnan(piece.columns[name]).all() for piece in content.pieces if name in piece.columns
+        )
+    ]
+    for name in empty:
+        if name not in optional:
+            raise ReadError(
+                f"{content.path}: column '{shown(content.labels[name])}' ({name}) has no value "
+                "in any row; if that is so in good files too, say optional = true in the dialect "
+                f"'{dialect.name}'"
+            )
+    pieces = [
+        piece._replace(columns={k: v for k, v in piece.columns.items() if k not in empty})
+        for piece in content.pieces
+    ]
+    without = tuple(f"{content.labels[name]} (no values)" for name in empty)
+    return content._replace(pieces=pieces, not_used=content.not_used + without)
+
+
+def _possible(content: Content) -> Content:
+    """Take numbers that nothing measured can have for missing, and say how many they were."""
+    found: dict[str, int] = {}
+    pieces = []
+    for piece in content.pieces:
+        columns = dict(piece.columns)
+        for name, values in columns.items():
+            if name in _PLACES or values.dtype.kind != "f":
+                continue
+            odd = np.isfinite(values) & (np.abs(values) > LARGEST)
+            if name == "time":  # whoever sets the clock refuses it
+                columns[name] = np.where(odd, np.inf, values)
+                continue
+            columns[name] = measurable(values)
+            if odd.any():
+                found[name] = found.get(name, 0) + int(odd.sum())
+        pieces.append(piece._replace(columns=columns))
+    content = content._replace(pieces=pieces)
+    if not found:
+        return content
+    told = "; ".join(f"{name}: {count}" for name, count in found.items())
+    return content._replace(notes={**content.notes, "numbers_beyond_range": told})
+
+
+def last_match(pattern: str, text: str) -> str | None:
+    """Group 1 of a pattern's last match, so that a step's own text goes before earlier steps'."""
+    return guarded(pattern).last(text)
+
+
+def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
+    """Moment at which a step starts, if the text before it says so."""
+    time = dialect.time
+    if time.start_pattern is None or time.start_format is None:
+        return None
+    stamp = last_match(time.start_pattern, text)
+    if stamp is None:
+        return None
+    try:
+        return dt.datetime.strptime(stamp, time.start_format)
+    except ValueError as error:
+        raise ReadError(
+            f"{path}: '{shown(stamp)}' is no date and time of the form "
+            f"'{shown(time.start_format)}' (instrument '{dialect.name}', time.start_format)"
+        ) from error
+
+
+def _whole_number(path: Path, text: str | None) -> int | None:
+    if text is None:
+        return None
+    try:
+        return int(text)
+    except ValueError as error:
+        raise ReadError(f"{path}: '{shown(text)}' is no number of a step (header.step)") from error

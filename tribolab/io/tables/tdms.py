@@ -1,0 +1,128 @@
+"""LabVIEW TDMS: channels in groups are columns; a group of marks may divide the run into steps."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribolab.errors import ReadError, brief, shown
+from tribolab.io.dialects.columns import resolve
+from tribolab.io.dialects.headers import split_name
+from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.tables.pieces import Content, Piece
+from tribolab.provenance import sha256_of_file
+from tribolab.units import conversion
+
+_DAMAGE = (ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error)
+_DAMAGE += (MemoryError, OverflowError, NotImplementedError, AttributeError)
+
+
+def channel_names(path: Path) -> set[str]:
+    """Names of the channels of a TDMS file as ``group/channel``.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged.
+    """
+    file = _open(path, "read_metadata")
+    return {f"{g.name}/{c.name}" for g in file.groups() for c in g.channels()}
+
+
+def read_tdms(path: Path, dialect: Dialect) -> Content:
+    """Read a TDMS file's channels, and its marks as steps.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        Which channel is which quantity.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, or channels are missing or differ in length.
+    """
+    file = _open(path, "read")
+    groups = {column.group for column in dialect.column}
+    channels = [c for g in file.groups() if g.name in groups for c in g.channels()]
+    named = [split_name(channel.name) for channel in channels]
+    names, units = [n for n, _ in named], [u for _, u in named]
+    signals, unused = resolve(str(path), names, units, len(names), dialect)
+    columns = {}
+    for signal in signals:
+        numbers = np.asarray(channels[signal.index][:])
+        if numbers.dtype.kind not in "fiu":
+            raise ReadError(f"{path}: channel '{shown(signal.label)}' holds no numbers")
+        with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+            columns[signal.quantity] = numbers * signal.scale + signal.offset
+    lengths = {len(column) for column in columns.values()}
+    if len(lengths) > 1:
+        raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
+    text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
+    notes = _incomplete(file)
+    if dialect.marks is not None:
+        columns["step"], more = _steps(path, file, columns["time"], dialect)
+        notes |= more
+    labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
+    piece = Piece(columns, before=text)
+    return Content(path, sha256_of_file(path), [piece], labels, tuple(unused), notes=notes)
+
+
+def _incomplete(file: Any) -> dict[str, str]:
+    """Note that the file ends within its last segment: the run is shorter than it was."""
+    status = file.file_status
+    if not status.incomplete_final_segment:
+        return {}
+    return {"file_incomplete": "the file ends before its last segment does"}
+
+
+def _steps(
+    path: Path, file: Any, time: np.ndarray, dialect: Dialect
+) -> tuple[np.ndarray, dict[str, str]]:
+    """Step k lasts from mark k to mark k + 1; before the first mark it is 0."""
+    marks = dialect.marks
+    group = next((g for g in file.groups() if g.name == marks.group), None)
+    found = (
+        []
+        if group is None
+        else [c for c in group.channels() if split_name(c.name)[0] == marks.time]
+    )
+    if not found:
+        raise ReadError(
+            f"{path}: there is no channel '{shown(marks.time)}' in a group '{shown(marks.group)}'"
+        )
+    unit = marks.unit or split_name(found[0].name)[1]
+    if unit is None:
+        raise ReadError(
+            f"{path}: the marks' time has no unit; give it in the dialect: [marks] unit"
+        )
+    scale, _ = conversion(unit, "s")
+    at = np.sort(np.asarray(found[0][:], dtype=float) * scale)
+    texts = [
+        str(value)
+        for key, value in group.properties.items()
+        if marks.labels and guarded(marks.labels).search(key)
+    ]
+    notes = {"step_labels": "; ".join(texts)} if texts else {}
+    return np.searchsorted(at, time, side="right").astype(float), notes
+
+
+def _open(path: Path, how: str) -> Any:
+    try:
+        from nptdms import TdmsFile
+    except ImportError as error:
+        raise ReadError(
+            f"{path}: TDMS files need the package nptdms: pip install 'tribolab[formats]'"
+        ) from error
+    try:
+        return getattr(TdmsFile, how)(str(path))
+    except _DAMAGE as error:
+        raise ReadError(
+            f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
+        ) from error

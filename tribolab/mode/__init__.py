@@ -1,0 +1,1 @@
+"""How a contact slides: the evidence, the verdict, and its words."""

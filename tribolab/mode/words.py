@@ -1,0 +1,141 @@
+"""The verdict on the sliding mode in words: sentences made from the evidence, nothing beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
+from tribolab.qc.register import Count
+
+if TYPE_CHECKING:
+    from tribolab.mode.evidence import Evidence
+    from tribolab.mode.verdict import Mode
+
+STEADY, SAW, SINE, REVERSED = CLASSES
+
+
+def speed_text(speed: float) -> str:
+    """Speed with a unit that fits.
+
+    >>> speed_text(2.15e-6), speed_text(1e-2), speed_text(3e-9)
+    ('2.15 µm/s', '10 mm/s', '3 nm/s')
+    """
+    for unit, factor in (("mm/s", 1e3), ("µm/s", 1e6)):
+        if speed * factor >= 0.95:  # a measured speed stands beside the set one
+            return f"{speed * factor:.3g} {unit}"
+    return f"{speed * 1e9:.3g} nm/s"
+
+
+def friction_text(value: float) -> str:
+    """Friction coefficient, or a change of it, to two digits."""
+    return f"{value:.2g}"
+
+
+def percent_text(share: float) -> str:
+    """Part as a percentage."""
+    return f"{100 * share:.2g} %"
+
+
+def verdict_text(
+    verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
+) -> str:
+    """Return the verdict as one sentence."""
+    speeds = np.zeros(0)
+    if slip is not None and "waveform" in slip:
+        speeds = slip["sliding_speed"].values[oscillating(slip["waveform"].values)]
+    where = ""
+    if speeds.size == 1:
+        where = f" at {speed_text(speeds[0])}"
+    elif speeds.size:
+        where = f" from {speed_text(speeds.min())} to {speed_text(speeds.max())}"
+    if verdict == "no stick-slip":
+        off = numbers["model_misfit"]
+        steady = "steady sliding, no stick-slip at any speed"
+        if slip is not None and (count := int((slip["waveform"].values == UNDECIDED).sum())):
+            steady = f"steady sliding where it is decided; {count} of "
+            steady += f"{Count(slip.sizes['sliding_speed']):speed|speeds} not decided"
+        if not modelled or np.isnan(off):
+            return steady
+        if off < 0.10:
+            return f"{steady}; the mixed-lubrication model is sufficient"
+        return (
+            f"{steady}; the mixed-lubrication model is not sufficient, "
+            "and the traces do not say why"
+        )
+    low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
+    end = ""
+    if np.isfinite(high):
+        end = f"; forced wetting would set in between {speed_text(low)} and {speed_text(high)}"
+    if verdict == "not known":
+        looked = slip is not None and slip.sizes.get("sliding_speed", 0)
+        what = "most traces do not decide it" if looked else "no trace was looked at"
+        return f"not known: {what}"
+    return f"{verdict}{where}{end}"
+
+
+def suggestions(
+    verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
+) -> tuple[str, ...]:
+    """Return what measurement would decide."""
+    if verdict == "adhesion-controlled macroscopic instability suspected":
+        found = [
+            "watch the contact through the transparent body: detached folds that cross it would "
+            "show the instability, a still picture would refute it",
+            "measure the pull-off force: it has to be finite where γ_eff(1) > 0",
+        ]
+        if known.fluid:
+            found.append(
+                "change the viscosity: forced wetting would move with viscosity times speed, "
+                "an instability of the rig would not"
+            )
+        else:
+            found.append(
+                "change the stiffness of the rig: stick-slip of the rig would change its "
+                "wavelength, folds in the contact would not"
+            )
+        return tuple(found)
+    if verdict == "stick-slip of unknown origin":
+        if known.work_of_adhesion is not None:
+            return ("change stiffness or mass of the rig: its own vibration would move with them",)
+        return (
+            "give what γ_eff(1) is computed from: scans of the surface, the rubber's modulus, the "
+            "medium's work of adhesion",
+        )
+    if verdict == "local stick-slip":
+        return (
+            "change the stiffness of the rig: stick-slip of the rig as a whole would change",
+            "measure the pull-off force: it has to vanish where γ_eff(1) = 0",
+        )
+    if verdict == "not known":
+        if slip is not None and slip.sizes.get("sliding_speed", 0):
+            return ("slide further at each speed: few periods are not told from a wander",)
+        return ("record the friction force itself, not only its mean",)
+    if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
+        return ("slide more slowly: adhesion would allow an instability at lower speeds",)
+    return ()
+
+
+def paragraph(
+    name: str,
+    text: str,
+    evidence: Sequence[Evidence],
+    decide: Sequence[str],
+    numbers: dict[str, float],
+) -> str:
+    """Return verdict, evidence and what would decide as a short paragraph."""
+    parts = [f"{name[:1].upper()}{name[1:]}: {text}."]
+    for side, opening in (
+        ("for", "For an adhesion-controlled mode:"),
+        ("against", "Against it:"),
+        ("neutral", "Beside it:"),
+    ):
+        mine = [one.text for one in evidence if one.side == side]
+        if mine:
+            parts.append(f"{opening} {'; '.join(mine)}.")
+    if decide:
+        parts.append(f"What would decide: {'; '.join(decide)}.")
+    return " ".join(parts)

@@ -1,0 +1,101 @@
+"""What the figures are drawn from: the data files of a reproduction."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.paper.work import data_file
+from tribolab.plot.labels import speed_text
+from tribolab.studies import xu2026
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from tribolab.campaign.outcome import CurveOutcome, RunOutcome
+    from tribolab.plot.stick_slip import Trace
+
+# Several figures show the same data, and none of them changes it.
+_KEPT = 64
+SURFACES = tuple(xu2026.surfaces)
+ROUGH = tuple(name for name in SURFACES if name != "Smooth")
+
+
+@dataclass(frozen=True)
+class PaperData:
+    """Everything computed and simulated, read when it is asked for.
+
+    Parameters
+    ----------
+    folder
+        Folder of the results.
+    runs, curves
+        Simulated runs and the measured curves that came of them.
+    fits
+        Shear stresses fitted to the simulated curves, a row each.
+    """
+
+    folder: Path
+    runs: tuple[RunOutcome, ...]
+    curves: tuple[CurveOutcome, ...]
+    fits: pd.DataFrame
+
+    @property
+    def forces(self) -> list[float]:
+        """Normal forces [N] in glycerol, from low to high."""
+        return sorted({curve.normal_force for curve in self.curves})
+
+    def read(self, kind: str, surface: str, group: str) -> xr.Dataset:
+        """Read a group of a task's data file."""
+        return _read(data_file(self.folder, kind, surface), group)
+
+    def dry(self, group: str) -> dict[str, xr.Dataset]:
+        """Read a group of the dry contact of every surface."""
+        return {name: self.read("dry", name, group) for name in SURFACES}
+
+    def model(self, surface: str, force: float) -> xr.Dataset:
+        """Read the computed Stribeck curve of a surface at a force [N], over the lab's speeds."""
+        curve = self.read("wet", surface, f"curve_{force:g}N")
+        v = curve["sliding_speed"]
+        return curve.isel(sliding_speed=np.flatnonzero((v > 3e-7) & (v < 3e-2)))
+
+    def measured(self, surface: str, medium: str, force: float | None = None) -> xr.Dataset:
+        """Read a simulated measured curve, by default that at the lowest force [N]."""
+        from tribolab.report.curve_figures import read_curve
+
+        force = self.forces[0] if force is None else force
+        key = surface, medium, force
+        for curve in self.curves:
+            if (curve.surface, curve.medium, curve.normal_force) == key:
+                return read_curve(self.folder, curve)
+        raise LookupError(f"no simulated curve of {surface}, {medium}, {force:g} N")
+
+    def trace(self, surface: str, medium: str, speed: float) -> Trace:
+        """Read the forward stroke at the lowest force whose speed is nearest to a speed [m/s]."""
+        from tribolab.plot import Trace
+
+        run = next(
+            run
+            for run in self.runs
+            if (run.surface, run.medium, run.normal_force) == (surface, medium, self.forces[0])
+        )
+        parts = [
+            _read(self.folder / run.data_file, group) for group in ("run", "segments", "friction")
+        ]
+        v = parts[1]["sliding_speed"].values
+        off = np.abs(np.log(v / speed)) + (parts[1]["direction"].values < 0)
+        segment = int(np.nanargmin(off))
+        label = f"{surface}, {medium}, {speed_text(float(f'{v[segment]:.2g}'))}"
+        return Trace(label, *parts, segment, surface)
+
+
+@functools.lru_cache(_KEPT)
+def _read(path: Path, group: str) -> xr.Dataset:
+    from tribolab.io.netcdf import read_netcdf
+
+    return read_netcdf(path, group=group)

@@ -1,0 +1,361 @@
+"""The figures of the reproduction: each drawn from the data, with what it shows in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from tribolab.paper.data import ROUGH, SURFACES, PaperData
+from tribolab.plot.labels import force_text, number, speed_text
+from tribolab.report.wording import span, speeds, with_error
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Drawn = tuple["Figure", str]  # and what it shows, in words and numbers
+_BOUNDARY = 1e-9  # m/s, from where on the theory of Smooth is shown
+
+
+def _listed(parts: Iterable[str]) -> str:
+    return "; ".join(parts) + "."
+
+
+def spectra(data: PaperData) -> Drawn:
+    """Stand-in spectra."""
+    from tribolab import plot
+    from tribolab.surface.moments import rms_roughness, rms_slope
+
+    found = data.dry("psd")
+    said = _listed(
+        f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
+        for name, psd in found.items()
+    )
+    return plot.spectra(found, surfaces=SURFACES), said
+
+
+def scanned_spectra(data: PaperData) -> Drawn:
+    """Spectra that the analysis makes of the simulated profiles."""
+    from tribolab import plot
+    from tribolab.surface.moments import rms_roughness
+
+    found = {name: data.read("spectrum", name, "psd") for name in SURFACES}
+    said = _listed(
+        f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
+        for name, psd in found.items()
+    )
+    return plot.spectra(found, surfaces=SURFACES), said
+
+
+def contact_area(data: PaperData) -> Drawn:
+    """A/A0 over pressure without adhesion."""
+    from tribolab import plot
+
+    loads = data.dry("loads")
+    said = _listed(
+        f"{name}: A/A0 {float(one.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
+        f"{1e-6 * float(one.pressure[0]):.3g} MPa"
+        for name, one in loads.items()
+    )
+    figure = plot.contact_area(data.dry("contact"), loads[SURFACES[0]], surfaces=SURFACES)
+    return figure, said
+
+
+def effective_work(data: PaperData) -> Drawn:
+    """gamma_eff over magnification."""
+    from tribolab import plot
+
+    found = data.dry("effective_work")
+    said = _listed(
+        f"{name}: "
+        + ", ".join(
+            f"{medium} {1e3 * float(one.effective_work_of_adhesion.sel(medium=medium)[0]):.3g}"
+            for medium in one.medium.values.tolist()
+        )
+        + " mJ/m² at magnification 1"
+        for name, one in found.items()
+    )
+    return plot.effective_work(found, surfaces=SURFACES), said
+
+
+def adhesive_area(data: PaperData) -> Drawn:
+    """A/A0 over pressure with adhesion."""
+    from tribolab import plot
+
+    loads = data.dry("loads")
+    said = _listed(
+        f"{name}: "
+        + ", ".join(
+            f"{medium} {float(one.contact_area_ratio.sel(medium=medium)[0]):.3g}"
+            for medium in one.medium.values.tolist()
+        )
+        + f" at {1e-6 * float(one.pressure[0]):.3g} MPa"
+        for name, one in loads.items()
+    )
+    contacts, adhesions = data.dry("contact"), data.dry("adhesion")
+    figure = plot.adhesive_area(contacts, adhesions, loads[SURFACES[0]], surfaces=SURFACES)
+    return figure, said
+
+
+def _friction_of(curves: Iterable[xr.Dataset]) -> str:
+    return _listed(
+        f"{c.attrs['surface']}, {c.attrs['medium']}, {force_text(c.attrs['normal_force_N'])}: µ "
+        f"from {span(c.friction_coefficient.values.tolist())} at "
+        f"{speeds(c.sliding_speed.values.tolist())}"
+        for c in curves
+    )
+
+
+def dry_friction(data: PaperData) -> Drawn:
+    """Dry mu(v)."""
+    from tribolab import plot
+
+    measured = [data.measured(name, "dry") for name in SURFACES]
+    return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured)
+
+
+def modulus(data: PaperData) -> Drawn:
+    """Stand-in modulus."""
+    from tribolab import plot
+    from tribolab.studies.tables import modulus_table
+
+    table = modulus_table()
+    ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
+    return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
+
+
+def viscoelastic(data: PaperData) -> Drawn:
+    """mu_visc(v)."""
+    from tribolab import plot
+
+    found = data.dry("rubber")
+    found["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
+    said = _listed(
+        f"{name}: µ at most {number(float(one.friction_coefficient.max()), 2)}"
+        for name, one in found.items()
+    )
+    return plot.viscoelastic(found, surfaces=SURFACES), said
+
+
+def dry_shear_stress(data: PaperData) -> Drawn:
+    """sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
+    from tribolab import plot
+
+    stresses = {}
+    for name in SURFACES:
+        loads = data.read("dry", name, "loads").isel(load=0)
+        factor = float(loads.pressure / loads.contact_area_ratio.sel(medium="dry"))
+        mu = data.measured(name, "dry")
+        stresses[name] = xr.Dataset(
+            {
+                "shear_stress": factor * mu.friction_coefficient,
+                "shear_stress_std": factor * mu.friction_coefficient_std,
+            }
+        )
+    means = {name: float(one.shear_stress.mean()) for name, one in stresses.items()}
+    said = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
+    said.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
+    return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)
+
+
+def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
+    from tribolab import plot
+
+    traces = [data.trace(*one) for one in wanted]
+    said = []
+    for trace in traces:
+        one = trace.friction.isel(segment=trace.segment)
+        mean, spread = (float(one[f"friction_coefficient{end}"]) for end in ("", "_std"))
+        said.append(f"{trace.label}: µ = {with_error(mean, spread)} (standard deviation)")
+    ends = [
+        float((row.trimmed_stop - row.trimmed_start) * row.sliding_speed)
+        for row in (trace.segments.isel(segment=trace.segment) for trace in traces)
+    ]
+    return plot.slip_traces(traces, SURFACES, longest=min(ends)), _listed(said)
+
+
+def dry_traces(data: PaperData) -> Drawn:
+    """Dry traces of Smooth and Sb-R."""
+    return _traces(data, [(n, "dry", v) for n in ("Sb-R", "Smooth") for v in (1e-6, 3e-6)])
+
+
+def wet_traces(data: PaperData) -> Drawn:
+    """Traces in glycerol."""
+    wanted = [("Sb-R", "glycerol", 1e-6), *(("Smooth", "glycerol", v) for v in (1e-6, 3e-6))]
+    return _traces(data, wanted)
+
+
+def rough_dry_and_wet(data: PaperData) -> Drawn:
+    """Traces of Sb-R."""
+    return _traces(data, [("Sb-R", "glycerol", 1e-6), ("Sb-R", "dry", 1e-6)])
+
+
+def smooth_dry_and_wet(data: PaperData) -> Drawn:
+    """Traces of Smooth, and of Sb-R in glycerol."""
+    wanted = [("Sb-R", "glycerol"), ("Smooth", "glycerol"), ("Smooth", "dry")]
+    return _traces(data, [(*one, 1e-6) for one in wanted])
+
+
+def both_rough(data: PaperData) -> Drawn:
+    """Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
+    from tribolab import plot
+
+    force = data.forces[0]
+    measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
+    models = [data.model(name, force) for name in ROUGH]
+    return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured)
+
+
+def _all_loads(data: PaperData, name: str) -> Drawn:
+    from tribolab import plot
+
+    measured = [data.measured(name, "glycerol", force) for force in data.forces]
+    models = [data.model(name, force) for force in data.forces]
+    off = [
+        float(np.abs(m.friction_coefficient / _at(model, m) - 1).max())
+        for m, model in zip(measured, models, strict=True)
+    ]
+    worst = f" Points and lines part by at most {100 * max(off):.2g} %."
+    return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured) + worst
+
+
+def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
+    v = np.log(points.sliding_speed.values)
+    return np.interp(v, np.log(model.sliding_speed.values), model.friction_coefficient.values)
+
+
+def loads_less_rough(data: PaperData) -> Drawn:
+    """Stribeck curves of Sb-S."""
+    return _all_loads(data, "Sb-S")
+
+
+def loads_rough(data: PaperData) -> Drawn:
+    """Stribeck curves of Sb-R."""
+    return _all_loads(data, "Sb-R")
+
+
+def shear_stress(data: PaperData) -> Drawn:
+    """sigma_f over load, as fitted and corrected."""
+    from tribolab import plot
+
+    said = _listed(
+        f"{row.surface}, {force_text(row.normal_force_N)}: {row.shear_stress_Pa / 1e6:.3g} MPa, "
+        f"in the adhesive area {row.corrected_shear_stress_Pa / 1e6:.3g} MPa"
+        for row in data.fits.itertuples()
+    )
+    return plot.shear_stress(data.fits, surfaces=SURFACES), said
+
+
+def smooth_and_theory(data: PaperData) -> Drawn:
+    """Smooth at all loads, and the theory at the lowest."""
+    from tribolab import plot
+
+    measured = [data.measured("Smooth", "glycerol", force) for force in data.forces]
+    force = data.forces[0]
+    model = data.read("wet", "Smooth", f"curve_{force:g}N")
+    v = model["sliding_speed"]
+    model = model.isel(sliding_speed=np.flatnonzero((v >= _BOUNDARY) & (v < 3e-2)))
+    highest = float(model.friction_coefficient.max())
+    said = f" The theory reaches µ = {highest:.3g} at {speed_text(float(v.min()))}."
+    return plot.stribeck(measured, model, surfaces=SURFACES), _friction_of(measured) + said
+
+
+def separation(data: PaperData) -> Drawn:
+    """p_cont over separation."""
+    from tribolab import plot
+
+    found = data.dry("separation")
+    said = _listed(
+        f"{name}: falls by a factor e in "
+        f"{d.attrs['decay_length_m'] / d.attrs['rms_roughness_m']:.3g} h_rms = "
+        f"{1e6 * d.attrs['decay_length_m']:.3g} µm"
+        for name, d in found.items()
+    )
+    return plot.contact_separation(found, surfaces=SURFACES), said
+
+
+def factors(data: PaperData) -> Drawn:
+    """Flow and friction factors."""
+    from tribolab import plot
+
+    found = {name: data.read("wet", name, "factors") for name in SURFACES}
+    closed = [
+        d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in found.values()
+    ]
+    said = f"Flow stops at a mean separation of {span(closed)} h_rms."
+    return plot.lubrication_factors(found, surfaces=SURFACES), said
+
+
+def friction_factor_effect(data: PaperData) -> Drawn:
+    """mu(v) at the highest load with and without friction factors."""
+    from tribolab import plot
+
+    force = data.forces[-1]
+    found = {name: data.model(name, force) for name in ROUGH}
+    said = _listed(
+        f"{name}, {force_text(force)}: they raise µ by at most {_largest_rise(curve)}"
+        for name, curve in found.items()
+    )
+    return plot.friction_factor_effect(found, surfaces=SURFACES), said
+
+
+def _largest_rise(curve: xr.Dataset) -> str:
+    rise = curve.friction_coefficient - curve.friction_without_factors
+    at = int(rise.values.argmax())
+    part = float(rise[at] / curve.friction_without_factors[at])
+    v = speed_text(float(f"{float(curve.sliding_speed[at]):.3g}"))
+    return f"{float(rise[at]):.2g}, {100 * part:.2g} % at {v}"
+
+
+def _profiles(data: PaperData, name: str) -> Drawn:
+    from tribolab import plot
+
+    found = data.read("wet", name, "profiles")
+    said = _listed(
+        f"{speed_text(float(v))}: smallest separation "
+        f"{1e6 * float(found.separation.sel(sliding_speed=v).min()):.3g} µm, pressures of contact "
+        f"and fluid at most "
+        + " and ".join(
+            f"{1e-6 * float(found[key].sel(sliding_speed=v).max()):.3g}"
+            for key in ("contact_pressure", "fluid_pressure")
+        )
+        + " MPa"
+        for v in found.sliding_speed.values
+    )
+    return plot.film_profiles(found), said
+
+
+def profiles_less_rough(data: PaperData) -> Drawn:
+    """Profiles of Sb-S."""
+    return _profiles(data, "Sb-S")
+
+
+def profiles_rough(data: PaperData) -> Drawn:
+    """Profiles of Sb-R."""
+    return _profiles(data, "Sb-R")
+
+
+def _bars(data: PaperData, name: str) -> Drawn:
+    from tribolab import plot
+
+    measured = [data.measured(name, "glycerol", force) for force in data.forces]
+    largest = max(float(c.friction_coefficient_std.max()) for c in measured)
+    said = f" Standard deviation at most {largest:.2g}."
+    return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured) + said
+
+
+def bars_less_rough(data: PaperData) -> Drawn:
+    """Error bars, Sb-S."""
+    return _bars(data, "Sb-S")
+
+
+def bars_rough(data: PaperData) -> Drawn:
+    """Error bars, Sb-R."""
+    return _bars(data, "Sb-R")
+
+
+def bars_smooth(data: PaperData) -> Drawn:
+    """Error bars, Smooth."""
+    return _bars(data, "Smooth")

@@ -1,0 +1,277 @@
+"""Which figures the reproduction has: where in the paper, what is computed and what simulated."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tribolab.paper import drawing
+from tribolab.paper.data import PaperData
+from tribolab.paper.drawing import Drawn
+from tribolab.report.figure_files import save_figure
+
+COMPUTED, SIMULATED = "computed here", "simulated"
+_STAND_IN = (
+    "The spectra are stand-ins with the paper's roughness and slope; those that the authors "
+    "measured are published as a picture."
+)
+_POINTS = (
+    "Points: simulated by the virtual rig and analysed like measured ones; wide pale bars: "
+    "standard deviation while sliding, narrow bars: standard error."
+)
+_RIG = "What the authors measured is published as a picture without numbers."
+_SLIP = (
+    "Traces of the virtual rig, shifted up to be told apart; that Smooth sticks and slips is the "
+    "authors' observation, how far and how often is an assumption of the rig."
+)
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the reproduction.
+
+    Parameters
+    ----------
+    name
+        What its file is called.
+    section
+        Key of the section of the paper that has it.
+    title
+        What it shows.
+    kinds
+        Where what it shows comes from: `COMPUTED`, `SIMULATED` or both.
+    caption
+        Full sentences below it.
+    draw
+        Draws it.
+    claims
+        Published numbers that belong to it: quantity, surface ("" for any), a part of the
+        condition.
+    wide
+        Whether it wants the whole width of the page.
+    told
+        Whether the caption, too, has what it shows in numbers.
+    """
+
+    name: str
+    section: str
+    title: str
+    kinds: tuple[str, ...]
+    caption: str
+    draw: Callable[[PaperData], Drawn]
+    claims: tuple[tuple[str, str, str], ...] = ()
+    wide: bool = False
+    told: bool = False
+
+    @property
+    def file(self) -> str:
+        """Path of the figure relative to the results folder."""
+        return f"figures/{self.name}.svg"
+
+    def has(self, row: Mapping[str, Any]) -> bool:
+        """Whether a published number belongs to it."""
+        return any(
+            row["quantity"] == quantity
+            and surface in ("", row["surface"])
+            and condition in row["condition"]
+            for quantity, surface, condition in self.claims
+        )
+
+
+FIGURES = (
+    PaperFigure(
+        "spectra", "topography", "Surface roughness power spectra", (COMPUTED,),
+        "Roughness and slope are the paper's by construction. " + _STAND_IN,
+        drawing.spectra, (("rms_roughness", "", ""), ("rms_slope", "", "")),
+    ),
+    PaperFigure(
+        "spectra_from_profiles", "topography", "Spectra from simulated profiles", (SIMULATED,),
+        "What the analysis makes of profiles that the virtual profilometer took of the stand-in "
+        "surfaces: full where measured, dashed where extrapolated, shaded the 95 % band.",
+        drawing.scanned_spectra,
+    ),
+    PaperFigure(
+        "contact_area", "topography", "Contact area without adhesion", (COMPUTED,),
+        "Grey: mean Hertz pressures of the four loads. " + _STAND_IN,
+        drawing.contact_area, (("contact_area_ratio", "", "0.042 MPa; no adhesion"),),
+    ),
+    PaperFigure(
+        "effective_work", "adhesion", "Effective work of adhesion over magnification", (COMPUTED,),
+        "As the pressure vanishes, with 64 mJ/m² dry (dashed) and 51 mJ/m² in glycerol (full). "
+        "Zero at magnification 1 means no pull-off force; that only Smooth has one the authors "
+        "found by hand.",
+        drawing.effective_work,
+        (("work_of_adhesion", "", ""), ("macroscopic_work_of_adhesion", "", "")),
+    ),
+    PaperFigure(
+        "adhesive_area", "adhesion", "Contact area with adhesion", (COMPUTED,),
+        "Dotted: without adhesion; dashed: dry; full: in glycerol. Grey: mean Hertz pressures. The "
+        "paper's text and caption swap full and dotted lines.",
+        drawing.adhesive_area,
+        (
+            ("contact_area_ratio", "", "0.042 MPa; adhesion"),
+            ("dry_over_glycerol_area", "", ""),
+        ),
+    ),
+    PaperFigure(
+        "dry_friction", "dry", "Dry friction over speed", (SIMULATED,),
+        _POINTS + " The rig's dry friction has the paper's ratio of shear stresses; its level is "
+        "an assumption. " + _RIG,
+        drawing.dry_friction,
+    ),
+    PaperFigure(
+        "modulus", "dry", "Viscoelastic modulus of the rubber", (COMPUTED,),
+        "A stand-in (1.5 MPa at rest, 1 GPa as a glass): the authors' measured modulus is a "
+        "picture without numbers.",
+        drawing.modulus,
+    ),
+    PaperFigure(
+        "viscoelastic", "dry", "Viscoelastic contribution to friction", (COMPUTED,),
+        "At 0.0417 MPa, without adhesion; dashed: Smooth in complete contact. With the stand-in "
+        "modulus, so an order of magnitude only.",
+        drawing.viscoelastic,
+        (("viscoelastic_friction", "", ""), ("area_enhancement", "", "dry")),
+    ),
+    PaperFigure(
+        "dry_shear_stress", "dry", "Dry shear stress over speed", (SIMULATED, COMPUTED),
+        "Simulated friction times nominal pressure over the computed dry contact area with "
+        "adhesion; bars: standard deviation while sliding. The ratio is what the rig was given, "
+        "but for the areas, which are computed:",
+        drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), told=True,
+    ),
+    PaperFigure(
+        "dry_traces", "dry", "Dry friction over sliding distance", (SIMULATED,), _SLIP,
+        drawing.dry_traces, wide=True,
+    ),
+    PaperFigure(
+        "stribeck_both", "stribeck", "Sb-S and Sb-R at 310 N/m", (COMPUTED, SIMULATED),
+        "Lines: mixed-lubrication theory with the printed shear stress. " + _POINTS + " Open: dry. "
+        "The rig was given that same theory, so agreement tests the analysis and not the theory. "
+        + _RIG,
+        drawing.both_rough,
+    ),
+    PaperFigure(
+        "stribeck_sb-s", "stribeck", "Sb-S at all loads", (COMPUTED, SIMULATED),
+        "Lines: theory with the printed shear stress of each load. " + _POINTS,
+        drawing.loads_less_rough, (("shear_stress", "Sb-S", ""),),
+    ),
+    PaperFigure(
+        "stribeck_sb-r", "stribeck", "Sb-R at all loads", (COMPUTED, SIMULATED),
+        "Lines: theory with the printed shear stress of each load. " + _POINTS,
+        drawing.loads_rough, (("shear_stress", "Sb-R", ""),),
+    ),
+    PaperFigure(
+        "shear_stress", "stribeck", "Shear stress over load", (COMPUTED, SIMULATED),
+        "Open: fitted to the simulated points, for the area without adhesion; filled: divided by "
+        "the computed growth of the area by adhesion in glycerol. Bars: 95 %. The authors' own "
+        "fits, which the rig was given, stand in the table.",
+        drawing.shear_stress,
+        (
+            ("contact_area_ratio", "", "0.1 MPa"),
+            ("area_enhancement", "Sb-S", "at the loads"),
+            ("area_enhancement", "Sb-R", "at the loads"),
+            ("corrected_shear_stress_ratio", "", ""),
+        ),
+    ),
+    PaperFigure(
+        "smooth_and_theory", "stribeck", "Smooth against theory", (COMPUTED, SIMULATED),
+        "Line: theory at 310 N/m with the printed 0.5 MPa. Points: the virtual rig, which follows "
+        "what the authors report and their theory does not give: a plateau up to about 10 µm/s.",
+        drawing.smooth_and_theory,
+        (
+            ("shear_stress", "Smooth", ""),
+            ("area_enhancement", "Smooth", ""),
+            ("corrected_shear_stress", "", ""),
+            ("boundary_onset_speed", "", ""),
+        ),
+    ),
+    PaperFigure(
+        "wet_traces", "stribeck", "Friction in glycerol over sliding distance", (SIMULATED,),
+        _SLIP, drawing.wet_traces, wide=True,
+    ),
+    PaperFigure(
+        "sb-r_dry_and_wet", "discussion", "Sb-R, dry and in glycerol", (SIMULATED,), _SLIP,
+        drawing.rough_dry_and_wet, wide=True,
+    ),
+    PaperFigure(
+        "smooth_dry_and_wet", "discussion", "Smooth, dry and in glycerol; Sb-R in glycerol",
+        (SIMULATED,), _SLIP, drawing.smooth_dry_and_wet, wide=True,
+    ),
+    PaperFigure(
+        "contact_separation", "factors", "Contact pressure over separation", (COMPUTED,),
+        "Persson's theory without adhesion. " + _STAND_IN,
+        drawing.separation, (("separation_decay_alpha", "", ""),),
+    ),
+    PaperFigure(
+        "factors", "factors", "Flow factors and friction factors", (COMPUTED,),
+        "(a) Pressure and shear flow factor, the rough body at rest; (b) friction factors.",
+        drawing.factors, (("percolation_separation", "", ""),), wide=True,
+    ),
+    PaperFigure(
+        "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
+        "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
+        "paper finds no visible effect on Sb-S and a small one on Sb-R. Here:",
+        drawing.friction_factor_effect, told=True,
+    ),
+    PaperFigure(
+        "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),
+        "The flat slides to the right: (a) mean separation, (b) pressure in the solid contact, (c) "
+        "pressure in the fluid. The paper does not print its speeds; these are ours.",
+        drawing.profiles_less_rough,
+        (
+            ("contact_max_pressure", "Sb-S", ""),
+            ("contact_width", "Sb-S", ""),
+        ),
+        wide=True,
+    ),
+    PaperFigure(
+        "profiles_sb-r", "profiles", "Across the contact of Sb-R at 310 N/m", (COMPUTED,),
+        "As above, for Sb-R.",
+        drawing.profiles_rough,
+        (
+            ("contact_max_pressure", "Sb-R", ""),
+            ("contact_width", "Sb-R", ""),
+        ),
+        wide=True,
+    ),
+    *(
+        PaperFigure(
+            f"error_bars_{name.lower()}", "bars", f"{name} with error bars", (SIMULATED,),
+            _POINTS, draw,
+        )
+        for name, draw in (
+            ("Sb-S", drawing.bars_less_rough),
+            ("Sb-R", drawing.bars_rough),
+            ("Smooth", drawing.bars_smooth),
+        )
+    ),
+)  # fmt: skip
+BY_NAME = {figure.name: figure for figure in FIGURES}
+_ALONE = threading.Lock()
+
+
+@dataclass(frozen=True)
+class DrawTask:
+    """A figure to draw."""
+
+    name: str
+    data: PaperData
+
+
+def draw(task: DrawTask) -> dict[str, Any]:
+    """Draw a figure into the results and return its record."""
+    known = BY_NAME[task.name]
+    with _ALONE:
+        figure, said = known.draw(task.data)
+        alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
+        caption = f"{known.caption} {said}" if known.told else known.caption
+        record = save_figure(figure, task.data.folder, known.file, caption, alt)
+    return record | {
+        "name": known.name,
+        "section": known.section,
+        "title": known.title,
+        "kinds": list(known.kinds),
+        "wide": known.wide,
+    }

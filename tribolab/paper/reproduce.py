@@ -1,0 +1,140 @@
+"""The job behind ``tribolab reproduce``: simulate, analyse, compute, draw, compare, write."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from tribolab.campaign.executor import completed, workers
+from tribolab.campaign.staging import staged
+from tribolab.paper import laboratory as lab
+from tribolab.paper.data import SURFACES, PaperData
+from tribolab.paper.document import context_of, paper_document, shown_sections
+from tribolab.paper.figures import FIGURES, DrawTask, draw
+from tribolab.paper.work import Task, compute
+from tribolab.report import tables
+from tribolab.report.page import framed
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.surface_plan import PlannedSurface
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What came of a reproduction.
+
+    Parameters
+    ----------
+    folder
+        The results.
+    table
+        Published numbers beside computed ones, as in ``paper.csv``.
+    document
+        All that the page says, as in ``paper.json``.
+    """
+
+    folder: Path
+    table: pd.DataFrame
+    document: dict[str, Any]
+
+
+def reproduce(
+    output: str | Path,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    laboratory: lab.Laboratory | None = None,
+) -> Reproduction:
+    """Reproduce the reference paper: its figures, its numbers, and a page that shows both.
+
+    Parameters
+    ----------
+    output
+        Results folder, replaced as a whole: ``paper.html``, ``paper.csv``, ``paper.json``,
+        ``figures/``, ``data/``, and the raw files of the virtual rig in ``simulated/``.
+    jobs
+        Number of processes; by default one per processor.
+    progress
+        Called as ``progress(stage, done, total)``.
+    laboratory
+        What the virtual rig measures; by default all that the paper measured.
+
+    Raises
+    ------
+    ConfigError, OutputError
+        If `output` holds something else, or cannot be written.
+    """
+    laboratory = laboratory or lab.Laboratory()
+    place = Path(output).resolve()
+    tell = progress or (lambda stage, done, total: None)
+    with staged(place) as folder:
+        (folder / "figures").mkdir()
+        with workers(jobs) as pool:
+            campaign = lab.simulate(laboratory, folder, pool, tell)
+            outcome, scans = lab.analyse(campaign, folder, pool, tell)
+            table, fits = _computed(outcome, scans, pool, tell)
+            data = PaperData(folder, outcome.runs, outcome.curves, fits)
+            figures = _drawn(data, pool, tell)
+        document = paper_document(table, figures, fits, laboratory, outcome.sources)
+        tables.write(table, folder / "paper.csv", digits=6)
+        tables.write(fits, folder / "data" / "shear_stress.csv", digits=6)
+        text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+        (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
+        page = framed("paper/page.html.j2", context_of(document), shown_sections(), folder)
+        (folder / "paper.html").write_text(page, encoding="utf-8")
+        tell("page", 1, 1)
+    return Reproduction(place, table, document)
+
+
+def _computed(
+    outcome: Outcome, scans: Sequence[PlannedSurface], pool: Executor | None, tell: Progress
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Compute what the theory gives, compare the numbers, and fit the simulated curves."""
+    folder = outcome.folder
+    tasks = [Task("published", "", folder)]
+    for name in SURFACES:
+        wet = [c for c in outcome.curves if (c.surface, c.medium) == (name, "glycerol")]
+        # of Smooth the paper computes the lowest load only
+        forces = sorted(c.normal_force for c in wet)[: 1 if name == "Smooth" else None]
+        tasks.append(Task("wet", name, folder, tuple(forces), tuple(wet)))
+    tasks += [Task("dry", name, folder) for name in SURFACES]
+    tasks += [Task("spectrum", surface.name, folder, scans=surface) for surface in scans]
+    rows: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for task, future in completed(pool, compute, tasks):
+        rows[task.kind, task.surface] = future.result()
+        tell("theory", len(rows), len(tasks))
+    table = pd.DataFrame(rows["published", ""])
+    fitted = [row for name in SURFACES for row in rows["wet", name]]
+    return table, _corrected(pd.DataFrame(fitted), folder)
+
+
+def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
+    """Divide the fitted shear stresses by the growth of the area by adhesion in glycerol."""
+    data = PaperData(folder, (), (), fits)
+    growth = []
+    for row in fits.itertuples():
+        loads = data.read("dry", row.surface, "loads").swap_dims(load="normal_force")
+        mine = loads.area_enhancement.sel(medium="glycerol", normal_force=row.normal_force_N)
+        growth.append(float(mine))
+    return fits.assign(
+        area_enhancement=growth,
+        corrected_shear_stress_Pa=fits.shear_stress_Pa / growth,
+        corrected_shear_stress_error_Pa=fits.shear_stress_error_Pa / growth,
+    )
+
+
+def _drawn(data: PaperData, pool: Executor | None, tell: Progress) -> list[dict[str, Any]]:
+    done: dict[str, dict[str, Any]] = {}
+    for task, future in completed(pool, draw, [DrawTask(one.name, data) for one in FIGURES]):
+        done[task.name] = future.result()
+        tell("figures", len(done), len(FIGURES))
+    return [done[one.name] for one in FIGURES]

@@ -1,0 +1,142 @@
+"""What workers compute for the reproduction, each task into a data file of its own."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.provenance import made, sha256_of
+from tribolab.studies import xu2026
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.campaign.outcome import CurveOutcome
+    from tribolab.campaign.surface_plan import PlannedSurface
+
+_LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
+
+
+@dataclass(frozen=True)
+class Task:
+    """Something to compute: `kind` is a key of `_KINDS`.
+
+    Parameters
+    ----------
+    kind, surface
+        What, and of which surface.
+    folder
+        Folder of the results.
+    forces
+        Normal forces [N] at which the Stribeck curves are computed.
+    curves
+        Measured curves of the surface in glycerol.
+    scans
+        The surface's profiles.
+    """
+
+    kind: str
+    surface: str
+    folder: Path
+    forces: tuple[float, ...] = ()
+    curves: tuple[CurveOutcome, ...] = ()
+    scans: PlannedSurface | None = None
+
+
+def data_file(folder: Path, kind: str, surface: str) -> Path:
+    """Return the data file of a task."""
+    return folder / "data" / f"{kind}_{surface}.nc"
+
+
+def compute(task: Task) -> list[dict[str, Any]]:
+    """Compute a task, write its data file, and return its rows if it has any."""
+    groups, rows = _KINDS[task.kind](task)
+    if groups:
+        from tribolab.campaign.work import write_data
+
+        root = _root(task)
+        write_data({None: root} | groups, data_file(task.folder, task.kind, task.surface))
+    return rows
+
+
+def _root(task: Task) -> xr.Dataset:
+    import xarray as xr
+
+    return xr.Dataset(
+        attrs={"surface": task.surface, "references": xu2026.CITATION}
+        | made(f"reproduce: {task.kind} {task.surface}", **_origin(task))
+    )
+
+
+def _origin(task: Task) -> dict[str, str]:
+    """Return what a task's result is made from: files, or else the published constants alone.
+
+    There is no checksum of a file where there is no file; the settings are then the constants.
+    """
+    if task.scans is not None:
+        from tribolab.campaign.surface_work import named, sources_of
+
+        config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
+        return named(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
+    constants = (xu2026.system, xu2026.surface(task.surface))
+    config = {"constants": [asdict(one) for one in constants], "forces": task.forces}
+    return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
+
+
+def _published(task: Task) -> tuple[dict, list[dict[str, Any]]]:
+    from tribolab.studies.comparison import compare_with_paper
+
+    return {}, compare_with_paper().to_dict("records")
+
+
+def _dry(task: Task) -> tuple[dict, list]:
+    from tribolab.studies.tables import dry_contact
+
+    return dry_contact(task.surface), []
+
+
+def _spectrum(task: Task) -> tuple[dict, list]:
+    """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
+    from tribolab.campaign.surface_scans import spectra, usable_scans
+
+    checked = usable_scans(task.scans)
+    return spectra(task.scans, checked.scans, _LOWEST_WAVENUMBER)[0], []
+
+
+def _wet(task: Task) -> tuple[dict, list[dict[str, Any]]]:
+    from tribolab.studies.tables import lubricated
+
+    known = dict(xu2026.surface(task.surface).shear_stress)
+    groups = lubricated(task.surface, task.forces)
+    fitted = [c for c in task.curves if c.normal_force in known and task.surface != "Smooth"]
+    return groups, [_fit(task, curve, known[curve.normal_force]) for curve in fitted]
+
+
+def _fit(task: Task, curve: CurveOutcome, printed: float) -> dict[str, Any]:
+    """Fit the shear stress to a simulated curve, as the authors did to theirs."""
+    from tribolab.fit.shear_stress import fit_shear_stress
+    from tribolab.io.netcdf import read_netcdf
+    from tribolab.rig import Scatter
+
+    fit = fit_shear_stress(
+        read_netcdf(task.folder / curve.data_file),
+        xu2026.contact,
+        xu2026.psd(task.surface),
+        xu2026.system.viscosity,
+        xu2026.contact.load(curve.normal_force),
+        # one run at each load does not tell how well it would repeat; the rig's is known
+        common_error=Scatter().repeat,
+    )
+    return {
+        "surface": task.surface,
+        "normal_force_N": curve.normal_force,
+        "printed_shear_stress_Pa": printed,
+        "shear_stress_Pa": fit.shear_stress,
+        "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,
+        "shear_stress_high_Pa": fit.shear_stress + fit.half_interval,
+        "shear_stress_error_Pa": fit.total_error,
+    }
+
+
+_KINDS = {"published": _published, "dry": _dry, "spectrum": _spectrum, "wet": _wet}
