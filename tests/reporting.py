@@ -188,7 +188,7 @@ def made_outcome(
         names = tuple(member for member, _ in members)
         curves.append(CurveOutcome(f"curve{number}", surface, medium, load, data_file, names))
     campaign = Campaign(campaign={"name": name, "note": note}, run=[{"files": "*.csv"}])
-    campaign._file = campaign_file
+    campaign.lies_at(campaign_file)
     return Outcome(
         campaign=campaign,
         folder=results,

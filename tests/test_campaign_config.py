@@ -6,7 +6,8 @@ import re
 import pytest
 
 from tribolab.campaign import catalogue
-from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema, load_campaign
+from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.plan import plan
 from tribolab.campaign.toml_lines import line_of
 from tribolab.errors import ConfigError

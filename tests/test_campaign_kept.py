@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.app.run import run_campaign
-from tribolab.campaign.config import load_campaign
 from tribolab.campaign.kept import kept_model
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
 from tribolab.cli import app

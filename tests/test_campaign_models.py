@@ -17,7 +17,7 @@ from tribolab.app.demo import DemoComparison
 from tribolab.app.terminal import truth_lines
 from tribolab.app.truth import Comparison
 from tribolab.app.truth_shear_stress import compare_shear_stress
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.model_work import _beside
 from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process

@@ -10,7 +10,7 @@ from campaigns import copied, simulated
 from typer.testing import CliRunner
 
 from tribolab import rig
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.plan import scan_files
 from tribolab.campaign.surface_plan import PlannedSurface
 from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of

@@ -17,7 +17,7 @@ import tribolab
 from tribolab import rig
 from tribolab.app.run import run_campaign
 from tribolab.app.truth_surfaces import compare_surfaces
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.outcome import RunOutcome
 from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
 from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of

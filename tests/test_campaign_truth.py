@@ -7,7 +7,7 @@ import xarray as xr
 from campaigns import simulated
 
 from tribolab.app.truth import compare_run, summary, write_truth
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 
 

@@ -1,66 +1,62 @@
-"""The house: imports point down only, and importing tribolab is cheap."""
+"""The house: imports point down only, nothing runs in circles, and importing tribolab is cheap."""
 
-import ast
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 import tribolab
 
-ROOT = Path(tribolab.__file__).parent
-
-# What stands in one row may not see its neighbours unless it is the same room.
-LAYERS = [
-    {"errors", "provenance", "quantities", "turns", "unit_text", "units", "validity"},
-    {"io"},
-    {"qc", "friction", "surface"},
-    {"contact", "rubber"},
-    {"lubrication"},
-    {"compare"},
-    {"rig", "studies"},
-    {"campaign"},
-    {"plot"},
-    {"report"},
-    {"cli"},
-]
-LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}
-# The rig is built on a study; the quality checks look at what friction and surface found.
-NEIGHBOURS_ALLOWED = {("rig", "studies"), ("qc", "friction"), ("qc", "surface")}
+PROJECT = Path(tribolab.__file__).resolve().parents[1]
+ROOMS = sorted(
+    path.stem
+    for path in (PROJECT / "tribolab").iterdir()
+    if path.name[0] not in "_." and (path.is_dir() or path.suffix == ".py")
+)
 
 
-def room_of(path: Path) -> str:
-    return path.relative_to(ROOT).parts[0].removesuffix(".py")
+def lint(folder: Path) -> subprocess.CompletedProcess:
+    command = "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports())"
+    return subprocess.run(
+        [sys.executable, "-P", "-c", f"import sys; sys.path.insert(0, '.'); {command}"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
 
 
-def imports_of(path: Path) -> set[str]:
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            assert node.level == 0, f"{path}: relative import"
-            if node.module == "tribolab":
-                found |= {alias.name for alias in node.names}
-            elif node.module.startswith("tribolab."):
-                found.add(node.module.split(".")[1])
-        elif isinstance(node, ast.Import):
-            found |= {a.name.split(".")[1] for a in node.names if a.name.startswith("tribolab.")}
-    return found & set(LEVEL)
+def test_imports_point_down_only_and_never_in_circles():
+    done = lint(PROJECT)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_point_down_only(path):
-    room = room_of(path)
-    if room in ("__init__", "__main__"):
-        return
-    for other in imports_of(path) - {room}:
-        allowed = LEVEL[other] < LEVEL[room] or LEVEL[other] == LEVEL[room] == 0
-        assert allowed or (room, other) in NEIGHBOURS_ALLOWED, f"{room} imports {other}"
+def test_an_import_upwards_a_circle_and_one_of_the_public_face_are_found(tmp_path):
+    (tmp_path / "tribolab").mkdir()
+    for room in ROOMS:
+        if not (PROJECT / "tribolab" / f"{room}.py").is_file():
+            (tmp_path / "tribolab" / room).mkdir()
+            (tmp_path / "tribolab" / room / "__init__.py").write_text("")
+        else:
+            (tmp_path / "tribolab" / f"{room}.py").write_text("")
+    (tmp_path / "tribolab" / "__main__.py").write_text("")
+    (tmp_path / "tribolab" / "__init__.py").write_text("")
+    (tmp_path / "pyproject.toml").write_text((PROJECT / "pyproject.toml").read_text("utf-8"))
+    assert lint(tmp_path).returncode == 0
+    io = tmp_path / "tribolab" / "io"
+    (io / "one.py").write_text("def f():\n    import tribolab.report\n")
+    (io / "two.py").write_text("from tribolab.io import three\n")
+    (io / "three.py").write_text(
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from tribolab.io import two\n"
+    )
+    (io / "four.py").write_text("from tribolab import read\n")
+    said = lint(tmp_path).stdout
+    assert "tribolab.io is not allowed to import tribolab.report" in said
+    assert "No circles, in packages and between them BROKEN" in said
+    assert "Nothing below the face imports the public names BROKEN" in said
 
 
 def test_every_room_stands_in_the_plan():
-    rooms = {room_of(path) for path in ROOT.rglob("*.py")} - {"__init__", "__main__"}
-    assert rooms <= set(LEVEL)
+    layers = (PROJECT / "pyproject.toml").read_text("utf-8").split("layers = [")[1].split("]")[0]
+    assert {room for room in ROOMS if f"tribolab.{room}" not in layers} == set()
 
 
 def test_import_is_lazy():

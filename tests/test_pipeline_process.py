@@ -16,8 +16,8 @@ from campaigns import RUNS, copied, fingerprint, simulated
 import tribolab
 import tribolab as tl
 from tribolab.campaign import pipeline, work
-from tribolab.campaign.config import load_campaign
 from tribolab.campaign.executor import WorkerDied, workers
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from tribolab.friction.coefficient.statistics import (
+from tribolab.friction.statistics import (
     BLOCKS,
     describe,
     error_of_mean,

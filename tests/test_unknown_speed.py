@@ -12,7 +12,7 @@ from rich.console import Console
 from tribolab import cli
 from tribolab.app import terminal
 from tribolab.campaign import pipeline
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run

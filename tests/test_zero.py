@@ -6,7 +6,7 @@ import xarray as xr
 from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient

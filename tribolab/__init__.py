@@ -61,7 +61,7 @@ _PUBLIC = {
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
-    "load_campaign": "tribolab.campaign.config",
+    "load_campaign": "tribolab.campaign.load",
     "run_campaign": "tribolab.app.run",
     "TribolabError": "tribolab.errors",
     "plot": "",
@@ -123,7 +123,7 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.app.run import run_campaign
-    from tribolab.campaign.config import load_campaign
+    from tribolab.campaign.load import load_campaign
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution

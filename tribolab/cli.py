@@ -353,7 +353,7 @@ def _reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     except (typer.Exit, BrokenPipeError):
         raise
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
-        from tribolab.campaign.work import explain
+        from tribolab.words import explain
 
         _fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
 

@@ -29,7 +29,7 @@ import pandas as pd
 import xarray as xr
 from scipy import stats
 
-from tribolab.campaign.config import load_campaign
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift

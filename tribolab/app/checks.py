@@ -14,7 +14,7 @@ from rich.table import Table
 from tribolab.app.file_info import read_scan
 from tribolab.app.streams import say
 from tribolab.errors import ConfigError, TribolabError, told
-from tribolab.io.dialects.kinds import kind_of, repeats_by_name
+from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import Findings, exit_code

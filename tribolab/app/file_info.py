@@ -8,14 +8,14 @@ from typing import Any
 
 from tribolab.app.ranges import range_of
 from tribolab.errors import ReadError, shown
-from tribolab.io.clocks.companion import describe_companion
+from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
-from tribolab.io.dialects.kinds import kind_of
 from tribolab.io.dialects.signature import peek
+from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
 from tribolab.io.scans.results import read_tester_results
-from tribolab.qc.register import Count
 from tribolab.quantities import quantity
+from tribolab.words import Count
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _LONGEST = 300  # letters of what a file says of itself
@@ -142,7 +142,7 @@ def companion_lines(told: Mapping[str, Any]) -> list[str]:
     Parameters
     ----------
     told
-        From `tribolab.io.clocks.companion.describe_companion`.
+        From `tribolab.io.companion.describe_companion`.
     """
     if "missing" in told:
         return [f"  companion log: {told['missing']} is not there"]

@@ -8,9 +8,10 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
-from tribolab.campaign.config import Campaign, load_campaign
+from tribolab.campaign.config import Campaign
 from tribolab.campaign.executor import workers
 from tribolab.campaign.ledger import Ledger
+from tribolab.campaign.load import load_campaign
 from tribolab.campaign.outcome import Outcome
 from tribolab.campaign.pipeline import Progress, process
 from tribolab.campaign.plan import inputs_of, scan_files

@@ -14,7 +14,7 @@ from rich.table import Table
 from tribolab.app.ranges import range_of
 from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
 from tribolab.errors import harmless
-from tribolab.qc.register import Count
+from tribolab.words import Count
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -320,6 +320,10 @@ class Campaign(Table):
         """The campaign file; all its paths are relative to its folder."""
         return self._file
 
+    def lies_at(self, path: Path) -> None:
+        """Say where the campaign file lies: its folders are relative to it."""
+        self._file = path
+
     def quality_options(self, entry: RunEntry) -> dict[str, Any]:
         """Return the arguments of `check_run` for a run."""
         from tribolab.qc.run_checks import RUN_CHECKS
@@ -368,72 +372,6 @@ class Campaign(Table):
         if entry.segments is not None:
             options |= entry.segments.model_dump(exclude_unset=True, exclude_none=True)
         return options
-
-
-def load_campaign(path: str | Path) -> Campaign:
-    r"""Read and check a campaign file.
-
-    Parameters
-    ----------
-    path
-        The TOML file, or the folder in which it is called ``campaign.toml``.
-
-    Returns
-    -------
-    Campaign
-        With quantities as floats in SI units.
-
-    Raises
-    ------
-    ConfigError
-        If anything in it is wrong: the message has the file, the line, the key and the cure.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     (Path(folder) / "raw").mkdir()
-    ...     _ = (Path(folder) / "raw" / "one.csv").write_text("")
-    ...     file = Path(folder) / "campaign.toml"
-    ...     _ = file.write_text(
-    ...         '[campaign]\nname = "one"\n[medium.glycerol]\nviscosity = "1.4 Pa s"\n'
-    ...         '[[run]]\nfiles = "*.csv"\nmedium = "glycerol"\n'
-    ...     )
-    ...     load_campaign(file).medium["glycerol"].viscosity
-    1.4
-    """
-    import tomllib
-
-    from pydantic import ValidationError
-
-    from tribolab.campaign import problems
-    from tribolab.campaign.plan import plan
-
-    path = Path(path)
-    path = (path / "campaign.toml" if path.is_dir() else path).absolute()
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        content = tomllib.loads(text)
-    except FileNotFoundError as error:
-        raise ConfigError(
-            f"{path}: there is no such file; 'tribolab demo' makes a campaign to start from"
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read ({error}); it wants to be UTF-8") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not a TOML file: {problems.toml_error(error, text)}") from error
-    except (RecursionError, ValueError) as error:
-        raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
-    try:
-        campaign = Campaign.model_validate(content, context={"in_file": True})
-    except ValidationError as error:
-        found = problems.from_pydantic(error, Campaign)
-    else:
-        campaign._file = path
-        found = problems.of_names(campaign) or plan(campaign).problems
-    if found:
-        raise ConfigError(problems.message(found, path, text))
-    return campaign
 
 
 def campaign_schema() -> dict[str, Any]:

@@ -13,11 +13,12 @@ import xarray as xr
 
 from tribolab.campaign.model_plan import PlannedModel, optional, read
 from tribolab.campaign.outcome import Finding, ModelOutcome, beyond_limits
-from tribolab.campaign.work import explain, write_data
+from tribolab.campaign.work import write_data
 from tribolab.errors import AnalysisError, OutputError
 from tribolab.provenance import made
 from tribolab.quantities import stamp
 from tribolab.validity import together
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact

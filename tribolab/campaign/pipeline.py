@@ -39,7 +39,6 @@ from tribolab.campaign.work import (
     RunTask,
     Source,
     checksums,
-    explain,
     failed_run,
     process_curve,
     process_run,
@@ -47,6 +46,7 @@ from tribolab.campaign.work import (
 from tribolab.campaign.zeros import RunZero, to_lend, zero_of
 from tribolab.errors import ConfigError, OutputError, TribolabError
 from tribolab.provenance import sha256_of_file
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign

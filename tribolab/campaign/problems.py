@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import tomllib
 import types
@@ -14,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.toml_lines import line_of
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.errors import nearest, shown
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    pass
 
 _SHOWN = 5
 _HINTED = 100  # mistakes for which a key's likely name is looked for
@@ -172,68 +171,3 @@ def _bare(annotation: Any) -> Any:
             annotation = next(a for a in typing.get_args(annotation) if a is not type(None))
         else:
             return annotation
-
-
-def of_names(campaign: Campaign) -> list[Problem]:
-    """Names that are used but not declared, or declared twice."""
-    found = []
-    surfaces = [surface.name for surface in campaign.surface]
-    for number, name in enumerate(surfaces):
-        if name in surfaces[:number]:
-            found.append(
-                Problem(
-                    ("surface", number, "name"), f"'{shown(name)}' is the name of a surface before"
-                )
-            )
-    for number, surface in enumerate(campaign.surface):
-        if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
-            found.append(Problem(("surface", number, "instrument"), what))
-    stated = [
-        (("medium", name), quantity, medium)
-        for name, medium in campaign.medium.items()
-        for quantity in ("viscosity", "work_of_adhesion")
-    ]
-    for where, name, table in [*stated, (("contact",), "youngs_modulus", campaign.contact)]:
-        value, bounds = getattr(table, name), getattr(table, f"{name}_range")
-        if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
-            what = f"must go from below to above {name}"
-            found.append(Problem((*where, f"{name}_range"), what))
-    for number, entry in enumerate(campaign.run):
-        if entry.surface is not None and entry.surface not in surfaces:
-            what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(
-                entry.surface,
-                surfaces,
-                f'add [[surface]] with name = "{shown(entry.surface)}" (its scans may be left out)',
-            )
-            found.append(Problem(("run", number, "surface"), what))
-        if entry.medium is not None and entry.medium not in campaign.medium:
-            what = f"there is no [medium.{shown(entry.medium)}]" + _hint(
-                entry.medium,
-                campaign.medium,
-                f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
-            )
-            found.append(Problem(("run", number, "medium"), what))
-        if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
-            found.append(Problem(("run", number, "instrument"), what))
-    return found
-
-
-def _hint(word: str, known: Iterable[str], cure: str) -> str:
-    """Return the nearest that is declared, or how to declare it."""
-    hint = nearest(word, known)
-    return hint if "did you mean" in hint else f"{hint}; {cure}"
-
-
-def _toml_key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
-
-
-def _instrument(campaign: Campaign, name: str) -> str:
-    from tribolab.campaign.plan import instrument_of
-    from tribolab.io.dialects.find import load_dialect
-
-    try:
-        load_dialect(instrument_of(campaign, name))
-    except ConfigError as error:
-        return error.told("campaign")
-    return ""

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.outcome import Finding, beyond_limits
-from tribolab.campaign.work import explain
 from tribolab.errors import TribolabError
 from tribolab.quantities import stamp
 from tribolab.validity import together
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.surface_plan import PlannedSurface

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.campaign.outcome import Finding, SurfaceOutcome
 from tribolab.campaign.surface_plan import PlannedSurface
-from tribolab.campaign.work import Source, explain, source_of, write_data
+from tribolab.campaign.work import Source, source_of, write_data
 from tribolab.errors import OutputError
 from tribolab.provenance import made
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,6 @@ import math
 import shutil
 import threading
 import time
-import traceback
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +19,10 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.campaign.zeros import RunZero, attributes, zero_of
-from tribolab.errors import ConfigError, OutputError, TribolabError, brief, shown
+from tribolab.errors import ConfigError, OutputError, TribolabError, brief
 from tribolab.provenance import made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,6 @@ QUALITY, FINDINGS = "quality", "findings"
 NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
-_PACKAGE = Path(__file__).parents[1]
 UNFINISHED = ".part"
 
 
@@ -148,26 +147,6 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
         error=error,
         seconds=seconds,
     )
-
-
-def explain(error: BaseException) -> tuple[str, str]:
-    """Return one line that says what went wrong, and the class name of the error.
-
-    It is for the records of a campaign, whose readers have a campaign file before them.
-    An error that nobody raised on purpose also says where it happened.
-    """
-    name = type(error).__name__
-    if isinstance(error, TribolabError):
-        return " ".join(error.told("campaign").split()), name
-    text = brief(error) if str(error) else ""
-    if isinstance(error, OSError) and error.strerror and error.filename:
-        return f"{shown(Path(str(error.filename)).name)}: {error.strerror.lower()}", name
-    where = ""
-    if frames := traceback.extract_tb(error.__traceback__):
-        ours = [frame for frame in frames if Path(frame.filename).is_relative_to(_PACKAGE)]
-        frame = (ours or frames)[-1]
-        where = f" at {Path(frame.filename).name}:{frame.lineno}"
-    return f"crashed with {name}{where}: {text}" if text else f"crashed with {name}{where}", name
 
 
 def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:

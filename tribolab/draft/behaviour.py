@@ -9,7 +9,7 @@ import numpy as np
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 
 if TYPE_CHECKING:
-    from tribolab.draft.columns import DraftColumn, Kind
+    from tribolab.draft.model import DraftColumn, Kind
 
 _ROWS = 20_000  # rows looked at
 _SAME = 0.9999  # correlation of one signal in two units
@@ -103,9 +103,9 @@ def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftCo
 def _run(
     columns: list[DraftColumn], part: np.ndarray, time: int
 ) -> tuple[list[DraftColumn], list[str]]:
-    from tribolab.draft.columns import _time_unit
+    from tribolab.draft.model import time_unit
 
-    unit = _time_unit(part[:, time])
+    unit = time_unit(part[:, time])
     rises = "it rises in every row"
     if (np.diff(part[:, time]) <= 0).any():
         rises = "it rises by even steps, and starts anew now and then"

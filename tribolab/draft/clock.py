@@ -10,8 +10,8 @@ from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.quantities import unit_conversion
 
 if TYPE_CHECKING:
-    from tribolab.draft.columns import DraftColumn
     from tribolab.draft.layout import Layout
+    from tribolab.draft.model import DraftColumn
 
 OnRepeat = Literal["", "drop", "interpolate"]
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import io
-from typing import Literal, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from tribolab.draft.header import converts, is_unit
 from tribolab.draft.layout import Layout
+from tribolab.draft.model import DraftColumn, Kind, Understood, time_unit
 from tribolab.draft.words import Match, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
+from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.headers import split_name, split_row
-from tribolab.io.tables.pieces import LARGEST
 from tribolab.quantities import QUANTITIES, quantity
 
-Kind = Literal["run", "scan", "table"]
 _SIGNALS = {
     "friction_force",
     "normal_force",
@@ -27,45 +26,6 @@ _SIGNALS = {
     "film_thickness",
 }
 _SURE = 0.7  # a name of which so much is a known word is no guess
-
-
-class DraftColumn(NamedTuple):
-    """One column as it is understood.
-
-    `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
-    has to say; `file_unit` what the file says. Only a column with ``used`` is read.
-    """
-
-    place: int
-    label: str
-    name: str | None = None
-    occurrence: int = 1
-    file_unit: str | None = None
-    unit: str | None = None
-    quantity: str | None = None
-    sign: int = 1
-    optional: bool = False
-    used: bool = False
-    guessed: tuple[str, ...] = ()
-    note: str = ""
-    fill_in: str = ""
-
-    @property
-    def read_unit(self) -> str | None:
-        """The unit the numbers are read in."""
-        return self.unit or self.file_unit
-
-
-class Understood(NamedTuple):
-    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written."""
-
-    kind: Kind
-    columns: tuple[DraftColumn, ...]
-    numbers: np.ndarray
-    missing: tuple[str, ...]
-    on_repeat: Literal["", "drop", "interpolate"]
-    restart: bool
-    guesses: tuple[str, ...]
 
 
 def understand(layout: Layout) -> Understood:
@@ -286,7 +246,7 @@ def _column(
     fill_in = ""
     if unit is None and si_unit not in ("", "1"):
         if option.quantity == "time":
-            written = _time_unit(values)
+            written = time_unit(values)
             guessed.append(f"time is in {written}")
         elif kind == "scan":
             written = "mm" if option.quantity in ("x", "y") else "um"
@@ -311,13 +271,6 @@ def _column(
         note=note or ("" if finite.size else "no value in this file"),
         fill_in=fill_in,
     )
-
-
-def _time_unit(values: np.ndarray) -> str:
-    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds."""
-    steps = np.diff(values[np.isfinite(values)])
-    whole = steps.size and (values == np.round(values)).all()
-    return "ms" if whole and np.median(steps) >= 5 else "s"
 
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:

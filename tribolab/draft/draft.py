@@ -6,101 +6,27 @@ import os
 import re
 import tomllib
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
-
-from tribolab.draft.columns import Kind, Understood, first_cells_of, understand
-from tribolab.draft.layout import Layout, examine
-from tribolab.draft.toml import FILL_IN, dialect_toml
+from tribolab.draft.columns import first_cells_of, understand
+from tribolab.draft.drafted import SHOWN, Drafted
+from tribolab.draft.layout import examine
+from tribolab.draft.model import Understood
+from tribolab.draft.show import draft_html
+from tribolab.draft.toml import dialect_toml
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.find import recognise
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, peek
-from tribolab.io.scans.results import is_results
-from tribolab.quantities import unit_conversion
+from tribolab.io.dialects.signature import File, is_results, peek
 
 PathLike = str | Path
-_SHOWN = 5  # rows shown as understood
 
 
-class Draft(NamedTuple):
-    """What was understood of a file.
-
-    Attributes
-    ----------
-    path, name
-        The file, and the name of the dialect.
-    kind
-        ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
-    layout, understood
-        How the file is written and what its columns hold; None for a file of results.
-    toml
-        The dialect as TOML; empty for a table.
-    answer
-        For a table: what the file is, and what reads it.
-    cells
-        The first rows as they stand in the file.
-    known
-        The known instrument that reads the file already; empty if there is none.
-    """
-
-    path: Path
-    name: str
-    kind: Kind
-    layout: Layout | None
-    understood: Understood | None
-    toml: str
-    answer: str
-    cells: tuple[tuple[str, ...], ...]
-    known: str
-
-    @property
-    def dialect(self) -> Dialect | None:
-        """The dialect; None for a table."""
-        return Dialect.model_validate(tomllib.loads(self.toml)) if self.toml else None
-
-    @property
-    def guesses(self) -> tuple[str, ...]:
-        """What was guessed, in the order of the file."""
-        if self.layout is None or self.understood is None:
-            return ()
-        columns = [
-            f"column {column.place}"
-            + (f" '{shown(column.label)}': " if column.label else ": ")
-            + guess
-            for column in self.understood.columns
-            for guess in column.guessed
-        ]
-        return (*self.layout.guesses, *self.understood.guesses, *columns)
-
-    @property
-    def to_fill_in(self) -> Mapping[int, str]:
-        """Lines of the TOML that want to be filled in, and with what."""
-        return {
-            number: line.split(f"{FILL_IN}: ", 1)[1].removesuffix(", then remove the '#' below")
-            for number, line in enumerate(self.toml.splitlines(), start=1)
-            if FILL_IN in line
-        }
+class Draft(Drafted):
+    """What was understood of a file, see `Drafted`; a notebook shows it as a table."""
 
     def _repr_html_(self) -> str:
-        from tribolab.draft.show import draft_html
-
         return draft_html(self)
-
-    def first_rows(self, number: int = _SHOWN) -> dict[str, np.ndarray]:
-        """Return the first rows in SI, by quantity."""
-        if self.understood is None:
-            return {}
-        rows = {}
-        for column in self.understood.columns:
-            if column.used and column.quantity:
-                scale, offset = unit_conversion(column.read_unit or "", column.quantity)
-                values = self.understood.numbers[:number, column.place - 1]
-                rows[column.quantity] = column.sign * scale * values + offset
-        return rows
 
 
 def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
@@ -160,7 +86,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
         understood=understood,
         toml=toml,
         answer="" if toml else _answer(file, understood),
-        cells=tuple(map(tuple, first_cells_of(layout, _SHOWN))),
+        cells=tuple(map(tuple, first_cells_of(layout, SHOWN))),
         known=_known(file),
     )
     if toml:
@@ -262,6 +188,6 @@ def _results(file: File, name: str) -> Draft:
             f"{len(rows)} results of a roughness tester (name, value, unit, condition), without "
             "the profile; 'tribolab check' reads it without a dialect"
         ),
-        cells=tuple(tuple(row) for row in rows[:_SHOWN]),
+        cells=tuple(tuple(row) for row in rows[:SHOWN]),
         known="",
     )

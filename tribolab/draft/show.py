@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.draft.columns import DraftColumn
-from tribolab.draft.draft import Draft
+from tribolab.draft.drafted import Drafted
+from tribolab.draft.model import DraftColumn
 from tribolab.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
@@ -21,7 +21,7 @@ _COLUMNS = 12  # of raw cells that are shown side by side
 _LISTED = 60  # columns that are not used and shown all the same
 
 
-def print_draft(draft: Draft, console: Console) -> None:
+def print_draft(draft: Drafted, console: Console) -> None:
     """Print what was understood of a file, its first rows, and what was guessed.
 
     Parameters
@@ -48,7 +48,7 @@ def print_draft(draft: Draft, console: Console) -> None:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
 
 
-def draft_html(draft: Draft) -> str:
+def draft_html(draft: Drafted) -> str:
     """Return what `print_draft` prints, and what is to be filled in, for a notebook."""
     page = Console(record=True, file=io.StringIO(), width=110, force_jupyter=False, highlight=False)
     print_draft(draft, page)
@@ -57,7 +57,7 @@ def draft_html(draft: Draft) -> str:
     return page.export_html(inline_styles=True, code_format=_PRE)
 
 
-def print_next(draft: Draft, written: Path, console: Console) -> None:
+def print_next(draft: Drafted, written: Path, console: Console) -> None:
     """Print where the dialect was written, which lines to fill in, and the command to type next."""
     for line, what in draft.to_fill_in.items():
         console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
@@ -68,7 +68,7 @@ def print_next(draft: Draft, written: Path, console: Console) -> None:
     )
 
 
-def _written(draft: Draft) -> list[str]:
+def _written(draft: Drafted) -> list[str]:
     layout = draft.layout
     if layout is None:
         return []
@@ -99,7 +99,7 @@ def _table(*headings: str) -> Table:
     return table
 
 
-def _columns_table(draft: Draft) -> Table:
+def _columns_table(draft: Drafted) -> Table:
     """One row per column; the unnamed and empty ones are left out."""
     table = _table("column", "name in the file", "unit", "quantity", "remark")
     if draft.understood is None:
@@ -129,7 +129,7 @@ def _remark(column: DraftColumn) -> str:
     return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
 
 
-def _rows_table(draft: Draft) -> Table:
+def _rows_table(draft: Drafted) -> Table:
     """First rows in SI, a line for each quantity: names are longer than numbers."""
     rows = draft.first_rows()
     shown = max((len(values) for values in rows.values()), default=0)
@@ -141,7 +141,7 @@ def _rows_table(draft: Draft) -> Table:
     return table
 
 
-def _cells_table(draft: Draft) -> Table:
+def _cells_table(draft: Drafted) -> Table:
     """Return the first rows as they stand in the file, under its header if there is one."""
     width = min(max((len(row) for row in draft.cells), default=0), _COLUMNS)
     heading = draft.layout.heading if draft.layout else None

@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 
-from tribolab.draft.columns import DraftColumn, Understood
 from tribolab.draft.layout import Layout
+from tribolab.draft.model import DraftColumn, Understood
 from tribolab.draft.values import DraftValue, find_values
 from tribolab.quantities import quantity
 

@@ -14,11 +14,12 @@ from xarray.indexes import PandasIndex
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 from tribolab.io.clocks.clock import join_clocks, mended_time, set_time
+from tribolab.io.content.model import Content
+from tribolab.io.content.read import read_content
+from tribolab.io.content.values import single_values, step_values
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
-from tribolab.io.dialects.values import single_values, step_values
-from tribolab.io.tables.pieces import Content, read_content
-from tribolab.io.tables.row_counts import (
+from tribolab.io.row_counts import (
     ROW_ATTRIBUTES,
     row_attributes,
     rows_in_words,

@@ -2,34 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, STEADY
 from tribolab.friction.oscillation.waveform import UNDECIDED, oscillating
-from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text, speed_text
-from tribolab.qc.register import Count
+from tribolab.mode.model import AGAINST, FOR, NEUTRAL, Evidence
+from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text
+from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
-    from tribolab.mode.verdict import Mode
+    from tribolab.mode.model import Mode
 
-FOR, AGAINST, NEUTRAL = "for", "against", "neutral"
 SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is sufficient
 FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
 BELOW = 2.0  # times that friction lies below a uniform slip's
 WEAKER = 1.5  # times that drops differ between speeds
 FALLS = 0.10  # relative; less of a fall between two speeds is none
 FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
-
-
-class Evidence(NamedTuple):
-    """One piece: for or against an adhesion-controlled mode, or neutral; what; a figure's topic."""
-
-    side: str
-    text: str
-    topic: str
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:

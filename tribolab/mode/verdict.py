@@ -11,43 +11,18 @@ from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY
 from tribolab.friction.oscillation.waveform import UNDECIDED
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
 from tribolab.mode import evidence
-from tribolab.mode.evidence import Evidence
+from tribolab.mode.model import (
+    LOCAL,
+    NO_STICK_SLIP,
+    SUSPECTED,
+    UNEXPLAINED,
+    UNKNOWN,
+    Evidence,
+    Mode,
+)
 from tribolab.mode.regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.mode.words import paragraph, suggestions, verdict_text
 from tribolab.quantities import stamp
-
-NO_STICK_SLIP = "no stick-slip"
-LOCAL = "local stick-slip"
-SUSPECTED = "adhesion-controlled macroscopic instability suspected"
-UNEXPLAINED = "stick-slip of unknown origin"
-UNKNOWN = "not known"
-
-
-@dataclass(frozen=True)
-class Mode:
-    """What is known of a contact beside its curves; all SI, None where not known.
-
-    Parameters
-    ----------
-    work_of_adhesion, work_of_adhesion_range
-        gamma_eff(1) [J/m2] of this surface in this medium, and its bounds.
-    area_ratio, pressure
-        A/A0 with adhesion at the load [1], and the nominal pressure there [Pa].
-    rough_shear_stress
-        sigma_f [Pa] of a surface that slides steadily, corrected for the area that adhesion adds.
-    youngs_modulus
-        [Pa]
-    fluid
-        Whether there is a fluid between the surfaces.
-    """
-
-    work_of_adhesion: float | None = None
-    work_of_adhesion_range: tuple[float, float] | None = None
-    area_ratio: float | None = None
-    pressure: float | None = None
-    rough_shear_stress: float | None = None
-    youngs_modulus: float | None = None
-    fluid: bool = True
 
 
 @dataclass(frozen=True)

@@ -9,25 +9,12 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
-from tribolab.qc.register import Count
+from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
-    from tribolab.mode.evidence import Evidence
-    from tribolab.mode.verdict import Mode
+    from tribolab.mode.model import Evidence, Mode
 
 STEADY, SAW, SINE, REVERSED = CLASSES
-
-
-def speed_text(speed: float) -> str:
-    """Speed with a unit that fits.
-
-    >>> speed_text(2.15e-6), speed_text(1e-2), speed_text(3e-9)
-    ('2.15 µm/s', '10 mm/s', '3 nm/s')
-    """
-    for unit, factor in (("mm/s", 1e3), ("µm/s", 1e6)):
-        if speed * factor >= 0.95:  # a measured speed stands beside the set one
-            return f"{speed * factor:.3g} {unit}"
-    return f"{speed * 1e9:.3g} nm/s"
 
 
 def friction_text(value: float) -> str:

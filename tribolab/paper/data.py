@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.paper.work import data_file
-from tribolab.plot.labels import speed_text
 from tribolab.studies import xu2026
+from tribolab.words import speed_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,9 +14,10 @@ from tribolab.paper.figures import BY_NAME, FIGURES
 from tribolab.paper.laboratory import Laboratory
 from tribolab.report.document import versions
 from tribolab.report.sections import Section
-from tribolab.report.wording import many, plain_value
+from tribolab.report.wording import plain_value
 from tribolab.studies import xu2026
 from tribolab.studies.verdict import BOUNDS, DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
+from tribolab.words import many
 
 SCHEMA_VERSION = "1.0"
 # A status in words that follow a number, and how the page marks it.

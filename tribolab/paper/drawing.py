@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
-from tribolab.plot.labels import force_text, number, speed_text
-from tribolab.report.wording import span, speeds, with_error
+from tribolab.report.wording import with_error
+from tribolab.words import force_text, number, span, speed_text, speeds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -46,7 +46,7 @@ def simulate(
     laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
 ) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
-    from tribolab.campaign.config import load_campaign
+    from tribolab.campaign.load import load_campaign
     from tribolab.rig import Protocol, Rig, simulate_campaign
 
     file = simulate_campaign(

@@ -17,8 +17,9 @@ from tribolab.plot.frame import (
     name_surfaces,
     single_axes,
 )
-from tribolab.plot.labels import column, label, number
+from tribolab.plot.labels import column, label
 from tribolab.plot.style import BLACK, GREY, PaperFigure, paper_style
+from tribolab.words import number
 
 Surfaces = Mapping[str, xr.Dataset]
 _SMALLEST_AREA = 1e-4

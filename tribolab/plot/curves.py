@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.frame import few_ticks, legend_above
-from tribolab.plot.labels import column, force_text, label, plain
+from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     GREY,
     SINGLE_MM,
@@ -23,6 +23,7 @@ from tribolab.plot.style import (
     shade,
     surface_styles,
 )
+from tribolab.words import force_text
 
 _LOAD_MARKERS = "os^DvP<X"
 _DRY = {"dry", "none", "air"}

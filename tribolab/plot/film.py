@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from tribolab.plot.frame import colours, logarithmic
-from tribolab.plot.labels import plain, speed_text
+from tribolab.plot.labels import plain
 from tribolab.plot.style import (
     DOUBLE_MM,
     GREY,
@@ -19,6 +19,7 @@ from tribolab.plot.style import (
     paper_style,
     tidy,
 )
+from tribolab.words import speed_text
 
 # From dark to light and from blue to yellow: in order for everybody, on paper too.
 _SPEED_COLOURS = ("#00204D", "#31446B", "#666970", "#958F78", "#CBBA69")

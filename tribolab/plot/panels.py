@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox, TransformedBbox
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.labels import MINUS, aligned, column, number, plain, speed_text
+from tribolab.plot.labels import column, plain
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal
 from tribolab.plot.signals import strokes as find_strokes
@@ -28,6 +28,7 @@ from tribolab.plot.style import (
     new_figure,
     paper_style,
 )
+from tribolab.words import MINUS, aligned, number, speed_text
 
 _MOST_PANELS = 24
 _MOST_LINES = 6  # per direction and panel

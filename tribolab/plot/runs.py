@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
-from tribolab.plot.labels import column, label, plain, speed_text
+from tribolab.plot.labels import column, label, plain
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Stroke, main_signal, strokes
 from tribolab.plot.style import (
@@ -25,6 +25,7 @@ from tribolab.plot.style import (
     paper_style,
     tidy,
 )
+from tribolab.words import speed_text
 
 COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _LEFT, _RIGHT, _BOTTOM, _TOP = 17.0, 3.0, 11.0, 6.0

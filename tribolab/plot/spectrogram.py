@@ -10,8 +10,9 @@ from matplotlib.colors import LogNorm
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.frame import logarithmic
-from tribolab.plot.labels import plain, speed_text
+from tribolab.plot.labels import plain
 from tribolab.plot.style import BLACK, DOUBLE_MM, PaperFigure, margins, new_figure, paper_style
+from tribolab.words import speed_text
 
 _LOUDEST = 1e3  # times the background; what is above has the same colour
 _LABELS = 7  # speeds that are written below a panel

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.errors import ConfigError, nearest, shown
-from tribolab.qc.register import STATUSES, Check, Count, Result
+from tribolab.qc.register import STATUSES, Check, Result
+from tribolab.words import Count
 
 if TYPE_CHECKING:
     import pandas as pd

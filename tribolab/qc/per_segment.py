@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
-from tribolab.qc.register import Count, Result, Skip
+from tribolab.qc.register import Result, Skip
 from tribolab.qc.subject import RunSubject
+from tribolab.words import Count
 
 
 def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.qc.register import Check, Count, Limit, Result, Skip
+from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject
+from tribolab.words import Count
 
 
 def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -9,8 +9,9 @@ import numpy as np
 from tribolab.errors import shown
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT
-from tribolab.qc.register import Check, Count, Limit, Result, Skip, sample_result
+from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
+from tribolab.words import Count
 
 _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
 

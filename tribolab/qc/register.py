@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.units import to_si
+from tribolab.words import Count
 
 # From harmless to grave; the order decides what a summary shows.
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
@@ -140,21 +141,6 @@ def examine(
             text = f"the check itself crashed: {type(crash).__name__}: {crash}"
             found[name] = [Result("error", "", text)]
     return found
-
-
-class Count(int):
-    """A count that is written with the noun that suits it.
-
-    Examples
-    --------
-    >>> f"{Count(1):gap|gaps} and {Count(3):sample is|samples are} missing"
-    '1 gap and 3 samples are missing'
-    """
-
-    def __format__(self, nouns: str) -> str:
-        """Write the number and, of "one|many", what suits it."""
-        one, _, more = nouns.partition("|")
-        return f"{int(self)} {one if self == 1 else more}" if nouns else str(int(self))
 
 
 def sample_result(

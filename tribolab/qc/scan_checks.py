@@ -11,10 +11,11 @@ from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
-from tribolab.qc.register import Check, Count, Limit, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Limit, Result, examine, resolve_limits
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
 from tribolab.surface.level import level_map
+from tribolab.words import Count
 
 
 def check_scans(

@@ -14,8 +14,9 @@ from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
-from tribolab.qc.register import Check, Count, Limit, Result, Skip
+from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject
+from tribolab.words import Count
 
 
 def _signal(subject: RunSubject) -> str:

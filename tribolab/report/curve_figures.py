@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribolab.plot.labels import force_text
 from tribolab.report.document import labels
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.tables import curve_table
-from tribolab.report.wording import many, plain_value, span, speeds
+from tribolab.report.wording import plain_value
+from tribolab.words import force_text, many, span, speeds
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.provenance import sha256_of_file
 from tribolab.report.judgement import THRESHOLDS, is_bad
-from tribolab.report.wording import SYMBOLS, UNITS, many, plain_value, span
+from tribolab.report.wording import SYMBOLS, UNITS, plain_value
+from tribolab.words import many, span
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome

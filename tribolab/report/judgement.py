@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.friction.coefficient.steadiness import undecided
 from tribolab.qc.run_checks import RUN_CHECKS
-from tribolab.report.wording import percent
+from tribolab.words import percent
 
 _STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}
 # A number at or above these is marked in the table of runs. Drift is judged as the check on

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.plot.labels import force_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.model_records import ModelRows, shear_stress_table
 from tribolab.report.model_words import has_shear_stress
-from tribolab.report.wording import span
+from tribolab.words import force_text, span
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.labels import aligned, number, speed_text
-from tribolab.report.wording import percent
+from tribolab.words import aligned, number, percent, speed_text
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,12 +18,12 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup
 
-from tribolab.plot.labels import aligned, force_text, number, speed_text
 from tribolab.report import judgement, wording
 from tribolab.report.model_words import stress_interval
 from tribolab.report.packed import deflated
 from tribolab.report.sections import Section, shown_sections
 from tribolab.report.sliding_figures import traces_stems
+from tribolab.words import aligned, force_text, number, speed_text
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, TypeVar
 
-from tribolab.campaign.work import explain
+from tribolab.words import explain
 
 Rows = TypeVar("Rows")
 

@@ -11,7 +11,6 @@ import pandas as pd
 from markupsafe import Markup
 
 from tribolab.campaign.executor import completed
-from tribolab.campaign.work import explain
 from tribolab.report import sliding, surface_records, tables
 from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
 from tribolab.report.document import labels, report_document, write_json
@@ -25,6 +24,7 @@ from tribolab.report.sliding_figures import SlipFigure, draw_sliding, plan_slidi
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
 from tribolab.report.traces import trace_size
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign

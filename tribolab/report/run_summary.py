@@ -9,24 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.campaign.work import explain
 from tribolab.errors import AnalysisError, told
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.judgement import SURE, not_decided
 from tribolab.report.tables import friction_table
 from tribolab.report.traces import as_text, finer_trace, flagged_spans, trace
-from tribolab.report.wording import (
-    SPREAD_OF,
-    SYMBOLS,
-    UNITS,
-    duration,
-    many,
-    percent,
-    plain_value,
-    span,
-    speeds,
-)
+from tribolab.report.wording import SPREAD_OF, SYMBOLS, UNITS, plain_value
+from tribolab.words import duration, explain, many, percent, span, speeds
 
 if TYPE_CHECKING:
     import pandas as pd

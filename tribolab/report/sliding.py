@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.outcome import CurveOutcome, ModelOutcome, Outcome
-    from tribolab.mode.verdict import Mode, SlidingMode
+    from tribolab.mode.model import Mode
+    from tribolab.mode.verdict import SlidingMode
     from tribolab.report.surface_records import SurfaceRows
 
 _FIRST = [
@@ -155,7 +156,7 @@ def condition(curve: CurveOutcome | ModelOutcome) -> str:
 
 
 def _known(one: CurveSlip, outcome: Outcome, rows: Mapping[str, SurfaceRows]) -> Mode:
-    from tribolab.mode.verdict import Mode
+    from tribolab.mode.model import Mode
 
     curve = one.outcome
     medium = outcome.campaign.medium.get(curve.medium)

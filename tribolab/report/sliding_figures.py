@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.friction.oscillation.waveform import oscillating
-from tribolab.plot.labels import number, speed_text
 from tribolab.report.figure_files import DRAWING, save_figure
 from tribolab.report.sliding import CurveSlip, condition
-from tribolab.report.wording import many, span, with_error
+from tribolab.report.wording import with_error
+from tribolab.words import many, number, span, speed_text
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.plot.labels import force_text
 from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.wording import many
+from tribolab.words import force_text, many
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.plot.labels import speed_text
 from tribolab.plot.reduce import envelope_index
 from tribolab.plot.signals import main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.report.packed import Clock, clock_of, packed_points
+from tribolab.words import speed_text
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from tribolab.plot.labels import MINUS, number, speed_text
 from tribolab.validity import together
+from tribolab.words import MINUS, number
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
 # whose standard deviation and error are those of the quantity
@@ -45,78 +45,6 @@ def validity_of(groups: Iterable[Any]) -> str:
         Datasets with the attribute ``validity_reasons``, see `tribolab.validity`.
     """
     return together([data.attrs for data in groups])["validity_reasons"]
-
-
-def span(values: Iterable[float | None], unit: str = "") -> str:
-    """Return smallest to largest, once if they look the same.
-
-    Examples
-    --------
-    >>> span([0.2, 1.3, None])
-    '0.2 to 1.3'
-    """
-    known = [v for v in values if v is not None and math.isfinite(v)]
-    if not known:
-        return "–"
-    low, high = number(min(known)), number(max(known))
-    return f"{low}{unit}" if low == high else f"{low} to {high}{unit}"
-
-
-def speeds(values: Iterable[float | None]) -> str:
-    """Return the range of sliding speeds.
-
-    Examples
-    --------
-    >>> speeds([1e-2, 1e-6])
-    '1 µm/s to 10 mm/s'
-    """
-    known = [v for v in values if v is not None and math.isfinite(v)]
-    if not known:
-        return "speed unknown"
-    low, high = speed_text(min(known)), speed_text(max(known))
-    return low if low == high else f"{low} to {high}"
-
-
-def duration(seconds: float | None) -> str:
-    """Return a duration in the unit that suits it.
-
-    Examples
-    --------
-    >>> duration(12.34), duration(4000), duration(90000)
-    ('12.3 s', '66.7 min', '25 h')
-    """
-    if seconds is None or not math.isfinite(seconds):
-        return "–"
-    for limit, factor, unit in ((120, 1, "s"), (7200, 60, "min"), (math.inf, 3600, "h")):
-        if abs(seconds) < limit:
-            return f"{number(seconds / factor)} {unit}"
-    raise AssertionError("unreachable: every finite number is below infinity")
-
-
-def percent(share: float | None) -> str:
-    """Return a share as text, e.g. ``"2.1 %"``."""
-    if share is None or not math.isfinite(share):
-        return "–"
-    return f"{number(100 * share, 2)} %"
-
-
-def many(count: int, word: str) -> str:
-    """Return a count with its noun.
-
-    Examples
-    --------
-    >>> many(1, "run"), many(3, "run")
-    ('1 run', '3 runs')
-    """
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
-
-
-def size(count: int) -> str:
-    """Return a number of bytes, e.g. ``"1.2 MB"``."""
-    for limit, factor, unit in ((1e3, 1, "B"), (1e6, 1e3, "kB"), (math.inf, 1e6, "MB")):
-        if count < limit:
-            return f"{number(count / factor)} {unit}"
-    raise AssertionError("unreachable: every count is below infinity")
 
 
 def plain_value(value: Any) -> Any:

@@ -7,7 +7,8 @@ from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stic
 from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
-from tribolab.rig.runs import SimulatedRun, simulate_run
+from tribolab.rig.runs import simulate_run
+from tribolab.rig.simulated import SimulatedRun
 from tribolab.rig.traces import simulate_trace
 from tribolab.rig.truth import Truth, read_truth
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.rig import strikes
-from tribolab.rig.runs import SimulatedRun
+from tribolab.rig.simulated import SimulatedRun
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import xarray as xr
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
-    from tribolab.rig.runs import SimulatedRun
+    from tribolab.rig.simulated import SimulatedRun
 
 FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
 

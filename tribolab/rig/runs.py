@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import asdict, is_dataclass
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from tribolab.quantities import stamp
+from tribolab.rig.faults import inject
 from tribolab.rig.laws import StickSlip, friction_law, stick_slip
 from tribolab.rig.parameters import Rig
 from tribolab.rig.schedule import make_schedule
@@ -23,45 +23,9 @@ from tribolab.rig.sensors import (
     sample_times,
 )
 from tribolab.rig.signals import make_signals
+from tribolab.rig.simulated import SimulatedRun
 from tribolab.studies import xu2026
 from tribolab.units import to_si
-
-
-@dataclass(frozen=True)
-class SimulatedRun:
-    """What the loggers wrote, and what was true.
-
-    Parameters
-    ----------
-    name
-        ``<surface>_<medium>_<load>N_<number>``.
-    force_log
-        ``friction_force``, ``normal_force`` [N] over ``time`` [s] on the force clock.
-    motion_log
-        ``position`` [m], ``sliding_velocity``, ``set_speed`` [m/s] over ``time`` on the motion
-        clock.
-    noise_free
-        At the force log's times: the true ``friction_coefficient`` (signed as the force),
-        ``friction_force``, ``normal_force``, ``position``, ``sliding_velocity``.
-    segments
-        One row per constant-speed segment; units stand in the columns' names.
-    facts
-        What was drawn and chosen for this run, ready for JSON.
-
-    Examples
-    --------
-    >>> from tribolab.rig.parameters import Protocol
-    >>> made = simulate_run("Sb-S", "dry", rig=Rig(Protocol(speeds=(1e-4,))))
-    >>> sorted(made.force_log.data_vars), made.segments.direction.tolist()
-    (['friction_force', 'normal_force'], [1, -1])
-    """
-
-    name: str
-    force_log: xr.Dataset
-    motion_log: xr.Dataset
-    noise_free: xr.Dataset
-    segments: pd.DataFrame
-    facts: dict[str, Any]
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
@@ -181,7 +145,6 @@ def simulate_run(
     )
     if not faults:
         return run
-    from tribolab.rig.faults import inject
 
     return inject(run, faults, rng)
 

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError
-from tribolab.qc.register import Count
-from tribolab.rig.runs import SimulatedRun
+from tribolab.rig.simulated import SimulatedRun
+from tribolab.words import Count
 
 Facts = dict[str, Any]
 Struck = tuple[xr.Dataset, xr.Dataset, Facts]

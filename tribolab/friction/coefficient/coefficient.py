@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
-from tribolab.friction.coefficient.statistics import NOTHING, Estimate, describe, student_remark
 from tribolab.friction.coefficient.steadiness import judged
+from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.coefficient.statistics import describe
+from tribolab.friction.statistics import describe
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact

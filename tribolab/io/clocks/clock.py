@@ -19,8 +19,9 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
+from tribolab.io.content.model import Content, Piece
+from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.tables.pieces import Content, Piece, last_match
 from tribolab.units import to_si
 
 

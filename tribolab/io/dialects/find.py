@@ -83,7 +83,7 @@ def recognise(path: str | Path) -> Dialect:
         which.
     """
     from tribolab.io.dialects.recognise import mismatch
-    from tribolab.io.scans.results import is_results
+    from tribolab.io.dialects.signature import is_results
 
     file = peek(path)
     every = [load_dialect(name) for name in known_dialects()]

@@ -37,11 +37,11 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
     if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
     if dialect.format == "mat":
-        from tribolab.io.tables.mat import variable_names
+        from tribolab.io.tables.mat5 import variable_names
 
         return _names_missing(rules, variable_names(file.path))
     if dialect.format == "tdms":
-        from tribolab.io.tables.tdms import channel_names
+        from tribolab.io.tables.tdms_file import channel_names
 
         return _names_missing(rules, channel_names(file.path))
     return _text_mismatch(file, dialect)

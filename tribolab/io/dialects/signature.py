@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -88,3 +89,12 @@ def _format(path: Path, head: bytes) -> str:
             cure=cures.PERHAPS_PROFILE,
         )
     return "text"
+
+
+_MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
+
+
+def is_results(head: bytes) -> bool:
+    """Whether a file's first bytes are those of a Surftest results file."""
+    text = head[:4096].decode("latin-1").replace("\r", "")
+    return text.startswith("// Header") and _MODE.search(text) is not None

@@ -14,10 +14,10 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io import cures
+from tribolab.io.content.read import measurable
 from tribolab.io.dialects.signature import peek
 from tribolab.io.scans.grid import even
 from tribolab.io.scans.safety import formats_to_try
-from tribolab.io.tables.pieces import measurable
 from tribolab.units import conversion, to_si
 
 

@@ -13,10 +13,9 @@ import xarray as xr
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
-from tribolab.io.dialects.signature import File, peek
+from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
-from tribolab.io.scans.results import is_results
 from tribolab.provenance import made, sha256_of_file
 from tribolab.quantities import stamp
 
@@ -170,8 +169,8 @@ def _recognised(path: Path) -> Dialect | None:
 
 
 def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
-    from tribolab.io.dialects.values import single_values
-    from tribolab.io.tables.pieces import read_content
+    from tribolab.io.content.read import read_content
+    from tribolab.io.content.values import single_values
 
     content = read_content(path, dialect)
     if len(content.pieces) != 1:

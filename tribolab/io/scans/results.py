@@ -9,21 +9,14 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, UnitError
-from tribolab.io.dialects.signature import peek
+from tribolab.io.dialects.signature import is_results, peek
 from tribolab.io.scans.formats import result
 from tribolab.provenance import provenance
 from tribolab.quantities import QUANTITIES, stamp
 from tribolab.units import conversion
 
-_MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
 _SETTINGS = {"Lc": "lambda_c", "Ls": "lambda_s", "Pitch": "pitch", "M-Speed": "measuring_speed"}
 _NAMES = {"RDq": "Rdq"}
-
-
-def is_results(head: bytes) -> bool:
-    """Whether a file's first bytes are those of a Surftest results file."""
-    text = head[:4096].decode("latin-1").replace("\r", "")
-    return text.startswith("// Header") and _MODE.search(text) is not None
 
 
 def read_tester_results(path: str | Path) -> xr.Dataset:

@@ -124,3 +124,14 @@ def _numbers(part: tuple[int, memoryview], order: str) -> np.ndarray:
     if len(data) % dtype.itemsize:
         raise ValueError(f"{len(data)} bytes are no whole numbers")
     return np.frombuffer(data, dtype)
+
+
+def variable_names(path: Path) -> set[str]:
+    """Names of the variables in a MAT file.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged.
+    """
+    return {variable.name for variable in read_variables(path)}

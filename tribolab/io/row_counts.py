@@ -15,8 +15,8 @@ from typing import Any
 import xarray as xr
 
 from tribolab.io.clocks.clock import Mended
+from tribolab.io.content.model import Content
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.tables.pieces import Content
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 

@@ -2,43 +2,19 @@
 
 from __future__ import annotations
 
-import datetime as dt
-from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.content.model import LARGEST, Content, Piece
+from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.columns import resolve
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
-LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
 _PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
-
-
-class Piece(NamedTuple):
-    """One table: arrays in SI by quantity, and what the text before it says."""
-
-    columns: dict[str, np.ndarray]
-    step: int | None = None
-    started: dt.datetime | None = None
-    before: str = ""
-
-
-class Content(NamedTuple):
-    """What one file holds."""
-
-    path: Path
-    sha256: str
-    pieces: list[Piece]
-    labels: Mapping[str, str]
-    not_used: tuple[str, ...]
-    left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
-    notes: Mapping[str, str] = {}
 
 
 def read_content(path: Path, dialect: Dialect) -> Content:
@@ -68,11 +44,11 @@ def read_content(path: Path, dialect: Dialect) -> Content:
             f"{dialect.format}"
         )
     if dialect.format == "mat":
-        from tribolab.io.tables.mat import read_mat
+        from tribolab.io.content.mat import read_mat
 
         content = read_mat(path, dialect)
     elif dialect.format == "tdms":
-        from tribolab.io.tables.tdms import read_tdms
+        from tribolab.io.content.tdms import read_tdms
 
         content = read_tdms(path, dialect)
     else:
@@ -187,28 +163,6 @@ def _possible(content: Content) -> Content:
         return content
     told = "; ".join(f"{name}: {count}" for name, count in found.items())
     return content._replace(notes={**content.notes, "numbers_beyond_range": told})
-
-
-def last_match(pattern: str, text: str) -> str | None:
-    """Group 1 of a pattern's last match, so that a step's own text goes before earlier steps'."""
-    return guarded(pattern).last(text)
-
-
-def started(text: str, path: Path, dialect: Dialect) -> dt.datetime | None:
-    """Moment at which a step starts, if the text before it says so."""
-    time = dialect.time
-    if time.start_pattern is None or time.start_format is None:
-        return None
-    stamp = last_match(time.start_pattern, text)
-    if stamp is None:
-        return None
-    try:
-        return dt.datetime.strptime(stamp, time.start_format)
-    except ValueError as error:
-        raise ReadError(
-            f"{path}: '{shown(stamp)}' is no date and time of the form "
-            f"'{shown(time.start_format)}' (instrument '{dialect.name}', time.start_format)"
-        ) from error
 
 
 def _whole_number(path: Path, text: str | None) -> int | None:

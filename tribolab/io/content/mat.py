@@ -7,22 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columns import resolve
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.tables.mat5 import read_variables
-from tribolab.io.tables.pieces import Content, Piece
 from tribolab.provenance import sha256_of_file
-
-
-def variable_names(path: Path) -> set[str]:
-    """Names of the variables in a MAT file.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged.
-    """
-    return {variable.name for variable in read_variables(path)}
 
 
 def read_mat(path: Path, dialect: Dialect) -> Content:

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import is_scan, load_dialect, recognise
-from tribolab.io.dialects.signature import peek
-from tribolab.io.scans.results import is_results
+from tribolab.io.dialects.signature import is_results, peek
 
 _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 

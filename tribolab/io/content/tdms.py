@@ -2,35 +2,20 @@
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError, brief, shown
+from tribolab.errors import ReadError, shown
+from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columns import resolve
 from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.tables.pieces import Content, Piece
+from tribolab.io.tables.tdms_file import open_tdms
 from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
-
-_DAMAGE = (ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error)
-_DAMAGE += (MemoryError, OverflowError, NotImplementedError, AttributeError)
-
-
-def channel_names(path: Path) -> set[str]:
-    """Names of the channels of a TDMS file as ``group/channel``.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged.
-    """
-    file = _open(path, "read_metadata")
-    return {f"{g.name}/{c.name}" for g in file.groups() for c in g.channels()}
 
 
 def read_tdms(path: Path, dialect: Dialect) -> Content:
@@ -48,7 +33,7 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     ReadError
         If the file is damaged, or channels are missing or differ in length.
     """
-    file = _open(path, "read")
+    file = open_tdms(path, "read")
     groups = {column.group for column in dialect.column}
     channels = [c for g in file.groups() if g.name in groups for c in g.channels()]
     named = [split_name(channel.name) for channel in channels]
@@ -111,18 +96,3 @@ def _steps(
     ]
     notes = {"step_labels": "; ".join(texts)} if texts else {}
     return np.searchsorted(at, time, side="right").astype(float), notes
-
-
-def _open(path: Path, how: str) -> Any:
-    try:
-        from nptdms import TdmsFile
-    except ImportError as error:
-        raise ReadError(
-            f"{path}: TDMS files need the package nptdms: pip install 'tribolab[formats]'"
-        ) from error
-    try:
-        return getattr(TdmsFile, how)(str(path))
-    except _DAMAGE as error:
-        raise ReadError(
-            f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
-        ) from error

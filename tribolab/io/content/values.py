@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.content.model import Content
+from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect, Value
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.tables.pieces import Content, last_match
 from tribolab.quantities import QUANTITIES
 from tribolab.units import conversion
 

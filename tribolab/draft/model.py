@@ -1,0 +1,55 @@
+"""The columns of an unknown table as they are understood."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+Kind = Literal["run", "scan", "table"]
+
+
+class DraftColumn(NamedTuple):
+    """One column as it is understood.
+
+    `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
+    has to say; `file_unit` what the file says. Only a column with ``used`` is read.
+    """
+
+    place: int
+    label: str
+    name: str | None = None
+    occurrence: int = 1
+    file_unit: str | None = None
+    unit: str | None = None
+    quantity: str | None = None
+    sign: int = 1
+    optional: bool = False
+    used: bool = False
+    guessed: tuple[str, ...] = ()
+    note: str = ""
+    fill_in: str = ""
+
+    @property
+    def read_unit(self) -> str | None:
+        """The unit the numbers are read in."""
+        return self.unit or self.file_unit
+
+
+class Understood(NamedTuple):
+    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written."""
+
+    kind: Kind
+    columns: tuple[DraftColumn, ...]
+    numbers: np.ndarray
+    missing: tuple[str, ...]
+    on_repeat: Literal["", "drop", "interpolate"]
+    restart: bool
+    guesses: tuple[str, ...]
+
+
+def time_unit(values: np.ndarray) -> str:
+    """Whole numbers that proceed by five and more are milliseconds, other numbers seconds."""
+    steps = np.diff(values[np.isfinite(values)])
+    whole = steps.size and (values == np.round(values)).all()
+    return "ms" if whole and np.median(steps) >= 5 else "s"

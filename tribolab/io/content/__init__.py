@@ -1,0 +1,1 @@
+"""What raw files hold: tables at each step of the instrument, in SI, and single values."""

@@ -1,0 +1,58 @@
+"""What is known of a contact, the pieces of evidence, and the names of the verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+NO_STICK_SLIP = "no stick-slip"
+
+
+LOCAL = "local stick-slip"
+
+
+SUSPECTED = "adhesion-controlled macroscopic instability suspected"
+
+
+UNEXPLAINED = "stick-slip of unknown origin"
+
+
+UNKNOWN = "not known"
+
+
+@dataclass(frozen=True)
+class Mode:
+    """What is known of a contact beside its curves; all SI, None where not known.
+
+    Parameters
+    ----------
+    work_of_adhesion, work_of_adhesion_range
+        gamma_eff(1) [J/m2] of this surface in this medium, and its bounds.
+    area_ratio, pressure
+        A/A0 with adhesion at the load [1], and the nominal pressure there [Pa].
+    rough_shear_stress
+        sigma_f [Pa] of a surface that slides steadily, corrected for the area that adhesion adds.
+    youngs_modulus
+        [Pa]
+    fluid
+        Whether there is a fluid between the surfaces.
+    """
+
+    work_of_adhesion: float | None = None
+    work_of_adhesion_range: tuple[float, float] | None = None
+    area_ratio: float | None = None
+    pressure: float | None = None
+    rough_shear_stress: float | None = None
+    youngs_modulus: float | None = None
+    fluid: bool = True
+
+
+FOR, AGAINST, NEUTRAL = "for", "against", "neutral"
+
+
+class Evidence(NamedTuple):
+    """One piece: for or against an adhesion-controlled mode, or neutral; what; a figure's topic."""
+
+    side: str
+    text: str
+    topic: str

@@ -1,0 +1,46 @@
+"""One simulated run: what its loggers wrote, and what was true."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+
+@dataclass(frozen=True)
+class SimulatedRun:
+    """What the loggers wrote, and what was true.
+
+    Parameters
+    ----------
+    name
+        ``<surface>_<medium>_<load>N_<number>``.
+    force_log
+        ``friction_force``, ``normal_force`` [N] over ``time`` [s] on the force clock.
+    motion_log
+        ``position`` [m], ``sliding_velocity``, ``set_speed`` [m/s] over ``time`` on the motion
+        clock.
+    noise_free
+        At the force log's times: the true ``friction_coefficient`` (signed as the force),
+        ``friction_force``, ``normal_force``, ``position``, ``sliding_velocity``.
+    segments
+        One row per constant-speed segment; units stand in the columns' names.
+    facts
+        What was drawn and chosen for this run, ready for JSON.
+
+    Examples
+    --------
+    >>> from tribolab.rig.parameters import Protocol
+    >>> made = simulate_run("Sb-S", "dry", rig=Rig(Protocol(speeds=(1e-4,))))
+    >>> sorted(made.force_log.data_vars), made.segments.direction.tolist()
+    (['friction_force', 'normal_force'], [1, -1])
+    """
+
+    name: str
+    force_log: xr.Dataset
+    motion_log: xr.Dataset
+    noise_free: xr.Dataset
+    segments: pd.DataFrame
+    facts: dict[str, Any]
