@@ -18,6 +18,7 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup
 
+from tribolab import words
 from tribolab.report import judgement, wording
 from tribolab.report.model_words import stress_interval
 from tribolab.report.packed import deflated
@@ -169,10 +170,10 @@ def _environment(folder: Path) -> jinja2.Environment:
         ),
         "speed": lambda value: speed_text(float("nan") if value is None else value),
         "force": lambda value: "–" if value is None else force_text(value),
-        "duration": wording.duration,
-        "percent": wording.percent,
-        "many": wording.many,
-        "size": wording.size,
+        "duration": words.duration,
+        "percent": words.percent,
+        "many": words.many,
+        "size": words.size,
         "breakable": breakable,
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
@@ -183,8 +184,8 @@ def _environment(folder: Path) -> jinja2.Environment:
     }
     environment.globals |= {
         "with_error": wording.with_error,
-        "span": wording.span,
-        "speeds": wording.speeds,
+        "span": words.span,
+        "speeds": words.speeds,
         "judge": judgement.judge,
         "trend_texts": judgement.trend_texts,
         "traces_stems": traces_stems,
