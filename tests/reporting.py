@@ -6,10 +6,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.config import Campaign
-from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.campaign.outcome import Outcome
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.io.netcdf import write_netcdf
 from tribolab.quantities import stamp
+from tribolab.records.parts import CurveOutcome, RunOutcome
 
 SPEEDS = (1e-6, 4.64e-5, 1e-2)
 

@@ -16,10 +16,10 @@ import tribolab
 from tribolab.app.run import run_campaign
 from tribolab.campaign.kept import kept_model
 from tribolab.campaign.load import load_campaign
-from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
 from tribolab.cli import app
 from tribolab.errors import ConfigError
+from tribolab.records.parts import ModelOutcome
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from tribolab.campaign.model_work import _beside
 
 import tribolab
 from tribolab.app.demo import DemoComparison
@@ -18,17 +19,16 @@ from tribolab.app.terminal import truth_lines
 from tribolab.app.truth import Comparison
 from tribolab.app.truth_shear_stress import compare_shear_stress
 from tribolab.campaign.load import load_campaign
-from tribolab.campaign.model_work import _beside
-from tribolab.campaign.outcome import ModelOutcome
 from tribolab.campaign.pipeline import process
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.friction.coefficient.repeatability import repeatability
 from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.records.model_rows import ModelRows, model_rows
+from tribolab.records.model_words import is_described, judgement, stress_interval
+from tribolab.records.parts import ModelOutcome
 from tribolab.report.model_figures import draw_model, plan_model_figures
-from tribolab.report.model_records import ModelRows, model_rows
-from tribolab.report.model_words import is_described, judgement, stress_interval
 from tribolab.report.page import note_of
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from campaigns import copied, simulated
+from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of
 from typer.testing import CliRunner
 
 import tribolab
@@ -18,17 +19,16 @@ from tribolab import rig
 from tribolab.app.run import run_campaign
 from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.load import load_campaign
-from tribolab.campaign.outcome import RunOutcome
 from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
-from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of
 from tribolab.cli import app
 from tribolab.contact.adhesion import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.records.parts import RunOutcome
+from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS, surface_rows
 from tribolab.report.page import render
-from tribolab.report.surface_records import ADHESION, CONTACT, ROUGHNESS, surface_rows
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, rms_slope

@@ -20,7 +20,7 @@ import tribolab
 from tribolab import cli
 from tribolab.app.progress import progress_bars
 from tribolab.campaign.config import Qc
-from tribolab.campaign.outcome import ModelOutcome
+from tribolab.records.parts import ModelOutcome
 
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
 

@@ -19,12 +19,12 @@ from reporting import made_curve, made_outcome, made_run, write_groups
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
-from tribolab.report.packed import clock_of, packed_points
+from tribolab.records.packed import clock_of, packed_points
+from tribolab.records.run_facts import RunTask, stick_slip_of, summarise_run
+from tribolab.records.traces import as_text, finer_trace, flagged_spans, trace
+from tribolab.records.wording import plain_value, with_error
 from tribolab.report.results import write_report
-from tribolab.report.run_summary import RunTask, stick_slip_of, summarise_run
 from tribolab.report.tables import checks_table
-from tribolab.report.traces import as_text, finer_trace, flagged_spans, trace
-from tribolab.report.wording import plain_value, with_error
 
 SCHEMA = json.loads(
     (Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json").read_text()
@@ -412,7 +412,7 @@ def test_a_curve_that_failed_is_a_finding(tmp_path):
 
 
 def test_curves_beyond_nine_go_to_further_figures(tmp_path):
-    from tribolab.campaign.outcome import CurveOutcome
+    from tribolab.records.parts import CurveOutcome
     from tribolab.report.curve_figures import draw_curves, plan_figures
 
     (tmp_path / "figures").mkdir()

@@ -16,8 +16,8 @@ from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run
+from tribolab.records.run_facts import _of_friction
 from tribolab.report import results
-from tribolab.report.run_summary import _of_friction
 
 TEXT = """
 [campaign]

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from contact_cases import CONTACT, SURFACES, reference_psd, self_affine
 
-from tribolab.campaign.outcome import beyond_limits
 from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.hertz import hertz_half_width, jkr_half_width
@@ -17,8 +16,9 @@ from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.records.parts import beyond_limits
+from tribolab.records.wording import validity_of
 from tribolab.report.page import _environment
-from tribolab.report.wording import validity_of
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026

@@ -24,8 +24,8 @@ from chromium import chromium  # noqa: E402 - after its folder is known
 from tribolab import rig  # noqa: E402 - as above
 from tribolab.app.run import run_campaign  # noqa: E402 - as above
 from tribolab.io.netcdf import read_netcdf  # noqa: E402 - as above
+from tribolab.records.traces import as_text, finer_trace, trace, trace_size  # noqa: E402 - as above
 from tribolab.report.page import PageTrace, write_page  # noqa: E402 - as above
-from tribolab.report.traces import as_text, finer_trace, trace, trace_size  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("

@@ -9,18 +9,18 @@ from dataclasses import replace
 from pathlib import Path
 
 from tribolab.campaign.config import Campaign
+from tribolab.campaign.engine import Progress
 from tribolab.campaign.executor import workers
 from tribolab.campaign.ledger import Ledger
-from tribolab.campaign.load import load_campaign
+from tribolab.campaign.load import load_and_plan
 from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.pipeline import Progress, process
-from tribolab.campaign.plan import inputs_of, scan_files
+from tribolab.campaign.pipeline import process
+from tribolab.campaign.plan import inputs_of, planned_runs
 from tribolab.campaign.staging import resolved, staged
+from tribolab.campaign.store import Catalogue
+from tribolab.campaign.unchanged import note, unchanged
 from tribolab.errors import ConfigError
-from tribolab.provenance import sha256_of, sha256_of_file
-from tribolab.version import __version__
-
-FINGERPRINT = ".fingerprint"
+from tribolab.report.figures import wanted
 
 
 def run_campaign(
@@ -32,6 +32,9 @@ def run_campaign(
     scheduler: str | None = None,
     progress: Progress | None = None,
     finish: Callable[[Outcome], None] | None = None,
+    figures: str = "all",
+    pdf: bool = False,
+    verify: bool = False,
 ) -> Outcome:
     r"""Analyse a campaign and write its results: data, tables, figures and the report.
 
@@ -56,6 +59,13 @@ def run_campaign(
         Called with the outcome when everything else is written, before the results appear;
         what it writes to ``outcome.folder`` appears with them. Not called if nothing at all
         has changed since the last time: then the results that are there stay.
+    figures
+        Which are drawn for publication: ``"all"``, ``"curves"`` (measured curves only), ``"none"``.
+    pdf
+        Whether figures are written as PDF, too.
+    verify
+        Whether files are recognised by their checksums only, each read anew; by default by size,
+        time and inode first.
 
     Returns
     -------
@@ -85,59 +95,42 @@ def run_campaign(
     """
     from tribolab.report.results import write_report
 
-    campaign = path_or_campaign
-    if not isinstance(campaign, Campaign):
-        campaign = load_campaign(campaign)
+    which = wanted(figures)
+    if isinstance(path_or_campaign, Campaign):
+        campaign, runs = path_or_campaign, planned_runs(path_or_campaign)
+    else:
+        campaign, runs = load_and_plan(path_or_campaign)
     place = resolved(campaign.output if output is None else output)
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
-    try:
-        with staged(place) as folder:
-            given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
-            with given as pool:
-                outcome = process(
-                    campaign, folder, executor=pool, previous=place, progress=progress
-                )
-                fingerprint = _fingerprint(outcome)
-                if _is_complete(place, fingerprint) and _all_reused(outcome):
-                    raise _Unchanged
-                write_report(outcome, executor=pool, progress=progress)
-            if finish is not None:
-                finish(outcome)
-            (folder / FINGERPRINT).write_text(fingerprint, encoding="utf-8")
-    except _Unchanged:  # the staged copy is dropped; what is there is the same and complete
-        pass
-    return replace(outcome, folder=place, foreign=tuple(Ledger.read(place).foreign()))
-
-
-class _Unchanged(Exception):  # noqa: N818 - a way out, not an error
-    pass
-
-
-def _fingerprint(outcome: Outcome) -> str:
-    """Return the checksum of all that a report is made from."""
-    campaign = outcome.campaign
-    return sha256_of(
-        {
-            "tribolab_version": __version__,
-            "campaign": sha256_of_file(campaign.file),
-            "sources": outcome.sources,
-            "kept": outcome.kept,
-            "scans": [sha256_of_file(path) for path in scan_files(campaign)],
-        }
+    options = {"figures": which, "pdf": pdf}
+    known = unchanged(campaign, runs, place, options, verify=verify)
+    if known is not None:
+        return known
+    with staged(place) as folder:
+        given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
+        with given as pool:
+            outcome = process(
+                campaign,
+                folder,
+                runs=runs,
+                executor=pool,
+                previous=place,
+                progress=progress,
+                verify=verify,
+            )
+            write_report(outcome, executor=pool, progress=progress, figures=which, pdf=pdf)
+        if finish is not None:
+            finish(outcome)
+        note(outcome, runs, options)
+        outcome.store.close()
+    return replace(
+        outcome,
+        folder=place,
+        store=Catalogue.of(place),
+        foreign=tuple(Ledger.read(place).foreign()),
     )
-
-
-def _all_reused(outcome: Outcome) -> bool:
-    surfaces = [surface for surface in outcome.surfaces if surface.files]
-    models = [model for model in outcome.models if model.status != "skipped"]
-    return all(part.reused for part in (*outcome.runs, *surfaces, *models))
-
-
-def _is_complete(place: Path, fingerprint: str) -> bool:
-    made = place / FINGERPRINT
-    return Ledger.read(place).is_whole and made.read_text(encoding="utf-8") == fingerprint
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:

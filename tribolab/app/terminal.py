@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from rich.console import Console, ConsoleOptions, ConsoleRenderable, RenderHook, RenderResult
 from rich.segment import Segment
 from rich.table import Table
 
 from tribolab.app.ranges import range_of
-from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+from tribolab.campaign.outcome import Outcome
 from tribolab.errors import harmless
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import CurveOutcome, RunOutcome
+from tribolab.records.run_record import RunRecord
 from tribolab.words import Count
 
 if TYPE_CHECKING:
@@ -72,33 +75,30 @@ def outcome_table(outcome: Outcome) -> Table:
 
 
 def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
-    from tribolab.io.netcdf import read_netcdf
-
-    data = read_netcdf(outcome.folder / curve.data_file)
-    segments = f"{int(data.segments.sum())}" if "segments" in data else ""
-    speed, mu = data.sliding_speed.values, data.friction_coefficient.values
-    if not speed.size:
+    entry = outcome.store.get("curve", curve.name, CurveRecord)
+    points = [] if entry is None else entry.record.points
+    speed = [row["sliding_speed_m_s"] for row in points if row["sliding_speed_m_s"] is not None]
+    mu = [v for row in points if (v := row["friction_coefficient"]) is not None]
+    if not speed or not mu:
         return _of_unknown_speed(curve, outcome)
-    ends = range_of(f"{speed.min():.2g}", f"{speed.max():.2g}")
+    segments = sum(int(row.get("segments") or 0) for row in points)
     return (
         str(len(curve.run_names)),
-        segments,
-        f"{ends} m/s",
-        range_of(f"{mu.min():.3f}", f"{mu.max():.3f}"),
+        str(segments) if "segments" in points[0] else "",
+        f"{range_of(f'{min(speed):.2g}', f'{max(speed):.2g}')} m/s",
+        range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
     )
 
 
 def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
     """Return the friction of the segments themselves: without a speed there is no curve."""
-    from tribolab.io.netcdf import read_netcdf
-
+    entries = [outcome.store.get("run", name, RunRecord) for name in curve.run_names]
+    rows = [row for entry in entries if entry for row in entry.record.facts.segments]
+    known = [v for row in rows if (v := row.get("friction_coefficient")) is not None]
+    text = range_of(f"{min(known):.3f}", f"{max(known):.3f}") if known else _NONE
+    is_known = any(row.get("sliding_speed_m_s") is not None for row in rows)
+    said = _NONE if is_known else "speed unknown"
     runs = [run for run in outcome.runs if run.name in curve.run_names]
-    found = [read_netcdf(outcome.folder / run.data_file, group="friction") for run in runs]
-    mu = np.concatenate([one.friction_coefficient.values for one in found])
-    known = mu[np.isfinite(mu)]
-    text = range_of(f"{known.min():.3f}", f"{known.max():.3f}") if known.size else _NONE
-    speeds = np.concatenate([one.sliding_speed.values for one in found])
-    said = _NONE if np.isfinite(speeds).any() else "speed unknown"
     return str(len(runs)), str(sum(run.segments for run in runs)), said, text
 
 
@@ -131,11 +131,9 @@ def outcome_lines(outcome: Outcome) -> list[str]:
 
 
 def _why(run: RunOutcome, outcome: Outcome) -> str:
-    from tribolab.campaign.work import FINDINGS
-    from tribolab.io.netcdf import read_netcdf
-
-    attrs = read_netcdf(outcome.folder / run.data_file, group="run").attrs
-    return _because(attrs.get(FINDINGS, ()), run.quality)
+    entry = outcome.store.get("run", run.name, RunRecord)
+    rows = [] if entry is None else [asdict(row) for row in entry.record.facts.checks]
+    return _because(rows, run.quality)
 
 
 def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
@@ -164,7 +162,7 @@ def foreign_lines(outcome: Outcome) -> list[str]:
 
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
-    from tribolab.report.sliding import condition
+    from tribolab.records.mode_record import condition
 
     failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
     for surface in outcome.surfaces:
@@ -218,8 +216,8 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
+    from tribolab.records.model_words import is_described
     from tribolab.report import tables
-    from tribolab.report.model_words import is_described
 
     path = results / "tables" / "shear_stress.csv"
     if not path.is_file():

@@ -86,7 +86,7 @@ def write_truth(outcome: Outcome, folder: str | Path) -> Comparison:
     comparison = compare_with_truth(outcome, folder)
     place = outcome.folder / "tables"
     place.mkdir(exist_ok=True)
-    tables.write(comparison.table, place / "truth.csv", digits=9)
+    tables.write_csv(comparison.table, place / "truth.csv", digits=9)
     return comparison
 
 

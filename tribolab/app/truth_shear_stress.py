@@ -69,5 +69,5 @@ def write_truth_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFra
     """Compare as `compare_shear_stress`, and write ``tables/truth_shear_stress.csv``."""
     table = compare_shear_stress(outcome, folder)
     place = Path(outcome.folder) / "tables" / "truth_shear_stress.csv"
-    tables.write(table, place, digits=9)
+    tables.write_csv(table, place, digits=9)
     return table

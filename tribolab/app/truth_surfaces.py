@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from tribolab.records.part_records import SurfaceRecord
 from tribolab.report import tables
-from tribolab.report.surface_records import surface_rows
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome
@@ -67,9 +67,10 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         )
 
     for surface in outcome.surfaces:
-        if not surface.done or surface.name not in facts["surfaces"]:
+        entry = outcome.store.get("surface", surface.name, SurfaceRecord)
+        mine = entry.record.rows if entry else None
+        if mine is None or surface.name not in facts["surfaces"]:
             continue
-        mine = surface_rows(surface, Path(outcome.folder))
         spectrum = SelfAffine(**facts["surfaces"][surface.name]["spectrum"])
         rough, ends = mine.roughness, ("", "_low", "_high")
         height = [rough[f"rms_roughness{end}_m"] for end in ends]
@@ -89,5 +90,5 @@ def write_truth_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     """Compare as `compare_surfaces`, and write ``tables/truth_surfaces.csv``."""
     table = compare_surfaces(outcome, folder)
     place = outcome.folder / "tables" / "truth_surfaces.csv"
-    tables.write(table, place, digits=9)
+    tables.write_csv(table, place, digits=9)
     return table

@@ -12,16 +12,15 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
-    FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
     Future,
     ProcessPoolExecutor,
     as_completed,
-    wait,
 )
 from functools import partial
 from multiprocessing.context import SpawnContext, SpawnProcess
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from tribolab.errors import AnalysisError, ConfigError, OutputError, brief
@@ -97,21 +96,25 @@ def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tupl
 def _as_they_end(
     futures: dict[Future, Any], lost: Callable[[], str] | None
 ) -> Iterator[tuple[Any, Future]]:
-    pending = set(futures)
+    count = len(futures)
+    ended: SimpleQueue[Future] = SimpleQueue()
+    for future in futures:
+        future.add_done_callback(ended.put)
     try:
-        while pending:
-            ended, pending = wait(
-                pending, timeout=None if lost is None else _LOOK, return_when=FIRST_COMPLETED
-            )
-            for future in ended:
-                if lost is not None and future.cancelled():
-                    text = lost() or "its scheduler dropped the work"
-                    raise ClusterGone(_gone(text, len(futures) - len(pending) - 1, len(futures)))
-                yield futures[future], future
-            if pending and lost is not None and (text := lost()):
-                raise ClusterGone(_gone(text, len(futures) - len(pending), len(futures)))
+        while futures:
+            try:
+                future = ended.get(timeout=None if lost is None else _LOOK)
+            except Empty:
+                if lost is not None and (text := lost()):
+                    raise ClusterGone(_gone(text, count - len(futures), count)) from None
+                continue
+            if lost is not None and future.cancelled():
+                text = lost() or "its scheduler dropped the work"
+                raise ClusterGone(_gone(text, count - len(futures), count))
+            yield futures.pop(future), future  # what was answered is held no longer
+            del future
     finally:
-        for future in pending:
+        for future in futures:
             future.cancel()
 
 

@@ -6,150 +6,103 @@ says so, and since when; it is dropped when the campaign no longer names its fil
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.outcome import Finding, ModelOutcome, RunOutcome
 from tribolab.campaign.plan import label_of, safe_name
-from tribolab.campaign.surface_plan import PlannedSurface
-from tribolab.campaign.surface_work import SurfaceRecord, earlier_surface
-from tribolab.campaign.work import RunRecord, Source
+from tribolab.campaign.runs import RunCame, keep_earlier
+from tribolab.records.part_records import ModelRecord, SurfaceRecord
+from tribolab.records.parts import Finding, RunOutcome
+from tribolab.records.run_record import RunRecord
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign, RunEntry
+    from tribolab.campaign.store import Store
+    from tribolab.campaign.surface_plan import PlannedSurface
 
 # The files were read, and the answer is about what is in them: it stands.
 _VERDICTS = ("AnalysisError",)
 _GONE = "it is not there"
 
 
-@dataclass(frozen=True)
-class EarlierRun:
-    """A run of the earlier report: name, files as reports show them, data file, quality."""
-
-    name: str
-    files: tuple[str, ...]
-    data_file: str
-    segments: int
-    quality: str
-    normal_force: float | None
-
-
-@dataclass(frozen=True)
-class Earlier:
-    """What an earlier report knows: its runs that were done, and (sha256, bytes) of each file."""
-
-    folder: Path
-    runs: tuple[EarlierRun, ...] = ()
-    sources: dict[str, Source] | None = None
-
-    @classmethod
-    def read(cls, folder: Path | None) -> Earlier:
-        """Read the report of a results folder; none, or a damaged one, knows nothing."""
-        if folder is None:
-            return cls(Path())
-        try:
-            report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-            runs = tuple(
-                EarlierRun(
-                    name=str(run["name"]),
-                    files=tuple(map(str, run["files"])),
-                    data_file=str(run["data_file"]),
-                    segments=int(run["segments_found"]),
-                    quality=str(run["quality"]),
-                    normal_force=run["nominal_normal_force_N"],
-                )
-                for run in report["runs"]
-                if run["status"] == "done" and (folder / run["data_file"]).is_file()
-            )
-            rows = [(str(s["file"]), str(s["sha256"]), int(s["bytes"])) for s in report["sources"]]
-        except (OSError, ValueError, LookupError, TypeError):
-            return cls(folder)
-        return cls(folder, runs, {row[0]: row for row in rows})
-
-
-def keep_runs(
-    campaign: Campaign, earlier: Earlier, staging: Path, records: Sequence[RunRecord]
-) -> list[RunRecord]:
+def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list[RunCame]:
     """Put earlier results in the place of runs whose files cannot be read now.
 
     Parameters
     ----------
     campaign
         It says which files it still names.
-    earlier
-        What the results of before know.
-    staging
-        Folder that is being written; data files that are kept are linked into it.
-    records
+    store
+        It knows the results of before, and what is kept is written down there.
+    runs
         What the runs came to now.
 
     Returns
     -------
-    list of RunRecord
+    list of RunCame
         In the same order; runs of files that are gone come last.
     """
-    kept = list(records)
-    if not earlier.runs:
-        return kept
+    kept = list(runs)
     bad = {
-        label: record.outcome.reason
-        for record in records
-        if not record.outcome.done and record.outcome.error not in _VERDICTS
-        for label in record.outcome.files
+        label: came.outcome.reason
+        for came in runs
+        if not came.outcome.done and came.outcome.error not in _VERDICTS
+        for label in came.outcome.files
     }
-    there = {label for record in records for label in record.outcome.files}
-    content = {source[1] for record in records for source in record.sources}
-    known = earlier.sources or {}
-    for run in earlier.runs:
-        entry = _entry_of(campaign, run.files)
-        gone = [label for label in run.files if label not in there]
-        moved = any(known.get(label, ("", "", 0))[1] in content for label in gone)
-        why = [bad[label] for label in run.files if label in bad]
+    there = {label for came in runs for label in came.outcome.files}
+    content = {checksum for came in runs for _, checksum, _ in came.sources}
+    for before in store.before.outcomes("run", RunOutcome):
+        gone = [label for label in before.files if label not in there]
+        why = [bad[label] for label in before.files if label in bad]
         why += [f"{PurePosixPath(label).name}: {_GONE}" for label in gone]
-        if not why or entry is None or (gone and moved):
+        entry = _entry_of(campaign, before.files) if before.done and why else None
+        known = store.before.get("run", before.name, RunRecord) if entry else None
+        if known is None or entry is None or store.previous is None:
             continue
-        outcome = _kept_run(run, entry, earlier.folder, why[0])
-        mine = [record for record in kept if set(record.outcome.files) <= set(run.files)]
-        names = {record.outcome.name for record in kept if record not in mine}
-        data_file = run.data_file
+        sums = {label: checksum for label, checksum, _ in known.record.sources}
+        if gone and any(sums.get(label) in content for label in gone):
+            continue  # it was renamed
+        path = store.previous / before.data_file
+        outcome = _kept_run(before, entry, path, why[0])
+        mine = [came for came in kept if set(came.outcome.files) <= set(before.files)]
+        names = {came.outcome.name for came in kept if came not in mine}
         if outcome.name in names:  # another run has its name now
-            name = safe_name(f"{run.name}_kept")
+            name = safe_name(f"{before.name}_kept")
             outcome = replace(outcome, name=name, data_file=f"data/{name}.nc")
-        link(earlier.folder / data_file, staging / outcome.data_file)
-        sources = tuple(known[label] for label in run.files if label in known)
         place = kept.index(mine[0]) if mine else len(kept)
-        kept = [record for record in kept if record not in mine]
-        kept.insert(place, RunRecord(outcome, sources))
+        came = keep_earlier(store, known, outcome, len(runs))
+        if came is None:
+            continue
+        kept = [other for other in kept if other not in mine]
+        kept.insert(place, came)
+    if kept != list(runs):
+        store.order("run", [came.outcome.name for came in kept])
     return kept
 
 
 def kept_surface(
-    campaign: Campaign,
-    planned: PlannedSurface,
-    previous: Path | None,
-    staging: Path,
-    record: SurfaceRecord,
-) -> SurfaceRecord:
+    campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
+) -> tuple[SurfaceRecord, bool]:
     """Return the earlier record of a surface some of whose scans cannot be read now.
 
     Without such scans, or without earlier results, the record comes back as it is.
+
+    Returns
+    -------
+    tuple of SurfaceRecord and bool
+        The record, and whether it is an earlier one.
     """
     now = record.outcome
-    if previous is None or now.reused or now.status == "skipped":
-        return record
-    path = previous / planned.data_file
-    earlier = earlier_surface(path, now)
-    if earlier is None:
-        return record
+    known = store.before.get("surface", now.name, SurfaceRecord)
+    if known is None or store.previous is None or now.status == "skipped":
+        return record, False
+    before, sources = known.record.outcome, known.record.sources
+    if not before.done:
+        return record, False
     patterns = next(s.scans or () for s in campaign.surface if s.name == now.name)
-    sources, before = earlier
     names = [label for label, _, _ in sources]
     content = {checksum for _, checksum, _ in record.sources}
     spoilt = _left_out(now.findings, names) - _left_out(before.findings, names)
@@ -165,54 +118,53 @@ def kept_surface(
     if not now.done and now.error not in _VERDICTS:
         why.append(now.reason)
     if not why:
-        return record
-    text = _text(path, f"scans cannot be read now ({why[0]})")
-    link(path, staging / before.data_file)
-    findings = (*before.findings, Finding("fail", text))
-    return SurfaceRecord(replace(before, findings=findings, reused=False, kept=text), sources)
+        return record, False
+    text = _text(store.previous / before.data_file, f"scans cannot be read now ({why[0]})")
+    if not store.link("surface", now.name, before.data_file, planned.data_file):
+        return record, False
+    said = [f for f in before.findings if f.message != before.kept]
+    outcome = replace(
+        before,
+        data_file=planned.data_file,
+        findings=(*said, Finding("fail", text)),
+        reused=False,
+        kept=text,
+    )
+    return replace(known.record, outcome=outcome), True
 
 
-def kept_model(
-    model: ModelOutcome, earlier: ModelOutcome | None, previous: Path, staging: Path
-) -> ModelOutcome:
-    """Return the earlier outcome of a model that could not be computed now, if there is one."""
-    if model.status != "failed" or model.error in _VERDICTS or earlier is None:
-        return model
-    path = previous / earlier.data_file
-    text = _text(path, f"the model cannot be computed now ({model.reason})")
-    link(path, staging / earlier.data_file)
-    findings = (*earlier.findings, Finding("fail", text))
-    return replace(earlier, findings=findings, reused=False, kept=text)
+def kept_model(store: Store, record: ModelRecord) -> tuple[ModelRecord, bool]:
+    """Return the earlier record of a model that could not be computed now, if there is one.
 
-
-def link(old: Path, new: Path) -> None:
-    """Have a data file of earlier results in the new folder, too.
-
-    Raises
-    ------
-    FileNotFoundError
-        If it is not there (any more).
+    Returns
+    -------
+    tuple of ModelRecord and bool
+        The record, and whether it is an earlier one.
     """
-    try:
-        os.link(old, new)
-    except FileNotFoundError:
-        raise
-    except OSError:  # a file system without hard links
-        shutil.copy2(old, new)
+    now = record.outcome
+    if now.status != "failed" or now.error in _VERDICTS or store.previous is None:
+        return record, False
+    known = store.before.get("model", now.name, ModelRecord)
+    if known is None or not known.record.outcome.done:
+        return record, False
+    before = known.record.outcome
+    path = store.previous / before.data_file
+    text = _text(path, f"the model cannot be computed now ({now.reason})")
+    if not store.link("model", now.name, before.data_file, before.data_file):
+        return record, False
+    said = [f for f in before.findings if f.message != before.kept]
+    outcome = replace(before, findings=(*said, Finding("fail", text)), reused=False, kept=text)
+    return replace(known.record, outcome=outcome), True
 
 
-def _kept_run(run: EarlierRun, entry: RunEntry, folder: Path, why: str) -> RunOutcome:
-    return RunOutcome(
-        name=run.name,
-        files=run.files,
+def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutcome:
+    return replace(
+        run,
         surface=entry.surface or "",
         medium=entry.medium or "",
         normal_force=run.normal_force if entry.normal_force is None else entry.normal_force,
-        status="done",
-        data_file=run.data_file,
-        segments=run.segments,
-        quality=run.quality,
-        kept=_text(folder / run.data_file, f"the raw file cannot be read now ({why})"),
+        reused=False,
+        kept=_text(path, f"the raw file cannot be read now ({why})"),
     )
 
 

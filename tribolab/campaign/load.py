@@ -7,7 +7,7 @@ from pathlib import Path
 from tribolab.campaign import problems
 from tribolab.campaign.config import Campaign
 from tribolab.campaign.names import of_names
-from tribolab.campaign.plan import plan
+from tribolab.campaign.plan import PlannedRun, plan
 from tribolab.errors import ConfigError
 
 
@@ -43,6 +43,11 @@ def load_campaign(path: str | Path) -> Campaign:
     ...     load_campaign(file).medium["glycerol"].viscosity
     1.4
     """
+    return load_and_plan(path)[0]
+
+
+def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
+    """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
     import tomllib
 
     from pydantic import ValidationError
@@ -68,7 +73,8 @@ def load_campaign(path: str | Path) -> Campaign:
         found = problems.from_pydantic(error, Campaign)
     else:
         campaign.lies_at(path)
-        found = of_names(campaign) or plan(campaign).problems
+        runs, wrong = plan(campaign)
+        found = of_names(campaign) or wrong
     if found:
         raise ConfigError(problems.message(found, path, text))
-    return campaign
+    return campaign, runs

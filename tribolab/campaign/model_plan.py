@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.campaign.work import NETCDF
-from tribolab.errors import ReadError
 from tribolab.provenance import joined_sources, sha256_of
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from tribolab.campaign.config import Campaign
-    from tribolab.campaign.outcome import CurveOutcome, SurfaceOutcome
+    from tribolab.records.part_records import CurveRecord, SurfaceRecord
+    from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
 _DIGITS = 2  # of a repeatability: one more run must not make every model new
 
@@ -83,10 +78,7 @@ class PlannedModel:
 
 
 def plan_models(
-    campaign: Campaign,
-    curves: Iterable[CurveOutcome],
-    surfaces: Iterable[SurfaceOutcome],
-    folder: Path,
+    campaign: Campaign, curves: Iterable[CurveRecord], surfaces: Iterable[SurfaceRecord]
 ) -> tuple[PlannedModel, ...]:
     """Collect the measured curves in a fluid, and what is known of their contacts.
 
@@ -95,35 +87,33 @@ def plan_models(
     campaign
         From `load_campaign`.
     curves, surfaces
-        What they came to; their data files lie in `folder`.
-    folder
-        Folder of the results.
+        What is recorded of them.
     """
-    done = [curve for curve in curves if curve.done]
+    done = [curve for curve in curves if curve.outcome.done]
     if not campaign.model.compute:
         return ()
     wet = [
         (curve, viscosity)
         for curve in done
-        if curve.medium in campaign.medium
-        and (viscosity := campaign.medium[curve.medium].viscosity) is not None
+        if curve.outcome.medium in campaign.medium
+        and (viscosity := campaign.medium[curve.outcome.medium].viscosity) is not None
     ]
     if not wet:
         return ()
-    spread, freedom = _repeatability(done, folder)
-    known = {surface.name: surface for surface in surfaces}
+    spread, freedom = _repeatability(done)
+    known = {surface.outcome.name: surface for surface in surfaces}
     contact = campaign.contact.line()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty"})
     planned, led = [], set()
-    for curve, viscosity in sorted(wet, key=lambda pair: pair[0].normal_force or np.inf):
-        surface = known.get(curve.surface)
-        missing = _missing(curve, contact, surface)
+    for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
+        curve, surface = record.outcome, known.get(record.outcome.surface)
+        missing = _missing(curve, contact, surface and surface.outcome)
         first = not missing and (curve.surface, curve.medium) not in led
         if first:
             led.add((curve.surface, curve.medium))
-        one = PlannedModel(
+        model = PlannedModel(
             curve=curve,
-            surface_file=surface.data_file if surface else "",
+            surface_file=surface.outcome.data_file if surface else "",
             contact=contact,
             viscosity=viscosity,
             viscosity_range=campaign.medium[curve.medium].viscosity_range,
@@ -135,9 +125,9 @@ def plan_models(
             freedom=freedom,
             missing=missing,
         )
-        planned.append(_sealed(one, folder))
-    order = {curve.name: number for number, curve in enumerate(done)}
-    return tuple(sorted(planned, key=lambda one: order[one.curve.name]))
+        planned.append(model if missing or surface is None else _sealed(model, record, surface))
+    order = {curve.outcome.name: number for number, curve in enumerate(done)}
+    return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
 
 
 def _missing(curve: CurveOutcome, contact: dict[str, Any], surface: SurfaceOutcome | None) -> str:
@@ -151,50 +141,20 @@ def _missing(curve: CurveOutcome, contact: dict[str, Any], surface: SurfaceOutco
     return ""
 
 
-def _repeatability(curves: Sequence[CurveOutcome], folder: Path) -> tuple[float, int]:
+def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
     """Pool the run levels of all curves that were repeated."""
     from tribolab.friction.coefficient.repeatability import repeatability
 
-    levels = [read(folder / curve.data_file).get("run_level") for curve in curves]
-    spread, freedom = repeatability([level.values for level in levels if level is not None])
+    spread, freedom = repeatability([np.array(c.levels) for c in curves if c.levels])
     return float(f"{spread:.{_DIGITS}g}"), freedom
 
 
-def read(path: Path, group: str | None = None) -> xr.Dataset:
-    """Open a data file of this campaign."""
-    from tribolab.io.netcdf import read_netcdf
-
-    with NETCDF:
-        return read_netcdf(path, group=group)
-
-
-def optional(path: Path, group: str) -> xr.Dataset | None:
-    """Open a group that a data file may lack."""
-    try:
-        return read(path, group)
-    except ReadError:
-        return None
-
-
-def _sealed(model: PlannedModel, folder: Path) -> PlannedModel:
-    """Add the checksum; without data there is nothing to take over."""
-    from dataclasses import replace
-
-    if model.missing:
-        return model
-    curve, surface = read(folder / model.curve.data_file), folder / model.surface_file
-    data = [curve, read(surface, "psd"), optional(surface, "adhesion_loads")]
-    model = replace(model, **joined_sources([curve.attrs, read(surface).attrs]))
-    facts = asdict(model) | {"data": [_digest(one) for one in data if one is not None]}
+def _sealed(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> PlannedModel:
+    """Add what the data are made from, and the checksum of all that shapes the model."""
+    scans = {
+        "source": "; ".join(label for label, _, _ in surface.sources),
+        "source_sha256": "; ".join(checksum for _, checksum, _ in surface.sources),
+    }
+    model = replace(model, **joined_sources([asdict(curve.origin), scans]))
+    facts = asdict(model) | {"data": [curve.digest, surface.digest]}
     return replace(model, config_sha256=sha256_of(facts))
-
-
-def _digest(data: xr.Dataset) -> str:
-    """Checksum of a dataset's names and values; when it was made does not matter."""
-    digest = hashlib.sha256()
-    for name in sorted(map(str, data.variables)):
-        digest.update(name.encode())
-        values = np.asarray(data[name])
-        text = values.dtype.kind in "OUS"
-        digest.update(str(values.tolist()).encode() if text else values.tobytes())
-    return digest.hexdigest()

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribolab.campaign.problems import Problem
-from tribolab.errors import nearest, shown
+from tribolab.campaign.problems import Problem, message
+from tribolab.errors import ConfigError, nearest, shown
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
@@ -101,6 +101,21 @@ def plan(campaign: Campaign) -> Plan:
         for (entry, files), name in zip(found, names, strict=True)
     )
     return Plan(runs, [])
+
+
+def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
+    """Return the runs of a campaign.
+
+    Raises
+    ------
+    ConfigError
+        If its patterns match nothing.
+    """
+    resolved = plan(campaign)
+    if resolved.problems:
+        text = campaign.file.read_text("utf-8-sig")
+        raise ConfigError(message(resolved.problems, campaign.file, text))
+    return resolved.runs
 
 
 def scan_files(campaign: Campaign) -> list[Path]:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.outcome import Finding, beyond_limits
 from tribolab.errors import TribolabError
 from tribolab.quantities import stamp
+from tribolab.records.parts import Finding, beyond_limits
 from tribolab.validity import together
 from tribolab.words import explain
 

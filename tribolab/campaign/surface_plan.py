@@ -19,7 +19,7 @@ from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
-    from tribolab.campaign.outcome import RunOutcome
+    from tribolab.records.parts import RunOutcome
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.campaign.outcome import Finding
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan_sets import check_scan_set
+from tribolab.records.parts import Finding
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from tribolab.records.parts import RunZero
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -14,24 +16,6 @@ OWN = "own_zero_N"  # attribute of a friction result: its zero, where it is sure
 LENT = "zeros_of_other_runs_N"  # attribute: what others lent; there, if empty, where it has none
 FEWEST = 2  # zeros without which their scatter is not known
 _DIGITS = 6
-
-
-class RunZero(NamedTuple):
-    """What a run's result says of its zero.
-
-    Parameters
-    ----------
-    instrument
-        What recorded it; "" where that is not known, and then nothing is lent.
-    own
-        Its own zero [N], or None.
-    lent
-        What other runs lent to it, as text; None where it wants nothing.
-    """
-
-    instrument: str
-    own: float | None
-    lent: str | None
 
 
 def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, Any]:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from tribolab.campaign.outcome import CurveOutcome, RunOutcome
     from tribolab.plot.stick_slip import Trace
+    from tribolab.records.parts import CurveOutcome, RunOutcome
 
 # Several figures show the same data, and none of them changes it.
 _KEPT = 64

@@ -12,9 +12,9 @@ import pandas as pd
 from tribolab.errors import AnalysisError
 from tribolab.paper.figures import BY_NAME, FIGURES
 from tribolab.paper.laboratory import Laboratory
+from tribolab.records.wording import plain_value
 from tribolab.report.document import versions
 from tribolab.report.sections import Section
-from tribolab.report.wording import plain_value
 from tribolab.studies import xu2026
 from tribolab.studies.verdict import BOUNDS, DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
 from tribolab.words import many

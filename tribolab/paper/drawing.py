@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
-from tribolab.report.wording import with_error
+from tribolab.records.wording import with_error
 from tribolab.words import force_text, number, span, speed_text, speeds
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from tribolab.studies import xu2026
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.outcome import CurveOutcome
     from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.records.parts import CurveOutcome
 
 _LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
 
@@ -53,7 +53,7 @@ def compute(task: Task) -> list[dict[str, Any]]:
     """Compute a task, write its data file, and return its rows if it has any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
-        from tribolab.campaign.work import write_data
+        from tribolab.campaign.data_files import write_data
 
         root = _root(task)
         write_data({None: root} | groups, data_file(task.folder, task.kind, task.surface))
@@ -75,7 +75,7 @@ def _origin(task: Task) -> dict[str, str]:
     There is no checksum of a file where there is no file; the settings are then the constants.
     """
     if task.scans is not None:
-        from tribolab.campaign.surface_work import named, sources_of
+        from tribolab.campaign.surfaces import named, sources_of
 
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return named(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}

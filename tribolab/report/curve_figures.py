@@ -1,23 +1,19 @@
-"""The measured curves in the report: their points, and figures that compare them."""
+"""The figures that compare measured curves."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from tribolab.report.document import labels
-from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.tables import curve_table
-from tribolab.report.wording import plain_value
+from tribolab.report.figure_files import Drawn
 from tribolab.words import force_text, many, span, speeds
 
 if TYPE_CHECKING:
-    import pandas as pd
     import xarray as xr
 
-    from tribolab.campaign.outcome import CurveOutcome
+    from tribolab.records.parts import CurveOutcome
 
 _MOST_IN_ONE = 9  # curves that can be told apart in one figure
 _BARS = (
@@ -35,7 +31,11 @@ class CurveFigure:
     file: str
     kind: str
     surfaces: tuple[str, ...]
-    folder: Path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Data files that it reads."""
+        return tuple(curve.data_file for curve in self.curves)
 
 
 def surface_of(curve: CurveOutcome) -> str:
@@ -56,19 +56,7 @@ def read_curve(folder: Path, curve: CurveOutcome) -> xr.Dataset:
     return data
 
 
-def curve_record(folder: Path, curve: CurveOutcome) -> tuple[dict[str, Any], pd.DataFrame]:
-    """Return the curve for report.json and its table."""
-    table = curve_table(read_curve(folder, curve))
-    record = {
-        "name": curve.name,
-        **labels(curve),
-        "runs": list(curve.run_names),
-        "points": table.to_dict("records"),
-    }
-    return plain_value(record), table
-
-
-def plan_figures(curves: Sequence[CurveOutcome], folder: Path) -> list[CurveFigure]:
+def plan_figures(curves: Sequence[CurveOutcome]) -> list[CurveFigure]:
     """Choose the figures: one per surface with all its loads, one per load with all surfaces."""
     surfaces = tuple(dict.fromkeys(surface_of(curve) for curve in curves))
     planned = []
@@ -79,7 +67,7 @@ def plan_figures(curves: Sequence[CurveOutcome], folder: Path) -> list[CurveFigu
                 f"figures/stribeck_surface_{number + 1}{'abcdefgh'[part % 8] if part else ''}.svg"
             )
             title = surface or "surface not named"
-            planned.append(CurveFigure(chosen, title, file, "surface", surfaces, folder))
+            planned.append(CurveFigure(chosen, title, file, "surface", surfaces))
     loads = dict.fromkeys(curve.normal_force for curve in curves)
     for number, load in enumerate(sorted(loads, key=lambda x: (x is None, x or 0.0))):
         mine = [curve for curve in curves if curve.normal_force == load and curve.surface]
@@ -87,7 +75,7 @@ def plan_figures(curves: Sequence[CurveOutcome], folder: Path) -> list[CurveFigu
             file = f"figures/stribeck_load_{number + 1}.svg"
             title = force_text(float("nan") if load is None else load)
             chosen = tuple(mine[:_MOST_IN_ONE])
-            planned.append(CurveFigure(chosen, title, file, "load", surfaces, folder))
+            planned.append(CurveFigure(chosen, title, file, "load", surfaces))
     return planned
 
 
@@ -96,20 +84,17 @@ def _parts(curves: list[CurveOutcome]) -> list[tuple[CurveOutcome, ...]]:
     return [tuple(curves[k : k + _MOST_IN_ONE]) for k in steps]
 
 
-def draw_curves(task: CurveFigure) -> dict[str, str]:
-    """Draw one figure into the results and return its record."""
+def draw_curves(what: CurveFigure, folder: Path) -> Drawn:
+    """Draw one figure of measured curves."""
     from tribolab import plot
 
-    with DRAWING:
-        data = [read_curve(task.folder, curve) for curve in task.curves]
+    data = [read_curve(folder, curve) for curve in what.curves]
     values = [v for curve in data for v in curve["friction_coefficient"].values.tolist()]
     speed = [v for curve in data for v in curve["sliding_speed"].values.tolist()]
     count = many(len(data), "measured curve")
     alt = (
-        f"Friction coefficient over sliding speed, {task.title}: {count} at {speeds(speed)}, "
+        f"Friction coefficient over sliding speed, {what.title}: {count} at {speeds(speed)}, "
         f"µ from {span(values)}."
     )
-    caption = f"{task.title}. {_BARS}"
-    with DRAWING:
-        figure = plot.stribeck(data, surfaces=task.surfaces, title=task.title)
-        return save_figure(figure, task.folder, task.file, caption, alt) | {"kind": task.kind}
+    figure = plot.stribeck(data, surfaces=what.surfaces, title=what.title)
+    return Drawn(figure, f"{what.title}. {_BARS}", alt, what.kind)

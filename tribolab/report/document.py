@@ -5,21 +5,27 @@ from __future__ import annotations
 import datetime as dt
 import json
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pydantic import TypeAdapter
+
 from tribolab.provenance import sha256_of_file
-from tribolab.report.judgement import THRESHOLDS, is_bad
-from tribolab.report.wording import SYMBOLS, UNITS, plain_value
+from tribolab.records.judgement import THRESHOLDS, is_bad
+from tribolab.records.run_facts import RunFacts
+from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.words import many, span
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
-    from tribolab.report.run_summary import RunSummary
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.outcome import Outcome
+    from tribolab.records.parts import CurveOutcome, Notice, RunOutcome
+    from tribolab.records.run_record import RunRecord
 
-SCHEMA_VERSION = "1.3"
+SCHEMA_VERSION = "2.0"
+_FACTS = TypeAdapter(RunFacts)
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -34,37 +40,28 @@ def labels(what: RunOutcome | CurveOutcome) -> dict[str, Any]:
 
 def report_document(
     outcome: Outcome,
-    summaries: dict[str, RunSummary],
-    curves: Sequence[dict[str, Any]],
-    figures: Sequence[dict[str, str]],
-    findings: Sequence[dict[str, str]],
+    runs: Sequence[Mapping[str, Any]],
+    findings: Sequence[Notice],
 ) -> dict[str, Any]:
-    """Return the whole report as plain data, ready for JSON.
+    """Return what stands first in the report, as plain data, ready for JSON.
 
     Parameters
     ----------
     outcome
         What the campaign came to.
-    summaries
-        Of the runs that are done, by name.
-    curves
-        Measured curves with their points.
-    figures
-        Figures over several runs: file, kind, caption, alt.
+    runs
+        Of each run what `brief_run` says.
     findings
         All findings, gravest first.
     """
-    runs = [_run(run, summaries.get(run.name)) for run in outcome.runs]
+    rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
     document = {
         "schema_version": SCHEMA_VERSION,
         "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "campaign": _campaign(outcome.campaign),
-        "verdict": verdict(runs, [one.name for one in outcome.surfaces if one.quality in _BAD]),
-        "runs": runs,
-        "curves": list(curves),
-        "figures": list(figures),
+        "verdict": verdict(runs, rejected),
         "thresholds": THRESHOLDS,
-        "findings": list(findings),
+        "findings": [finding._asdict() for finding in findings],
         "sources": [
             {"file": file, "sha256": checksum, "bytes": size}
             for file, checksum, size in outcome.sources
@@ -74,7 +71,9 @@ def report_document(
     return plain_value(document)
 
 
-def verdict(runs: Sequence[dict[str, Any]], rejected_scans: Sequence[str] = ()) -> dict[str, Any]:
+def verdict(
+    runs: Sequence[Mapping[str, Any]], rejected_scans: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return what came of the campaign in one sentence and its numbers.
 
     Parameters
@@ -128,43 +127,10 @@ def verdict(runs: Sequence[dict[str, Any]], rejected_scans: Sequence[str] = ()) 
 
 _BAD = ("fail", "error")
 
-# What a run has in the report when it failed: the same keys, nothing in them.
-_EMPTY: dict[str, Any] = {
-    "quantity": None,
-    "value_min": None,
-    "value_max": None,
-    "relative_scatter": None,
-    "relative_drift": None,
-    "unsteady_segments": 0,
-    "stick_slip": None,
-    "sliding_speed_min_m_s": None,
-    "sliding_speed_max_m_s": None,
-    "offset": "",
-    "trim": None,
-    "position_range_m": None,
-    "velocity_source": "",
-    "instrument": "",
-    "quality": "",
-    "checks": [],
-    "recorded_at": "",
-    "duration_s": None,
-    "samples": 0,
-    "signals": [],
-    "columns_not_used": [],
-    "clock_shift_s": None,
-    "clock_shift_uncertainty_s": None,
-    "clock_shift_source": "",
-    "history": "",
-    "highlights": [],
-    "omitted": [],
-    "segments": [],
-    "figures": [],
-    "flagged": [],
-}
 
-
-def _run(run: RunOutcome, summary: RunSummary | None) -> dict[str, Any]:
-    facts = _EMPTY | (summary.facts if summary else {})
+def run_document(record: RunRecord) -> dict[str, Any]:
+    """Return a run as report.json has it."""
+    run, facts = record.outcome, plain_facts(record.facts)
     return {
         "name": run.name,
         "status": run.status,
@@ -181,7 +147,28 @@ def _run(run: RunOutcome, summary: RunSummary | None) -> dict[str, Any]:
     }
 
 
-def _campaign(campaign: Any) -> dict[str, Any]:
+def plain_facts(facts: RunFacts) -> dict[str, Any]:
+    """Return the numbers of a run as plain data."""
+    plain: dict[str, Any] = _FACTS.dump_python(facts, mode="json")
+    if plain["stick_slip"] is not None:
+        plain["stick_slip"] = {
+            "class": plain["stick_slip"]["class_"],
+            "detail": plain["stick_slip"]["detail"],
+        }
+    return plain
+
+
+def brief_run(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the table of runs shows of a run: all but what is long."""
+    brief = {key: value for key, value in run.items() if key not in _LONG}
+    objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
+    return brief | {"checks": objections}
+
+
+_LONG = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
+
+
+def _campaign(campaign: Campaign) -> dict[str, Any]:
     file = Path(campaign.file)
     there = file.is_file()
     return {
@@ -205,7 +192,18 @@ def versions() -> dict[str, str]:
     return found
 
 
-def write_json(document: dict[str, Any], path: Path) -> None:
-    """Write the report as strict JSON: UTF-8, no NaN."""
-    text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+def write_json(document: Mapping[str, Any], runs: Iterable[Mapping[str, Any]], path: Path) -> None:
+    """Write the report as strict JSON: UTF-8, no NaN; the runs one by one, a line each."""
+
+    def text(value: Any, indent: int | None = 1) -> str:
+        return json.dumps(value, ensure_ascii=False, indent=indent, allow_nan=False)
+
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("{\n")
+        for key, value in document.items():
+            file.write(f"{text(key)}: {text(value)},\n")
+        file.write('"runs": [')
+        for number, run in enumerate(runs):
+            file.write(",\n" if number else "\n")
+            file.write(text(run, None))
+        file.write("\n]\n}\n")

@@ -3,46 +3,53 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.records.part_records import FigureRecord
 from tribolab.report import tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# Matplotlib's fonts and the netCDF library are not made for several threads.
+@dataclass(frozen=True)
+class Drawn:
+    """A figure, its caption, what it shows in words, and what the page groups it by."""
+
+    figure: Figure
+    caption: str
+    alt: str
+    kind: str
+
+
+# Matplotlib's fonts are not made for several threads.
 DRAWING = threading.Lock()
 
 
-def save_figure(figure: Figure, folder: Path, file: str, caption: str, alt: str) -> dict[str, str]:
+def save_figure(drawn: Drawn, folder: Path, file: str, *, pdf: bool = False) -> FigureRecord:
     """Write a figure and its numbers, and return its record for the report.
 
     Parameters
     ----------
-    figure
-        From one of the functions of `tribolab.plot`.
+    drawn
+        From one of the functions of `tribolab.plot`, with its words.
     folder
         The results folder.
     file
         Path of the SVG relative to it; the numbers go to the same name with ``.csv``.
-    caption
-        What stands below it.
-    alt
-        What it shows, in words and numbers, for who does not see it.
-
-    Returns
-    -------
-    dict
-        ``file``, ``data`` (empty if the figure keeps no numbers), ``caption`` and ``alt``.
+    pdf
+        Whether it is written as PDF, too.
     """
     from tribolab import plot
 
-    plot.save(figure, folder / file)
-    numbers, data = plot.figure_data(figure), ""
+    plot.save(drawn.figure, folder / file)
+    if pdf:
+        plot.save(drawn.figure, (folder / file).with_suffix(".pdf"))
+    numbers, data = plot.figure_data(drawn.figure), ""
     if len(numbers):
-        data = str(Path(file).with_suffix(".csv").as_posix())
+        data = Path(file).with_suffix(".csv").as_posix()
         # nine digits: more than any eye or figure resolves
-        tables.write(numbers, folder / data, digits=9)
-    return {"file": file, "data": data, "caption": caption, "alt": alt}
+        tables.write_csv(numbers, folder / data, digits=9)
+    return FigureRecord(file, data, drawn.caption, drawn.alt, drawn.kind)

@@ -5,24 +5,37 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pandas as pd
 
-from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.model_records import ModelRows, shear_stress_table
-from tribolab.report.model_words import has_shear_stress
+from tribolab.records.model_words import has_shear_stress
+from tribolab.records.parts import Row
+from tribolab.report.figure_files import Drawn
+from tribolab.report.model_records import SHEAR_STRESS, ModelRow
 from tribolab.words import force_text, span
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from tribolab.campaign.outcome import ModelOutcome, Outcome
+    from tribolab.campaign.outcome import Outcome
+    from tribolab.records.parts import ModelOutcome
 
 _NO_MODEL = ": no shear stress describes this curve, so only the model's viscous part is drawn"
 _NO_LINE = ": no model at {}, where no shear stress describes the curve"
 _MOST_IN_ONE = 9  # surfaces or loads that can be told apart in one figure
+
+
+class ShownModel(NamedTuple):
+    """A model that a figure shows, and where its data are."""
+
+    name: str
+    surface: str
+    medium: str
+    normal_force: float | None
+    data_file: str
+    parts: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -39,26 +52,23 @@ class ModelFigure:
         What it shows.
     models
         Models with the data.
-    dry
-        Data file of the dry measured curve beside it; "" if there is none.
     surfaces
         All surfaces of the study, for their colours.
+    dry
+        Data file of the dry measured curve beside it; "" if there is none.
     table
         Rows of fits, where it shows those.
     missing
         What the figure cannot show, behind its title.
-    folder
-        Folder of the results.
     """
 
     kind: str
     name: str
     title: str
-    models: tuple[ModelOutcome, ...]
+    models: tuple[ShownModel, ...]
     surfaces: tuple[str, ...]
-    folder: Path
     dry: str = ""
-    table: pd.DataFrame | None = None
+    table: tuple[Row, ...] = ()
     missing: str = ""
 
     @property
@@ -66,18 +76,27 @@ class ModelFigure:
         """Path of the figure relative to the results folder."""
         return f"figures/{self.name}.svg"
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Data files that it reads."""
+        files = [model.data_file for model in self.models]
+        return (*files, self.dry) if self.dry else tuple(files)
 
-def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRows]) -> list[ModelFigure]:
+
+def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRow]) -> list[ModelFigure]:
     """Choose the figures for which there are data."""
-    fitted = [one.model for one in rows if one.fit is not None]
+    fitted = [row.model for row in rows if row.fit is not None]
     surfaces = tuple(dict.fromkeys(curve.surface for curve in outcome.curves))
-    folder = Path(outcome.folder)
     planned: list[ModelFigure] = []
 
     def add(kind: str, name: str, title: str, models: Iterable[ModelOutcome], **more: Any) -> None:
-        planned.append(ModelFigure(kind, name, title, tuple(models), surfaces, folder, **more))
+        shown = tuple(
+            ShownModel(m.name, m.surface, m.medium, m.normal_force, m.data_file, m.parts)
+            for m in models
+        )
+        planned.append(ModelFigure(kind, name, title, shown, surfaces, **more))
 
-    stressed = [one.model for one in rows if one.fit is not None and one.fit["shear_stress_Pa"] > 0]
+    stressed = [row.model for row in rows if row.fit is not None and row.fit["shear_stress_Pa"] > 0]
     for model in fitted:
         missing = "" if model in stressed else _NO_MODEL
         add("curve", model.name, _title(model), [model], dry=_dry(outcome, model), missing=missing)
@@ -88,20 +107,20 @@ def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRows]) -> list[Mode
             missing = _NO_LINE.format(" and ".join(without)) if without else ""
             add("loads", f"model_surface_{number + 1}", surface, mine, missing=missing)
     if stressed:
-        table = shear_stress_table([one for one in rows if one.model in stressed])
-        add("shear_stress", "shear_stress", "Shear stress over the load", stressed, table=table)
+        fits = tuple(row.labels | row.fit for row in rows if row.model in stressed and row.fit)
+        add("shear_stress", "shear_stress", "Shear stress over the load", stressed, table=fits)
     for kind, part, title in (
         ("effect", "profiles", "With and without friction factors"),
         ("factors", "factors", "Flow and friction factors"),
     ):
-        mine = [one.model for one in rows if part in one.model.parts][:_MOST_IN_ONE]
+        mine = [row.model for row in rows if part in row.model.parts][:_MOST_IN_ONE]
         if mine:
             add(kind, f"model_{kind}", title, mine)
     for kind, part in (("profiles", "profiles"), ("sensitivity", "uncertainty")):
-        for one in rows:
-            if part in one.model.parts:
-                name = f"{kind}_{one.model.name.removeprefix('model_')}"
-                add(kind, name, _title(one.model), [one.model])
+        for row in rows:
+            if part in row.model.parts:
+                name = f"{kind}_{row.model.name.removeprefix('model_')}"
+                add(kind, name, _title(row.model), [row.model])
     return planned
 
 
@@ -121,20 +140,24 @@ def _dry(outcome: Outcome, model: ModelOutcome) -> str:
     return ""
 
 
-def draw_model(task: ModelFigure) -> dict[str, str]:
-    """Draw one figure into the results and return its record."""
-    draw, caption = _KINDS[task.kind]
-    with DRAWING:
-        figure, numbers = draw(task)
-        title = task.title + task.missing
-        if task.missing and task.kind == "curve":
-            caption = _CAPTION_OF_VISCOUS
-        text, alt = f"{title}. {caption}", f"{title}. {numbers} {caption}"
-        record = save_figure(figure, task.folder, task.file, text, alt)
-    return record | {"kind": task.kind}
+def draw_model(what: ModelFigure, folder: Path) -> Drawn:
+    """Draw one figure of models."""
+    draw, caption = _KINDS[what.kind]
+    figure, numbers = draw(_Opened(what, folder))
+    title = what.title + what.missing
+    if what.missing and what.kind == "curve":
+        caption = _CAPTION_OF_VISCOUS
+    return Drawn(figure, f"{title}. {caption}", f"{title}. {numbers} {caption}", what.kind)
 
 
-def _read(task: ModelFigure, model: ModelOutcome, group: str) -> xr.Dataset:
+class _Opened(NamedTuple):
+    """A figure and the folder with its data files."""
+
+    figure: ModelFigure
+    folder: Path
+
+
+def _read(task: _Opened, model: ShownModel, group: str) -> xr.Dataset:
     from tribolab.io.netcdf import read_netcdf
 
     return read_netcdf(task.folder / model.data_file, group=group)
@@ -146,25 +169,25 @@ def _plot() -> Any:
     return plot
 
 
-def _by_surface(task: ModelFigure, group: str) -> dict[str, xr.Dataset]:
-    return {model.surface: _read(task, model, group) for model in task.models}
+def _by_surface(task: _Opened, group: str) -> dict[str, xr.Dataset]:
+    return {model.surface: _read(task, model, group) for model in task.figure.models}
 
 
-def _curve(task: ModelFigure) -> tuple[Figure, str]:
+def _curve(task: _Opened) -> tuple[Figure, str]:
     from tribolab.io.netcdf import read_netcdf
 
-    (model,) = task.models
+    (model,) = task.figure.models
     fit = _read(task, model, "fit")
     spread = _read(task, model, "uncertainty") if "uncertainty" in model.parts else None
-    dry = read_netcdf(task.folder / task.dry) if task.dry else None
+    dry = read_netcdf(task.folder / task.figure.dry) if task.figure.dry else None
     figure = _plot().mixed_curve(
         fit,
         _read(task, model, "curve"),
         uncertainty=spread,
         dry=dry,
         surface=model.surface,
-        surfaces=task.surfaces,
-        title=task.title,
+        surfaces=task.figure.surfaces,
+        title=task.figure.title,
     )
     measured = f"Measured µ from {span(fit['friction_coefficient'].values.tolist())}"
     if not has_shear_stress(fit):
@@ -172,47 +195,49 @@ def _curve(task: ModelFigure) -> tuple[Figure, str]:
     return figure, f"{measured}; fitted shear stress {fit.attrs['shear_stress_Pa'] / 1e6:.3g} MPa."
 
 
-def _loads(task: ModelFigure) -> tuple[Figure, str]:
+def _loads(task: _Opened) -> tuple[Figure, str]:
     measured, models = [], []
-    for model in task.models:
+    for model in task.figure.models:
         labels = {"surface": model.surface, "medium": model.medium}
         labels["normal_force_N"] = model.normal_force
         fit, curve = (_read(task, model, group) for group in ("fit", "curve"))
         measured.append(fit.assign_attrs(labels))
         if has_shear_stress(fit):
             models.append(curve.assign_attrs(labels))
-    figure = _plot().stribeck(measured, models, surfaces=task.surfaces, title=task.title)
-    return figure, f"Measured and computed at {len(task.models)} loads."
+    figure = _plot().stribeck(
+        measured, models, surfaces=task.figure.surfaces, title=task.figure.title
+    )
+    return figure, f"Measured and computed at {len(task.figure.models)} loads."
 
 
-def _shear_stress(task: ModelFigure) -> tuple[Figure, str]:
-    table = task.table
-    figure = _plot().shear_stress(table, surfaces=task.surfaces)
+def _shear_stress(task: _Opened) -> tuple[Figure, str]:
+    table = pd.DataFrame(list(task.figure.table), columns=SHEAR_STRESS)
+    figure = _plot().shear_stress(table, surfaces=task.figure.surfaces)
     words = span((table["shear_stress_Pa"] / 1e6).tolist(), " MPa")
     return figure, f"As fitted {words}."
 
 
-def _effect(task: ModelFigure) -> tuple[Figure, str]:
+def _effect(task: _Opened) -> tuple[Figure, str]:
     curves = _by_surface(task, "curve")
-    return _plot().friction_factor_effect(curves, surfaces=task.surfaces), ""
+    return _plot().friction_factor_effect(curves, surfaces=task.figure.surfaces), ""
 
 
-def _factors(task: ModelFigure) -> tuple[Figure, str]:
+def _factors(task: _Opened) -> tuple[Figure, str]:
     factors = _by_surface(task, "factors")
-    return _plot().lubrication_factors(factors, surfaces=task.surfaces), ""
+    return _plot().lubrication_factors(factors, surfaces=task.figure.surfaces), ""
 
 
-def _profiles(task: ModelFigure) -> tuple[Figure, str]:
-    profiles = _read(task, task.models[0], "profiles")
-    return _plot().film_profiles(profiles, title=task.title), ""
+def _profiles(task: _Opened) -> tuple[Figure, str]:
+    profiles = _read(task, task.figure.models[0], "profiles")
+    return _plot().film_profiles(profiles, title=task.figure.title), ""
 
 
-def _sensitivity(task: ModelFigure) -> tuple[Figure, str]:
-    (model,) = task.models
+def _sensitivity(task: _Opened) -> tuple[Figure, str]:
+    (model,) = task.figure.models
     found = _read(task, model, "uncertainty")
     most = str(found["variation"].values[int(found["largest_change"].values.argmax())])
     figure = _plot().model_sensitivity(
-        found, surface=model.surface, surfaces=task.surfaces, title=task.title
+        found, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
     )
     return figure, f"Moved most by: {most}."
 
@@ -225,7 +250,7 @@ _CAPTION_OF_VISCOUS = (
     _MEASURED + "dotted: the model's viscous part; open symbols: dry. Below: measured less that."
 )
 
-_KINDS: dict[str, tuple[Callable[[ModelFigure], tuple[Figure, str]], str]] = {
+_KINDS: dict[str, tuple[Callable[[_Opened], tuple[Figure, str]], str]] = {
     "curve": (
         _curve,
         _MEASURED + "full: the model with the fitted shear stress; dashed: its solid part; "

@@ -8,20 +8,20 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 from urllib.parse import quote
 
 import jinja2
 from markupsafe import Markup
 
 from tribolab import words
+from tribolab.records.model_words import stress_interval
+from tribolab.records.packed import deflated
+from tribolab.records.traces import PageTrace
 from tribolab.report import judgement, wording
-from tribolab.report.model_words import stress_interval
-from tribolab.report.packed import deflated
 from tribolab.report.sections import Section, shown_sections
 from tribolab.report.sliding_figures import traces_stems
 from tribolab.words import aligned, force_text, number, speed_text
@@ -33,70 +33,80 @@ _STYLES = ("uplot.min.css", "report.css")
 _SCRIPTS = ("uplot.min.js", "report.js", "files.js", "table.js", "drawing.js", "chart.js")
 _LICENCES = {"uplot.min.js": "uplot.LICENSE"}
 _MOST_OPEN = 300  # runs whose details are not compressed; with more the page would open slowly
-_FIGURES_BYTES = 5e6  # of the runs' own figures that are put inside the page
 
 
-@dataclass(frozen=True)
-class PageTrace:
-    """A run's trace for the page.
-
-    Parameters
-    ----------
-    key
-        What the run's own files are called.
-    json
-        From `tribolab.report.traces.trace`.
-    fine
-        From `tribolab.report.traces.finer_trace`; "" if there is none.
-    """
-
-    key: str
-    json: Markup
-    fine: Markup = Markup("")
+Runs = Callable[[], Iterable[dict[str, Any]]]
 
 
-def write_page(
-    document: dict[str, Any], folder: Path, traces: Mapping[str, PageTrace] | None = None
-) -> Path:
+class Detail(NamedTuple):
+    """What stands under one run: all of it, its trace, its place from 1, or all that compressed."""
+
+    run: dict[str, Any]
+    trace: dict[str, Markup] | None
+    index: int
+    packed: str
+
+
+def write_page(document: Mapping[str, Any], folder: Path, runs: Runs, store: Traces) -> Path:
     """Write ``report.html`` into the results folder, with what it shows inside it.
 
-    Of very many runs the details are compressed, and the page unpacks them when they are asked for.
-    """
-    path = folder / "report.html"
-    path.write_text(render(document, folder, traces), encoding="utf-8")
-    return path
-
-
-def render(
-    document: dict[str, Any], folder: Path, traces: Mapping[str, PageTrace] | None = None
-) -> str:
-    """Return the page of a report.
+    Of very many runs the details are compressed, and the page unpacks them when they are asked
+    for. The page is written piece by piece: the details of one run at a time are in memory.
 
     Parameters
     ----------
     document
-        From `tribolab.report.document.report_document`.
+        From `tribolab.report.document.report_document`, with what is brief of the runs.
     folder
         Results folder, in which the figures lie.
-    traces
-        Of the runs, by name; those without have a picture in its place.
-
-    Returns
-    -------
-    str
-        HTML. Text from files is escaped, and a content security policy forbids every script but
-        the page's own, wherever it lies, and every request.
+    runs
+        Gives the runs as report.json has them.
+    store
+        It has the traces of the runs.
     """
+    context = _context(document, folder, runs, store)
+    template, frame = _framing("report.html.j2", context, shown_sections(context), folder)
+    path = folder / "report.html"
+    stream = template.stream(context | frame)
+    stream.enable_buffering(256)
+    with path.open("w", encoding="utf-8") as file:
+        stream.dump(file)
+    return path
+
+
+class Traces(Protocol):
+    """What knows the traces of runs."""
+
+    def trace(self, kind: str, name: str) -> PageTrace | None:
+        """Return the trace of a part."""
+
+
+def _context(
+    document: Mapping[str, Any], folder: Path, runs: Runs, store: Traces
+) -> dict[str, Any]:
     surfaces = document.get("surfaces", [])
-    context = document | {
-        "traces": traces or {},
-        "embed_runs": _bytes_of_figures(document["runs"], folder) <= _FIGURES_BYTES,
+    context = dict(document) | {
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
         "left_out": left_out(document["runs"]),
         "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
     }
-    context["packed"] = _packed_details(_environment(folder), context)
-    return framed("report.html.j2", context, shown_sections(context), folder)
+    many = len(document["runs"]) > _MOST_OPEN
+    template = _environment(folder).get_template("run.html.j2")
+
+    def details() -> Iterator[Detail]:
+        for index, run in enumerate(runs(), start=1):
+            found = store.trace("run", run["name"])
+            trace = None
+            if found is not None:
+                key = Path(run["data_file"]).stem
+                trace = {"json": Markup(found.coarse), "fine": Markup(found.fine), "key": key}
+            packed = ""
+            if many:
+                text = template.render(context, run=run, trace=trace, index=index)
+                packed = deflated(text.encode())
+            yield Detail(run, trace, index, packed)
+
+    return context | {"details": details}
 
 
 def framed(
@@ -116,42 +126,29 @@ def framed(
     folder
         Folder in which the figures lie.
     """
+    page, frame = _framing(template, context, sections, folder)
+    return page.render(dict(context) | frame)
+
+
+def _framing(
+    template: str, context: Mapping[str, Any], sections: Sequence[Section], folder: Path
+) -> tuple[jinja2.Template, dict[str, Any]]:
+    """Return a template, and what the frame of a page wants to know."""
     style = "".join(asset(name) for name in _STYLES)
     scripts = [_script(name) for name in _SCRIPTS]
     hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
-    page = _environment(folder).get_template(template)
-    return page.render(
-        context,
-        style=style,
-        scripts=scripts,
-        sections=sections,
-        policy=(
-            "default-src 'none'; img-src data: 'self' file:; connect-src 'none'; base-uri 'none'; "
-            f"form-action 'none'; style-src '{fingerprint(style)}'; script-src {hashes}"
-        ),
+    policy = (
+        "default-src 'none'; img-src data: 'self' file:; connect-src 'none'; base-uri 'none'; "
+        f"form-action 'none'; style-src '{fingerprint(style)}'; script-src {hashes}"
     )
+    frame = {"style": style, "scripts": scripts, "sections": sections, "policy": policy}
+    return _environment(folder).get_template(template), frame
 
 
 def _script(name: str) -> str:
     """Return one of the page's scripts, what is not ours with its licence."""
     notice = f"/*\n{asset(_LICENCES[name])}*/\n" if name in _LICENCES else ""
     return notice + asset(name)
-
-
-def _bytes_of_figures(runs: Sequence[dict[str, Any]], folder: Path) -> int:
-    named = [folder / figure["file"] for run in runs for figure in run["figures"]]
-    return sum(path.stat().st_size for path in named if not path.stem.endswith("_trace"))
-
-
-def _packed_details(environment: jinja2.Environment, context: dict[str, Any]) -> dict[str, str]:
-    """Return the details of very many runs, compressed, by the runs' names."""
-    if len(context["runs"]) <= _MOST_OPEN:
-        return {}
-    template = environment.get_template("run.html.j2")
-    return {
-        run["name"]: deflated(template.render(context, run=run, index=index).encode())
-        for index, run in enumerate(context["runs"], start=1)
-    }
 
 
 def _environment(folder: Path) -> jinja2.Environment:
@@ -236,7 +233,7 @@ def breakable(name: str) -> Markup:
     return Markup("<wbr>").join(re.findall(r"[^_-]+[_-]*|[_-]+", name))
 
 
-def left_out(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def left_out(runs: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return what was left out of all runs, a row per reason, the longest first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, dict[str, Any]] = {}

@@ -1,45 +1,51 @@
-"""Write the report of a campaign: figures, tables, report.json and the page."""
+"""Write the report of a campaign: figures, tables, report.json and the page, from its records."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
-from markupsafe import Markup
 
-from tribolab.campaign.executor import completed
-from tribolab.report import sliding, surface_records, tables
-from tribolab.report.curve_figures import curve_record, draw_curves, plan_figures
-from tribolab.report.document import labels, report_document, write_json
-from tribolab.report.figure_files import DRAWING
-from tribolab.report.model_figures import draw_model
-from tribolab.report.model_part import write_models
-from tribolab.report.page import PageTrace, write_page
-from tribolab.report.part_rows import rows_of
-from tribolab.report.run_summary import RunSummary, RunTask, summarise_run
-from tribolab.report.sliding_figures import SlipFigure, draw_sliding, plan_sliding_figures
+from tribolab.campaign.engine import Progress, perform
+from tribolab.campaign.modes import Modes
+from tribolab.records.mode_record import ModeRecord
+from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
+from tribolab.records.parts import Notice, Row
+from tribolab.records.run_record import RunRecord
+from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.wording import plain_value
+from tribolab.report import model_records, tables
+from tribolab.report.curve_figures import draw_curves, plan_figures
+from tribolab.report.document import brief_run, labels, report_document, run_document, write_json
+from tribolab.report.figures import Figures, FigureTask, Wanted, planned
+from tribolab.report.model_figures import draw_model, plan_model_figures
+from tribolab.report.page import write_page
+from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
-from tribolab.report.surface_records import SurfaceRows, surface_record, surface_rows
-from tribolab.report.traces import trace_size
-from tribolab.words import explain
+from tribolab.report.surface_records import surface_record, table
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
-    from tribolab.campaign.outcome import CurveOutcome, Outcome, RunOutcome
+    from tribolab.campaign.outcome import Outcome
+    from tribolab.records.parts import RunOutcome
 
-Progress = Callable[[str, int, int], None]
+SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 
 
 def write_report(
-    outcome: Outcome, *, executor: Executor | None = None, progress: Progress | None = None
+    outcome: Outcome,
+    *,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+    figures: Wanted = "all",
+    pdf: bool = False,
 ) -> None:
     """Write everything that the results folder has beside the data.
 
     Writes ``report.html`` (one page that opens offline), ``report.json`` (the same numbers),
-    ``figures/*.svg`` and ``tables/*.csv``.
+    ``figures/*.svg`` and ``tables/*``, all from the records in the outcome's store.
 
     Parameters
     ----------
@@ -49,240 +55,256 @@ def write_report(
         Any `concurrent.futures.Executor` for the drawing; without one it is done here.
     progress
         Called as ``progress(stage, done, total)``.
+    figures
+        Which are drawn: ``"all"``, ``"curves"`` (measured curves only) or ``"none"``. Traces of
+        runs are drawn by the page itself.
+    pdf
+        Whether figures are written as PDF, too.
 
     Notes
     -----
-    A run or a figure that cannot be shown is a finding of severity "error" and does not stop the
-    rest of the report.
+    A figure that cannot be drawn is a finding of severity "error" and does not stop the rest.
     """
-    folder = Path(outcome.folder)
+    folder, store = Path(outcome.folder), outcome.store
     for name in ("figures", "tables"):
         (folder / name).mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda stage, done, total: None)
 
-    findings = _notes(outcome.campaign)
-    findings += [_failure(run) for run in outcome.runs if not run.done]
-    findings += [_kept(run) for run in outcome.runs if run.kept]
-    findings += [_left_out(run) for run in outcome.runs if run.quality in ("fail", "error")]
-    # what the others wait for begins first; meanwhile the rows of the tables are read here
-    runs = _RunFigures(outcome, executor)
-    with DRAWING:
-        rows = rows_of(
-            outcome.surfaces,
-            lambda surface: surface_rows(surface, Path(outcome.folder)),
-            findings,
-            kind="surface",
-        )
-        models, model_tasks = write_models(outcome, findings)
-    done = [surface for surface in outcome.surfaces if surface.name in rows]
-    early = _Figures(
-        {
-            "surface_figures": (draw_surfaces, plan_surface_figures(done, folder)),
-            "model_figures": (draw_model, model_tasks),
-        },
-        executor,
-    )
-    summaries = runs.collect(tell, findings)
-    for summary in summaries.values():
-        findings += summary.findings
-    with DRAWING:
-        curves, points = _curves(outcome, summaries, findings)
-        readable = {curve["name"] for curve in curves}
-        modes, slip_tasks, slip_rows = _sliding(outcome, readable, rows, findings)
-    known = [curve for curve in outcome.curves if curve.name in readable]
-    late = _Figures(
-        {
-            "figures": (draw_curves, plan_figures(known, folder)),
-            "sliding_figures": (draw_sliding, slip_tasks),
-        },
-        executor,
-    )
-    drawn = early.collect(tell, findings) | late.collect(tell, findings)
+    curves = [entry.record for entry in store.all("curve", CurveRecord)]
+    surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
+    models = [entry.record for entry in store.all("model", ModelRecord)]
+    briefs, said = _runs(outcome)
+    findings = _of_parts(outcome, surfaces, models) + said
+    shown, missing = _curves(curves, {run["name"]: run["quantity"] for run in briefs})
+    findings += missing
+    modes, unjudged = _modes(outcome, curves, surfaces, models, executor)
+    findings += unjudged
 
-    ordered = tables.findings_table(findings)
-    _write_tables(outcome, summaries, points, ordered)
-    tables.write(tables.together(slip_rows, ["run", "segment"]), folder / "tables/stick_slip.csv")
-    for name in ("roughness", "contact", "adhesion"):
-        columns = getattr(surface_records, name.upper())
-        table = surface_records.table(list(rows.values()), name, columns)
-        tables.write(table, folder / "tables" / f"{name}.csv")
-    records = ordered.to_dict("records")
-    document = report_document(outcome, summaries, curves, drawn.pop("figures"), records)
-    document["surfaces"] = [surface_record(one, rows.get(one.name)) for one in outcome.surfaces]
-    document |= {"sliding_mode": modes, "models": models, **drawn}
-    write_json(document, folder / "report.json")
-    traces = {
-        name: PageTrace(summary.key, Markup(summary.trace), Markup(summary.fine))
-        for name, summary in summaries.items()
-        if summary.trace
+    rows = model_records.model_rows_of(models)
+    tasks: list[FigureTask] = []
+    if figures != "none":
+        tasks += planned(
+            "figures",
+            plan_figures([curve.outcome for curve in shown]),
+            draw_curves,
+            store,
+            pdf=pdf,
+        )
+    if figures == "all":
+        done = [surface.outcome for surface in surfaces if surface.rows is not None]
+        known = [curve.outcome for curve in shown]
+        for section, plans, draw in (
+            ("surface_figures", plan_surface_figures(done), draw_surfaces),
+            ("model_figures", plan_model_figures(outcome, list(rows.values())), draw_model),
+            ("sliding_figures", plan_sliding_figures(known, modes, outcome), draw_sliding),
+        ):
+            tasks += planned(section, plans, draw, store, pdf=pdf)
+    drawn: dict[str, list[dict[str, str]]] = {section: [] for section in SECTIONS}
+    for section, record in perform(Figures(tasks, store), executor, tell):
+        if isinstance(record, Notice):
+            findings.append(record)
+        elif record is not None:
+            drawn[section].append(_figure(record))
+
+    ordered = sorted(findings, key=lambda finding: tables.SEVERITIES.index(finding.severity))
+    _write_tables(outcome, shown, surfaces, rows, ordered)
+    document = report_document(outcome, briefs, ordered)
+    named = {surface.outcome.name: surface for surface in surfaces}
+    document |= {
+        "curves": [_curve(curve) for curve in shown],
+        "surfaces": [
+            surface_record(one, named[one.name].rows if one.name in named else None)
+            for one in outcome.surfaces
+        ],
+        "sliding_mode": [_mode(modes[c.outcome.name], c) for c in shown if c.outcome.name in modes],
+        "models": [
+            model_records.model_record(model, rows.get(model.name)) for model in outcome.models
+        ],
+        **drawn,
     }
-    write_page(document, folder, traces)
+    write_json(document, _documents(outcome), folder / "report.json")
+    write_page(document | {"runs": briefs}, folder, lambda: _documents(outcome), store)
     tell("page", 1, 1)
 
 
-def _notes(campaign: Campaign) -> list[dict[str, str]]:
-    """Return the campaign file's own note as a finding, which the top of the page shows."""
-    text = campaign.campaign.note
-    return [{"severity": "note", "run": "", "where": "campaign", "message": text}] if text else []
+def _documents(outcome: Outcome) -> Iterator[dict[str, Any]]:
+    """Give the runs as report.json has them, one after the other."""
+    for entry in outcome.store.all("run", RunRecord):
+        yield run_document(entry.record)
 
 
-def _failure(run: RunOutcome) -> dict[str, str]:
-    reason = run.reason or run.error or "no reason was given"
-    return {"severity": "fail", "run": run.name, "where": "run", "message": reason}
+def _runs(outcome: Outcome) -> tuple[list[dict[str, Any]], list[Notice]]:
+    """Return what is brief of every run, and what is said of it."""
+    briefs, said = [], []
+    for entry in outcome.store.all("run", RunRecord):
+        briefs.append(brief_run(run_document(entry.record)))
+        said += entry.record.notices
+    return briefs, said
 
 
-def _kept(run: RunOutcome) -> dict[str, str]:
-    return {"severity": "fail", "run": run.name, "where": "run", "message": run.kept}
-
-
-def _left_out(run: RunOutcome) -> dict[str, str]:
+def _of_parts(
+    outcome: Outcome, surfaces: Sequence[SurfaceRecord], models: Sequence[ModelRecord]
+) -> list[Notice]:
+    """Return what is said of the campaign, and of its parts as a whole."""
+    note = outcome.campaign.campaign.note
+    findings = [Notice("note", "", "campaign", note)] if note else []
+    findings += [_failure(run) for run in outcome.runs if not run.done]
+    findings += [Notice("fail", run.name, "run", run.kept) for run in outcome.runs if run.kept]
     text = "left out of the measured curves, because its checks failed; its own numbers are shown"
-    return {"severity": "note", "run": run.name, "where": "curves", "message": text}
+    findings += [
+        Notice("note", run.name, "curves", text)
+        for run in outcome.runs
+        if run.quality in ("fail", "error")
+    ]
+    for where, part in (
+        *((f"surface {one.outcome.name}", one.outcome) for one in surfaces),
+        *((f"model {one.outcome.name.removeprefix('model_')}", one.outcome) for one in models),
+    ):
+        findings += [Notice(f.severity, "", where, f.message) for f in part.findings]
+    return findings
 
 
-def _error(run: str, where: str, error: BaseException) -> dict[str, str]:
-    return {"severity": "error", "run": run, "where": where, "message": explain(error)[0]}
-
-
-class _RunFigures:
-    """The figures and numbers of the runs, in work."""
-
-    def __init__(self, outcome: Outcome, executor: Executor | None) -> None:
-        done = [run for run in outcome.runs if run.done]
-        points, fine_size = trace_size(len(done))
-        tasks = [RunTask(run, Path(outcome.folder), points, fine_size) for run in done]
-        self.names = [run.name for run in done]
-        self.work = completed(executor, summarise_run, tasks)
-
-    def collect(self, tell: Progress, findings: list[dict[str, str]]) -> dict[str, RunSummary]:
-        """Wait for them; those that cannot be shown are findings."""
-        found: dict[str, RunSummary] = {}
-        for number, (task, future) in enumerate(self.work):
-            error = future.exception()
-            if error is None:
-                found[task.run.name] = future.result()
-            else:  # recorded: the other runs have their place in the report
-                findings.append(_error(task.run.name, "report", error))
-            tell("figures", number + 1, len(self.names))
-        return {name: found[name] for name in self.names if name in found}
+def _failure(run: RunOutcome) -> Notice:
+    return Notice("fail", run.name, "run", run.reason or run.error or "no reason was given")
 
 
 def _curves(
-    outcome: Outcome, summaries: dict[str, RunSummary], findings: list[dict[str, str]]
-) -> tuple[list[dict[str, Any]], list[pd.DataFrame]]:
-    records, points = [], []
-
-    def missing(curve: CurveOutcome, reason: str) -> None:
-        known = [summaries[name].facts["quantity"] for name in curve.run_names if name in summaries]
+    curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
+) -> tuple[list[CurveRecord], list[Notice]]:
+    """Return the curves that can be shown, and why the others cannot."""
+    shown, missing = [], []
+    for curve in curves:
+        outcome, reason = curve.outcome, curve.outcome.reason
+        if outcome.done:
+            if any(row["friction_coefficient"] is not None for row in curve.points):
+                shown.append(curve)
+                continue
+            reason = "no segment has both a speed and a friction coefficient"
         # without a recorded load there is no friction coefficient, so nothing is amiss
+        known = [quantities.get(name) for name in outcome.run_names]
         severity = "suspect" if "friction_coefficient" in known else "note"
-        severity = "error" if curve.crash else severity
-        text, members = f"no measured curve: {reason}", "; ".join(curve.run_names)
-        findings.append(
-            {"severity": severity, "run": members, "where": curve.name, "message": text}
-        )
-
-    for curve in outcome.curves:
-        if not curve.done:
-            missing(curve, curve.reason)
-            continue
-        try:
-            record, table = curve_record(Path(outcome.folder), curve)
-        except Exception as error:  # recorded, as above
-            findings.append(_error("; ".join(curve.run_names), curve.name, error))
-            continue
-        if not table["friction_coefficient"].notna().any():
-            missing(curve, "no segment has both a speed and a friction coefficient")
-            continue
-        records.append(record)
-        points.append(tables.labelled(table, "curve", curve.name, labels(curve)))
-    return records, points
+        severity = "error" if outcome.crash else severity
+        members = "; ".join(outcome.run_names)
+        missing.append(Notice(severity, members, outcome.name, f"no measured curve: {reason}"))
+    return shown, missing
 
 
-def _sliding(
+def _modes(
     outcome: Outcome,
-    readable: set[str],
-    rows: dict[str, SurfaceRows],
-    findings: list[dict[str, str]],
-) -> tuple[list[dict[str, Any]], list[SlipFigure], list[pd.DataFrame]]:
-    """Return the sliding modes, their figures and the rows of the table on stick-slip."""
-    found: list[sliding.CurveSlip] = []
-    for curve in outcome.curves:
-        if curve.name not in readable:
-            continue
-        try:
-            found.append(sliding.read_slip(outcome, curve))
-        except Exception as error:  # recorded, as above
-            findings.append(_error("; ".join(curve.run_names), f"stick-slip {curve.name}", error))
-    if not found:
-        return [], [], []
-    table = sliding.sliding_tables(found, outcome)
-    try:
-        modes = sliding.judge_modes(found, outcome, rows)
-        records = [sliding.mode_record(one, modes[one.outcome.name]) for one in found]
-        return records, plan_sliding_figures(found, outcome), table
-    except Exception as error:  # recorded, as above
-        findings.append(_error("", "sliding mode", error))
-        return [], [], table
+    curves: Sequence[CurveRecord],
+    surfaces: Sequence[SurfaceRecord],
+    models: Sequence[ModelRecord],
+    executor: Executor | None,
+) -> tuple[dict[str, ModeRecord], list[Notice]]:
+    """Judge how the contacts slide; what could not be judged is a finding."""
+    stage = Modes(outcome.campaign, curves, surfaces, models, outcome.store)
+    answers = perform(stage, executor, lambda *_: None)
+    modes, findings = {}, []
+    for task, answer in zip(stage.plan(), answers, strict=True):
+        if isinstance(answer, ModeRecord):
+            modes[task.curve.name] = answer
+        else:
+            members = "; ".join(task.curve.run_names)
+            where = f"stick-slip {task.curve.name}"
+            findings.append(Notice("error", members, where, answer))
+    return modes, findings
 
 
-class _Figures:
-    """Figures of several kinds in one queue, in work."""
+def _figure(record: FigureRecord) -> dict[str, str]:
+    names = ("file", "data", "caption", "alt", "kind")
+    return {name: getattr(record, name) for name in names}
 
-    def __init__(
-        self,
-        planned: Mapping[str, tuple[Callable[[Any], dict[str, str]], Sequence[Any]]],
-        executor: Executor | None,
-    ) -> None:
-        self.tasks = {kind: tasks for kind, (_, tasks) in planned.items()}
-        queue = [(draw, task) for draw, tasks in planned.values() for task in tasks]
-        self.count = len(queue)
-        self.work = completed(executor, _draw, queue)
 
-    def collect(
-        self, tell: Progress, findings: list[dict[str, str]]
-    ) -> dict[str, list[dict[str, str]]]:
-        """Wait for them and return the records of each kind.
+def _curve(curve: CurveRecord) -> dict[str, Any]:
+    """Return a curve for report.json."""
+    outcome = curve.outcome
+    facts = {"runs": list(outcome.run_names), "points": list(curve.points)}
+    return {"name": outcome.name, **labels(outcome), **facts}
 
-        Those that cannot be drawn are findings.
-        """
-        drawn: dict[str, dict[str, str]] = {}
-        for number, ((_, task), future) in enumerate(self.work):
-            error = future.exception()
-            if error is None:
-                drawn[task.file] = future.result()
-            else:  # recorded, as above
-                findings.append(_error("", f"figure {task.title}", error))
-            tell("other figures", number + 1, self.count)
-        return {
-            kind: [drawn[task.file] for task in tasks if task.file in drawn]
-            for kind, tasks in self.tasks.items()
+
+def _mode(mode: ModeRecord, curve: CurveRecord) -> dict[str, Any]:
+    """Return the sliding mode of a curve for report.json."""
+    return plain_value(
+        {
+            "curve": mode.curve,
+            "condition": mode.condition,
+            **labels(curve.outcome),
+            "verdict": mode.verdict,
+            "text": mode.text,
+            "paragraph": mode.paragraph,
+            "evidence": [
+                {"side": piece.side, "text": piece.text, "topic": piece.topic}
+                for piece in mode.evidence
+            ],
+            "decide": list(mode.decide),
+            "numbers": mode.numbers,
+            "segments": mode.segments,
+            "segments_oscillating": mode.segments_oscillating,
+            "scaling": mode.scaling,
+            "scaling_exponent": mode.scaling_exponent,
+            "scaling_error": mode.scaling_error,
+            "speeds": list(mode.speeds),
         }
-
-
-def _draw(job: tuple[Callable[[Any], dict[str, str]], Any]) -> dict[str, str]:
-    draw, task = job
-    return draw(task)
+    )
 
 
 def _write_tables(
     outcome: Outcome,
-    summaries: dict[str, RunSummary],
-    points: list[pd.DataFrame],
-    findings: pd.DataFrame,
+    curves: Sequence[CurveRecord],
+    surfaces: Sequence[SurfaceRecord],
+    models: Mapping[str, model_records.ModelRow],
+    findings: Sequence[Notice],
 ) -> None:
     folder = Path(outcome.folder) / "tables"
-    rows = [
-        tables.labelled(summaries[run.name].table, "run", run.name, labels(run))
-        for run in outcome.runs
-        if run.name in summaries
-    ]
-    friction = ["run", *tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient"]
-    tables.write(tables.together(rows, friction), folder / "friction.csv")
-    stribeck = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
-    tables.write(tables.together(points, stribeck), folder / "stribeck.csv")
-    sources = pd.DataFrame(list(outcome.sources), columns=["file", "sha256", "bytes"])
-    tables.write(sources, folder / "sources.csv")
-    tables.write(findings, folder / "findings.csv")
-    checks = {name: one.facts["checks"] for name, one in summaries.items()}
-    tables.write(tables.checks_table(checks), folder / "checks.csv")
+    store = outcome.store
+    in_curves = {name for curve in curves for name in curve.outcome.run_names}
+
+    def records() -> Iterator[RunRecord]:
+        return (entry.record for entry in store.all("run", RunRecord))
+
+    def labelled(what: str, name: str, part: Any, rows: Iterable[Row]) -> Iterator[Row]:
+        front: Row = {what: name} | labels(part)
+        return (front | row for row in rows)
+
+    def friction() -> Iterator[Row]:
+        for record in records():
+            run = record.outcome
+            yield from labelled("run", run.name, run, record.facts.segments)
+
+    def stick_slip() -> Iterator[Row]:
+        for record in records():
+            run = record.outcome
+            if run.name in in_curves:
+                yield from labelled("run", run.name, run, record.slip)
+
+    def stribeck() -> Iterator[Row]:
+        for curve in curves:
+            yield from labelled("curve", curve.outcome.name, curve.outcome, curve.points)
+
+    def checks() -> Iterator[Row]:
+        for record in records():
+            for row in record.facts.checks:
+                columns = ("check", "variable", "status", "value", "unit", "message")
+                yield {"run": record.outcome.name} | {k: getattr(row, k) for k in columns}
+
+    first = [*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient"]
+    tables.write_rows(friction, folder / "friction.csv", ["run", *first])
+    tables.write_rows(stick_slip, folder / "stick_slip.csv", ["run", "segment"])
+    first = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
+    tables.write_rows(stribeck, folder / "stribeck.csv", first)
+    first = ["run", "check", "variable", "status", "value", "unit", "message"]
+    tables.write_rows(checks, folder / "checks.csv", first)
+    columns = ["file", "sha256", "bytes"]
+    tables.write(pd.DataFrame(list(outcome.sources), columns=columns), folder / "sources.csv")
+    tables.write(tables.findings_table(findings), folder / "findings.csv")
+    rows = [surface.rows for surface in surfaces if surface.rows is not None]
+    for name, wanted in (("roughness", ROUGHNESS), ("contact", CONTACT), ("adhesion", ADHESION)):
+        tables.write(table(rows, name, wanted), folder / f"{name}.csv")
+    if outcome.models:
+        every = list(models.values())
+        for name, made in (
+            ("shear_stress", model_records.shear_stress_table(every)),
+            ("stribeck_model", model_records.curve_table(every)),
+            ("model_sensitivity", model_records.sensitivity_table(every)),
+        ):
+            tables.write(made, folder / f"{name}.csv")

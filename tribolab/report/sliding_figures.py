@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribolab.friction.oscillation.waveform import oscillating
-from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.sliding import CurveSlip, condition
-from tribolab.report.wording import with_error
+from tribolab.campaign.curves import SLIP
+from tribolab.records.mode_record import ModeRecord, condition
+from tribolab.records.run_record import RunRecord
+from tribolab.records.wording import with_error
+from tribolab.report.figure_files import Drawn
 from tribolab.words import many, number, span, speed_text
 
 if TYPE_CHECKING:
@@ -21,59 +22,89 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.outcome import Outcome
     from tribolab.plot.stick_slip import Trace
+    from tribolab.records.parts import CurveOutcome
 
 _SLOWEST = 2  # speeds of each condition that are stacked
 _MOST_TRACES = 8
 _MOST_SPECTRA = 6
 
 
+class Shown(NamedTuple):
+    """What a figure shows of one condition: its label, a data file, and a segment in it."""
+
+    label: str
+    data_file: str
+    segment: int = -1
+
+
 @dataclass(frozen=True)
 class SlipFigure:
-    """One figure to draw into a results folder; it may travel to another process."""
+    """One figure to draw."""
 
     kind: str
-    file: str
+    name: str
     title: str
     caption: str
-    folder: Path
     surfaces: tuple[str, ...]
-    shown: tuple[Any, ...]
+    shown: tuple[Shown, ...]
+
+    @property
+    def file(self) -> str:
+        """Path of the figure relative to the results folder."""
+        return f"figures/{self.name}.svg"
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Data files that it reads."""
+        return tuple(dict.fromkeys(one.data_file for one in self.shown))
 
 
-def plan_sliding_figures(found: Sequence[CurveSlip], outcome: Outcome) -> list[SlipFigure]:
+def plan_sliding_figures(
+    curves: Sequence[CurveOutcome], modes: Mapping[str, ModeRecord], outcome: Outcome
+) -> list[SlipFigure]:
     """Plan what shows the traces: dry against wet by surface, spectra, events, and the map.
 
     Parameters
     ----------
-    found
-        Curves with the stick-slip of their runs.
+    curves
+        Measured curves.
+    modes
+        How they slide, by the curve's name.
     outcome
         What the campaign came to.
     """
     names = tuple(surface.name for surface in outcome.surfaces)
-    lowest = _lowest(found)
-    planned: list[tuple[str, str, str, str, tuple[Any, ...]]] = []
-    stems = traces_stems(one.outcome.surface for one in lowest)
-    for surface, stem in stems.items():
+    files = {run.name: run.data_file for run in outcome.runs if run.done}
+    lowest = _lowest(curves)
+    slow = {curve.name: _slow_segments(curve, outcome) for curve in lowest}
+    moving = [c for c in curves if c.name in modes and modes[c.name].moves]
+    slow |= {c.name: _slow_segments(c, outcome) for c in moving if c.name not in slow}
+    first = {c.name: files[c.run_names[0]] for c in curves if c.run_names[0] in files}
+    planned: list[tuple[str, str, str, str, list[Shown]]] = []
+    for surface, stem in traces_stems(curve.surface for curve in lowest).items():
         title = f"{surface or 'Runs'}: friction over sliding distance"
         caption = f"{title}. The slowest speeds of each medium, shifted up to be told apart."
-        mine = [one for one in lowest if one.outcome.surface == surface]
-        shown = _stretches(mine, outcome)
-        planned.append(("traces", stem, title, caption, shown))
-    moving = [one for one in found if _moves(one)]
-    shown = _slowest(moving or lowest)
-    planned.append(("spectra", "slip_spectra", "Spectra of friction", _marked(shown), shown))
-    runs = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in lowest)
-    runs = tuple((label, slip) for label, slip in runs if slip.sizes.get("frequency", 0))
-    runs = runs[:_MOST_SPECTRA]
+        shown = [
+            Shown(curve.medium or run, files[run], segment)
+            for curve in lowest
+            if curve.surface == surface
+            for run, segment, _ in slow[curve.name]
+        ]
+        planned.append(("traces", stem, title, caption, shown[:_MOST_TRACES]))
+    spectra = [
+        Shown(f"{speed_text(speed)}, {condition(curve)}", files[run], segment)
+        for curve in (moving or lowest)[:_MOST_SPECTRA]
+        for run, segment, speed in slow[curve.name][:1]
+    ]
+    planned.append(("spectra", "slip_spectra", "Spectra of friction", _SPECTRA, spectra))
+    runs = [Shown(condition(c), first[c.name]) for c in lowest if c.name in first]
     planned.append(("spectrogram", "slip_spectrogram", "Spectrograms", _SPECTROGRAM, runs))
-    events = tuple((condition(one.outcome), next(iter(one.slips.values()))) for one in moving)
-    events = tuple((label, slip) for label, slip in events if slip.sizes.get("event", 0))
+    events = [Shown(condition(c), first[c.name]) for c in moving if c.name in first]
     planned.append(("events", "slip_events", "Events", _EVENTS, events))
-    curves = tuple((condition(o.outcome), o.curve) for o in found if o.curve.sizes["sliding_speed"])
-    planned.append(("map", "slip_map", "Waveform at every speed", _MAP, curves))
+    every = [Shown(condition(curve), curve.data_file) for curve in curves if curve.name in modes]
+    planned.append(("map", "slip_map", "Waveform at every speed", _MAP, every))
     return [
-        SlipFigure(kind, f"figures/{stem}.svg", title, caption, Path(outcome.folder), names, shown)
+        SlipFigure(kind, stem, title, caption, names, tuple(shown))
         for kind, stem, title, caption, shown in planned
         if shown
     ]
@@ -111,92 +142,69 @@ _EVENTS = "Events of one run of each condition, all speeds: share of events belo
 _MAP = "Waveform at every speed. The larger a marker, the larger the mean drop of friction."
 
 
-def _marked(shown: Sequence[tuple[str, xr.Dataset, int]]) -> str:
-    """Return the caption of the spectra, with what is marked in them."""
-    marks = {"dominant": "Blue: the strongest oscillation.", "mains": "Violet: the mains."}
-    drawn = (
-        text
-        for name, text in marks.items()
-        if any(np.isfinite(slip[f"{name}_frequency"][segment]) for _, slip, segment in shown)
-    )
-    return " ".join([_SPECTRA, *drawn])
+def draw_sliding(what: SlipFigure, folder: Path) -> Drawn | None:
+    """Draw one figure on how contacts slide; None where the runs show nothing of it."""
+    drawn = _KINDS[what.kind](what, folder)
+    if drawn is None:
+        return None
+    figure, words, marks = drawn
+    caption = " ".join([what.caption, *marks])
+    return Drawn(figure, caption, f"{what.title}. {words}.", what.kind)
 
 
-def draw_sliding(task: SlipFigure) -> dict[str, str]:
-    """Draw one figure into the results and return its record."""
-    with DRAWING:
-        figure, words = _KINDS[task.kind](task)
-        alt = f"{task.title}. {words}."
-        record = save_figure(figure, task.folder, task.file, task.caption, alt)
-    return record | {"kind": task.kind}
-
-
-def _lowest(found: Sequence[CurveSlip]) -> list[CurveSlip]:
+def _lowest(curves: Sequence[CurveOutcome]) -> list[CurveOutcome]:
     """Curves at the lowest load of their surface and medium."""
-    best: dict[tuple[str, str], CurveSlip] = {}
-    for one in found:
-        key = one.outcome.surface, one.outcome.medium
-        force = one.outcome.normal_force or 0.0
-        if key not in best or force < (best[key].outcome.normal_force or 0.0):
-            best[key] = one
+    best: dict[tuple[str, str], CurveOutcome] = {}
+    for curve in curves:
+        key = curve.surface, curve.medium
+        force = curve.normal_force or 0.0
+        if key not in best or force < (best[key].normal_force or 0.0):
+            best[key] = curve
     return list(best.values())
 
 
-def _moves(one: CurveSlip) -> bool:
-    """Whether stick-slip is claimed at any speed; a segment that stands alone is no claim."""
-    return "waveform" in one.curve and bool(oscillating(one.curve["waveform"].values).any())
-
-
-def _slow_segments(one: CurveSlip) -> tuple[str, list[int]]:
-    """Name of the first run, and its forward segments at the slowest speeds."""
-    for name, slip in one.slips.items():
-        speed = slip["sliding_speed"].values
-        forward = np.flatnonzero((slip["direction"].values >= 0) & (speed > 0))
-        slowest = forward[np.argsort(speed[forward], kind="stable")]
-        apart = []
-        for k in slowest:
-            if not apart or speed[k] > 1.2 * speed[apart[-1]]:
-                apart.append(int(k))
+def _slow_segments(curve: CurveOutcome, outcome: Outcome) -> list[tuple[str, int, float]]:
+    """Name of the first run, and its forward segments at the slowest speeds, with these."""
+    for name in curve.run_names:
+        entry = outcome.store.get("run", name, RunRecord)
+        rows = [] if entry is None else entry.record.slip
+        moving = [
+            (float(row["sliding_speed_m_s"] or 0.0), k)
+            for k, row in enumerate(rows)
+            if (row["sliding_speed_m_s"] or 0.0) > 0 and (row.get("direction") or 0) >= 0
+        ]
+        apart: list[tuple[str, int, float]] = []
+        for speed, k in sorted(moving):
+            if not apart or speed > 1.2 * apart[-1][2]:
+                apart.append((name, k, speed))
         if apart:
-            return name, apart[:_SLOWEST]
-    return "", []
+            return apart[:_SLOWEST]
+    return []
 
 
-def _stretches(mine: Sequence[CurveSlip], outcome: Outcome) -> tuple[tuple[str, str, int], ...]:
-    """Medium, data file and segment of what is stacked in one figure."""
-    files = {run.name: run.data_file for run in outcome.runs}
-    stack = []
-    for one in mine:
-        run, segments = _slow_segments(one)
-        stack += [(one.outcome.medium or run, files[run], segment) for segment in segments]
-    return tuple(stack[:_MOST_TRACES])
+Made = tuple["Figure", str, list[str]]
 
 
-def _slowest(found: Sequence[CurveSlip]) -> tuple[tuple[str, xr.Dataset, int], ...]:
-    """Condition with its slowest speed, stick-slip and segment."""
-    chosen = []
-    for one in found[:_MOST_SPECTRA]:
-        run, segments = _slow_segments(one)
-        for segment in segments[:1]:
-            speed = speed_text(float(one.slips[run]["sliding_speed"][segment]))
-            chosen.append((f"{speed}, {condition(one.outcome)}", one.slips[run], segment))
-    return tuple(chosen)
+def _slips(what: SlipFigure, folder: Path, group: str = "stick_slip") -> list[xr.Dataset]:
+    from tribolab.io.netcdf import read_netcdf
+
+    return [read_netcdf(folder / one.data_file, group=group) for one in what.shown]
 
 
-def _traces(task: SlipFigure) -> tuple[Figure, str]:
+def _traces(what: SlipFigure, folder: Path) -> Made:
     from tribolab import plot
     from tribolab.io.netcdf import read_groups
 
     stack: list[Trace] = []
     parts: dict[str, list[xr.Dataset]] = {}
-    surface = task.title.partition(":")[0]
-    for medium, file, segment in task.shown:
+    surface = what.title.partition(":")[0]
+    for medium, file, segment in what.shown:
         if file not in parts:
-            groups = read_groups(task.folder / file, ("run", "segments", "friction"))
+            groups = read_groups(folder / file, ("run", "segments", "friction"))
             parts[file] = list(groups.values())
         speed = speed_text(float(parts[file][1]["sliding_speed"][segment]))
         stack.append(plot.Trace(f"{speed}, {medium}", *parts[file], segment, surface))
-    return plot.slip_traces(stack, task.surfaces), "; ".join(_in_words(trace) for trace in stack)
+    return plot.slip_traces(stack, what.surfaces), "; ".join(map(_in_words, stack)), []
 
 
 def _in_words(trace: Trace) -> str:
@@ -209,41 +217,63 @@ def _in_words(trace: Trace) -> str:
     return trace.label
 
 
-def _spectra(task: SlipFigure) -> tuple[Figure, str]:
+def _spectra(what: SlipFigure, folder: Path) -> Made:
     from tribolab import plot
 
-    figure = plot.slip_spectra({label: (slip, segment) for label, slip, segment in task.shown})
-    said = [f"{label}: {_strongest(slip, segment)}" for label, slip, segment in task.shown]
-    return figure, "; ".join(said)
+    shown = [(one, slip) for one, slip in zip(what.shown, _slips(what, folder), strict=True)]
+    figure = plot.slip_spectra({one.label: (slip, one.segment) for one, slip in shown})
+    said = [f"{one.label}: {_strongest(slip, one.segment)}" for one, slip in shown]
+    marks = {"dominant": "Blue: the strongest oscillation.", "mains": "Violet: the mains."}
+    drawn = [
+        text
+        for name, text in marks.items()
+        if any(np.isfinite(slip[f"{name}_frequency"][one.segment]) for one, slip in shown)
+    ]
+    return figure, "; ".join(said), drawn
 
 
-def _spectrogram(task: SlipFigure) -> tuple[Figure, str]:
+def _with(what: SlipFigure, slips: Sequence[xr.Dataset], dim: str) -> dict[str, xr.Dataset]:
+    """Return what has something along a dimension, by its label."""
+    pairs = zip(what.shown, slips, strict=True)
+    return {one.label: slip for one, slip in pairs if slip.sizes.get(dim, 0)}
+
+
+def _spectrogram(what: SlipFigure, folder: Path) -> Made | None:
     from tribolab import plot
 
+    shown = dict(list(_with(what, _slips(what, folder), "frequency").items())[:_MOST_SPECTRA])
+    if not shown:
+        return None
     said = []
-    for label, slip in task.shown:
+    for label, slip in shown.items():
         count = int(np.isfinite(slip["dominant_frequency"].values).sum())
         where = f"in {count} of {many(slip.sizes['segment'], 'segment')} an oscillation stands out"
         said.append(f"{label}: {where if count else 'no oscillation stands out'}")
-    return plot.slip_spectrogram(dict(task.shown)), "; ".join(said)
+    return plot.slip_spectrogram(shown), "; ".join(said), []
 
 
-def _events(task: SlipFigure) -> tuple[Figure, str]:
+def _events(what: SlipFigure, folder: Path) -> Made | None:
     from tribolab import plot
 
+    shown = _with(what, _slips(what, folder), "event")
+    if not shown:
+        return None
     said = [
         f"{label}: {many(slip.sizes['event'], 'event')}, "
         f"drops of µ from {span(slip['event_drop'].values)}"
-        for label, slip in task.shown
+        for label, slip in shown.items()
     ]
-    return plot.slip_events(dict(task.shown)), "; ".join(said)
+    return plot.slip_events(shown), "; ".join(said), []
 
 
-def _map(task: SlipFigure) -> tuple[Figure, str]:
+def _map(what: SlipFigure, folder: Path) -> Made | None:
     from tribolab import plot
 
-    said = [f"{label}: {_modes(curve)}" for label, curve in task.shown]
-    return plot.waveform_map(dict(reversed(task.shown))), "; ".join(said)
+    shown = _with(what, _slips(what, folder, SLIP), "sliding_speed")
+    if not shown:
+        return None
+    said = [f"{label}: {_modes(curve)}" for label, curve in shown.items()]
+    return plot.waveform_map(dict(reversed(shown.items()))), "; ".join(said), []
 
 
 def _strongest(slip: xr.Dataset, segment: int) -> str:
@@ -261,7 +291,7 @@ def _modes(curve: xr.Dataset) -> str:
     return ", ".join(said) + " of the speeds"
 
 
-_KINDS = {
+_KINDS: dict[str, Callable[[SlipFigure, Path], Made | None]] = {
     "traces": _traces,
     "spectra": _spectra,
     "spectrogram": _spectrogram,

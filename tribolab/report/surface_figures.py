@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.report.figure_files import DRAWING, save_figure
+from tribolab.report.figure_files import Drawn
 from tribolab.words import force_text, many
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from tribolab.campaign.outcome import SurfaceOutcome
+    from tribolab.records.parts import SurfaceOutcome
 
 _MOST_IN_ONE = 9  # surfaces that can be told apart in one figure
 
@@ -26,9 +26,13 @@ class SurfaceFigure:
     """A figure to draw: its kind, the data files of the surfaces, where it goes."""
 
     kind: str
-    files: tuple[tuple[str, str], ...]  # name and data file of each surface that has the data
+    shown: tuple[tuple[str, str], ...]  # name and data file of each surface that has the data
     surfaces: tuple[str, ...]
-    folder: Path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Data files that it reads."""
+        return tuple(file for _, file in self.shown)
 
     @property
     def file(self) -> str:
@@ -46,10 +50,10 @@ class _Kind:
     group: str
     title: str
     caption: str
-    draw: Callable[[SurfaceFigure, dict[str, xr.Dataset]], Figure]
+    draw: Callable[[_Opened, dict[str, xr.Dataset]], Figure]
 
 
-def plan_surface_figures(surfaces: Sequence[SurfaceOutcome], folder: Path) -> list[SurfaceFigure]:
+def plan_surface_figures(surfaces: Sequence[SurfaceOutcome]) -> list[SurfaceFigure]:
     """Choose the figures for which at least one surface has data."""
     done = [surface for surface in surfaces if surface.done]
     names = tuple(map(_label, surfaces))
@@ -59,7 +63,7 @@ def plan_surface_figures(surfaces: Sequence[SurfaceOutcome], folder: Path) -> li
         if kind == "modulus":
             mine = mine[:1]  # one rubber
         if mine:
-            planned.append(SurfaceFigure(kind, tuple(mine), names, folder))
+            planned.append(SurfaceFigure(kind, tuple(mine), names))
     return planned
 
 
@@ -68,30 +72,40 @@ def _label(surface: SurfaceOutcome) -> str:
     return surface.name + (" (bad scans)" if surface.quality in ("fail", "error") else "")
 
 
-def draw_surfaces(task: SurfaceFigure) -> dict[str, str]:
-    """Draw one figure into the results and return its record."""
-    kind = _KINDS[task.kind]
-    with DRAWING:
-        data = _read(task, kind.group)
-        note = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
-        caption = f"{kind.title}. {note}".strip()
-        alt = f"{kind.title} of {many(len(data), 'surface')} ({', '.join(data)}). {note}".strip()
-        figure = kind.draw(task, data)
-        return save_figure(figure, task.folder, task.file, caption, alt) | {"kind": task.kind}
+def draw_surfaces(what: SurfaceFigure, folder: Path) -> Drawn:
+    """Draw one figure of surfaces."""
+    kind = _KINDS[what.kind]
+    task = _Opened(what, folder)
+    data = _read(task, kind.group)
+    note = kind.caption.format(load=_lowest(data), modulus=_modulus(data))
+    caption = f"{kind.title}. {note}".strip()
+    alt = f"{kind.title} of {many(len(data), 'surface')} ({', '.join(data)}). {note}".strip()
+    return Drawn(kind.draw(task, data), caption, alt, what.kind)
 
 
-def _read(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:
+class _Opened(NamedTuple):
+    """A figure and the folder with its data files."""
+
+    figure: SurfaceFigure
+    folder: Path
+
+    @property
+    def surfaces(self) -> tuple[str, ...]:
+        return self.figure.surfaces
+
+
+def _read(task: _Opened, group: str) -> dict[str, xr.Dataset]:
     from tribolab.io.netcdf import read_netcdf
 
-    return {name: read_netcdf(task.folder / file, group=group) for name, file in task.files}
+    return {name: read_netcdf(task.folder / file, group=group) for name, file in task.figure.shown}
 
 
-def _optional(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:
+def _optional(task: _Opened, group: str) -> dict[str, xr.Dataset]:
     from tribolab.errors import ReadError
     from tribolab.io.netcdf import read_netcdf
 
     found = {}
-    for name, file in task.files:
+    for name, file in task.figure.shown:
         try:
             found[name] = read_netcdf(task.folder / file, group=group)
         except ReadError:  # the campaign knows too little for it; its findings say so
@@ -99,7 +113,7 @@ def _optional(task: SurfaceFigure, group: str) -> dict[str, xr.Dataset]:
     return found
 
 
-def _loads(task: SurfaceFigure) -> xr.Dataset | None:
+def _loads(task: _Opened) -> xr.Dataset | None:
     """Return the loads of the surface that has most of them: its Hertz pressures are marked."""
     found = _optional(task, "loads").values()
     return max(found, key=lambda loads: loads.sizes["load"], default=None)
@@ -133,28 +147,28 @@ def _plot() -> Any:
     return plot
 
 
-def _spectra(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _spectra(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().spectra(data, surfaces=task.surfaces)
 
 
-def _area(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _area(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().contact_area(data, _loads(task), surfaces=task.surfaces)
 
 
-def _adhesive_area(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _adhesive_area(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     without = _optional(task, "contact")
     return _plot().adhesive_area(without, data, _loads(task), surfaces=task.surfaces)
 
 
-def _effective_work(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _effective_work(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().effective_work(_at_lowest(_with_loads(data)), surfaces=task.surfaces)
 
 
-def _gaps(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _gaps(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().gaps(_at_lowest(data), surfaces=task.surfaces)
 
 
-def _lines(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _lines(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     """Rough profiles, and Hertz at the load of the first of them."""
     loads = _optional(task, "loads")
     hertz = None
@@ -166,11 +180,11 @@ def _lines(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().line_pressure(_at_lowest(data), hertz, surfaces=task.surfaces)
 
 
-def _modulus_figure(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _modulus_figure(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().modulus(next(iter(data.values())))
 
 
-def _viscoelastic(task: SurfaceFigure, data: dict[str, xr.Dataset]) -> Figure:
+def _viscoelastic(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     return _plot().viscoelastic(_at_lowest(data), surfaces=task.surfaces)
 
 

@@ -3,88 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
 
-from tribolab.campaign.surface_work import SCANS
-from tribolab.plot.labels import column
-from tribolab.report.wording import plain_value, validity_of
+from tribolab.records.surface_rows import SurfaceRows
 
 if TYPE_CHECKING:
-    import xarray as xr
-
-    from tribolab.campaign.outcome import SurfaceOutcome
-
-_BAND = ("", "_low", "_high")
-ROUGHNESS = [
-    "scans",
-    *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
-    *(f"rms_roughness{end}_m" for end in _BAND),
-    *(f"rms_slope{end}" for end in _BAND),
-    *("measured_rms_roughness_m", "measured_rms_slope"),
-    *("hurst_exponent", "hurst_exponent_standard_error", "rolloff_wavenumber_1_m"),
-    *("wavenumber_low_1_m", "measured_low_1_m", "measured_high_1_m", "wavenumber_high_1_m"),
-    *("form_radius_m", "tip_radius_m", "lambda_c_m"),
-]
-CONTACT = [
-    *("normal_force_N", "load_N_m", "pressure_Pa", "hertz_max_pressure_Pa", "hertz_width_m"),
-    *(f"contact_area_ratio{end}" for end in _BAND),
-    *("separation_m", "rough_max_pressure_Pa", "rough_contact_width_m"),
-    *("rough_central_separation_m", "viscoelastic_friction_1_um_s", "viscoelastic_friction_1_mm_s"),
-]
-ADHESION = [
-    "medium",
-    *(f"work_of_adhesion{end}_J_m2" for end in _BAND),
-    *(f"macroscopic_work_of_adhesion{end}_J_m2" for end in _BAND),
-    "pull_off",
-    *("normal_force_N", "load_N_m", "pressure_Pa", "contact_area_ratio_no_adhesion"),
-    *(f"contact_area_ratio{end}" for end in _BAND),
-    *(f"area_enhancement{end}" for end in _BAND),
-    *("hertz_width_m", "jkr_width_m"),
-]
-
-
-@dataclass(frozen=True)
-class SurfaceRows:
-    """Rows of one surface: of roughness one, of contact one per load, of adhesion per medium too.
-
-    Keys are the tables' columns, with their unit in the name; None where it is not known.
-    """
-
-    name: str
-    roughness: dict[str, Any]
-    contact: list[dict[str, Any]]
-    adhesion: list[dict[str, Any]]
-    modulus: str
-    quality: str = ""
-    validity: str = ""
-
-
-def surface_rows(surface: SurfaceOutcome, folder: Path) -> SurfaceRows:
-    """Read the rows of a surface that is done from its data file.
-
-    Raises
-    ------
-    TribolabError
-        If the file or one of its groups cannot be read.
-    """
-    from tribolab.io.netcdf import read_groups
-
-    path = folder / surface.data_file
-    groups = read_groups(path, [part for part in surface.parts if part != SCANS])
-    return SurfaceRows(
-        surface.name,
-        plain_value(_roughness(groups["roughness"], groups["psd"])),
-        plain_value(_contact(groups)),
-        plain_value(_adhesion(groups)),
-        str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
-        surface.quality,
-        validity_of(groups.values()),
-    )
+    from tribolab.records.parts import SurfaceOutcome
 
 
 def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.DataFrame:
@@ -92,7 +18,11 @@ def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.
     parts = [
         {"surface": one.name, "quality": one.quality} | row
         for one in rows
-        for row in ([one.roughness] if name == "roughness" else getattr(one, name))
+        for row in (
+            [one.roughness]
+            if name == "roughness"
+            else (one.contact if name == "contact" else one.adhesion)
+        )
     ]
     return pd.DataFrame(parts, columns=["surface", "quality", *columns])
 
@@ -112,73 +42,8 @@ def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[st
         "kept": surface.kept,
         "seconds": surface.seconds,
         "roughness": rows.roughness if rows else None,
-        "contact": rows.contact if rows else [],
-        "adhesion": rows.adhesion if rows else [],
+        "contact": list(rows.contact) if rows else [],
+        "adhesion": list(rows.adhesion) if rows else [],
         "modulus": rows.modulus if rows else "",
         "validity": rows.validity if rows else "",
     }
-
-
-def _roughness(found: xr.Dataset, psd: xr.Dataset) -> dict[str, Any]:
-    rough = dict.fromkeys(ROUGHNESS)
-    for name in ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq"):
-        rough[column(name)] = float(found[name].mean())
-    for name in ("rms_roughness", "rms_slope"):
-        for end in _BAND:
-            if name + end in found:
-                rough[column(name + end)] = float(found[name + end])
-    attrs = psd.attrs | found.attrs
-    rough |= {key: attrs[key] for key in ROUGHNESS if key in attrs}
-    q = psd.wavenumber.values
-    rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
-    return rough
-
-
-def _contact(groups: dict[str, xr.Dataset]) -> list[dict[str, Any]]:
-    """One row per load; without loads one per pressure."""
-    if "contact" not in groups:
-        return []
-    if "loads" not in groups:
-        return [dict.fromkeys(CONTACT) | row for row in _rows(groups["contact"], "pressure")]
-    renamed = {"max_pressure_Pa": "hertz_max_pressure_Pa", "contact_width_m": "hertz_width_m"}
-    result = [
-        dict.fromkeys(CONTACT) | {renamed.get(key, key): value for key, value in row.items()}
-        for row in _rows(groups["loads"], "load")
-    ]
-    if "line" in groups:
-        for row, line in zip(result, _rows(groups["line"], "load"), strict=True):
-            for key in ("max_pressure_Pa", "contact_width_m", "central_separation_m"):
-                row[f"rough_{key}"] = line[key]
-    if "rubber" in groups:
-        speed = groups["rubber"].sliding_speed.values
-        for end, at in (("1_um_s", 1e-6), ("1_mm_s", 1e-3)):
-            mu = groups["rubber"].friction_coefficient.values[:, np.argmin(abs(speed / at - 1))]
-            for row, value in zip(result, mu, strict=True):
-                row[f"viscoelastic_friction_{end}"] = float(value)
-    return result
-
-
-def _adhesion(groups: dict[str, xr.Dataset]) -> list[dict[str, Any]]:
-    if "adhesion_loads" not in groups:
-        return []
-    found, result = groups["adhesion_loads"], []
-    widths = groups["loads"].contact_width.values if "loads" in groups else []
-    for medium in found.medium.values.tolist():
-        mine = found.sel(medium=medium)
-        whole = {"medium": medium} | {
-            column(str(name)): mine[name].item() for name in mine.data_vars if not mine[name].dims
-        }
-        rows = _rows(mine.drop_vars("magnification"), "load") or [{}]
-        for number, row in enumerate(rows):
-            width = {"jkr_width_m": row.pop("contact_width_m", None)}
-            if len(widths):
-                width["hertz_width_m"] = float(widths[number])
-            result.append(dict.fromkeys(ADHESION) | whole | row | width)
-    return result
-
-
-def _rows(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
-    """Return the variables over one dimension, a row per entry, named as the tables' columns."""
-    names = [str(name) for name in data.variables if data[name].dims == (dim,)]
-    values = {column(name): data[name].values.tolist() for name in names}
-    return [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]

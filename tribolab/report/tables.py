@@ -2,133 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, Any
 
-import numpy as np
 import pandas as pd
+import pyarrow as pa
+from pyarrow import parquet
 
 from tribolab.errors import ReadError, brief
-from tribolab.friction.coefficient.steadiness import WORDS
-from tribolab.plot.labels import column
+from tribolab.records.parts import Notice, Row
 
-if TYPE_CHECKING:
-    import xarray as xr
-
+_CHUNK = 20_000  # rows that are in memory at once
+_ARROW = {
+    "float64": pa.float64(),
+    "int64": pa.int64(),
+    "bool": pa.bool_(),
+    "object": pa.string(),
+}
 SEVERITIES = ("fail", "error", "suspect", "note")
 
-_FRICTION_FIRST = [
-    "sliding_speed",
-    "direction",
-    "friction_coefficient",
-    "friction_coefficient_std",
-    "friction_coefficient_sem",
-    "effective_samples",
-    "friction_force",
-    "friction_force_std",
-    "friction_force_sem",
-    "normal_force",
-    "normal_force_std",
-    "half_loop",
-    "pair",
-    "start",
-    "stop",
-    "trimmed_start",
-    "trimmed_stop",
-    "sliding_distance",
-    "samples",
-]
-_CURVE = [
-    "sliding_speed",
-    "friction_coefficient",
-    "friction_coefficient_std",
-    "friction_coefficient_sem",
-    "friction_coefficient_within",
-    "friction_coefficient_between",
-    "runs",
-    "segments",
-]
 LABELS = ["surface", "medium", "nominal_normal_force_N"]
 
 
-def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the variables over one dimension as a table.
-
-    Parameters
-    ----------
-    data
-        Any result of this package.
-    dim
-        The dimension whose entries become rows.
-    first
-        Variables that stand first, in this order; the others follow as in the dataset.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns are called as the variables with their unit; text stays text.
-    """
-    names = [str(n) for n in data.variables if data[n].dims == (dim,)]
-    ordered = [n for n in first if n in names] + [n for n in names if n not in first]
-    columns = {}
-    for name in ordered:
-        values = np.asarray(data[name])
-        columns[name if values.dtype.kind in "OUS" else column(name)] = values
-    return pd.DataFrame(columns)
-
-
-def friction_table(friction: xr.Dataset) -> pd.DataFrame:
-    """Return a run's friction result as a table, a row per segment, numbered from 1."""
-    table = frame(friction, "segment", _FRICTION_FIRST)
-    number = np.arange(1, friction.sizes["segment"] + 1)
-    table = table.drop(columns="segment", errors="ignore")
-    if "steady" in table:
-        table["steady"] = table["steady"].map(WORDS)
-    table.insert(0, "segment", number)
-    return table
-
-
-def curve_table(curve: xr.Dataset) -> pd.DataFrame:
-    """Return a measured curve as a table, a row per sliding speed."""
-    return frame(curve, "sliding_speed", _CURVE)
-
-
-def labelled(table: pd.DataFrame, what: str, name: str, labels: dict[str, Any]) -> pd.DataFrame:
-    """Put the name and the labels (surface, medium, nominal load) before a table's columns."""
-    front = {what: name} | {key: labels.get(key) for key in LABELS}
-    return pd.concat(
-        [pd.DataFrame({key: [value] * len(table) for key, value in front.items()}), table], axis=1
-    )
-
-
-def together(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
-    """Stack tables whose columns may differ; without any, an empty table with these columns."""
-    filled = [table for table in tables if len(table)]
-    if not filled:
-        return pd.DataFrame(columns=list(columns))
-    rows = [row for table in filled for row in table.to_dict("records")]
-    return pd.DataFrame(rows)
-
-
-def findings_table(findings: Sequence[dict[str, str]]) -> pd.DataFrame:
+def findings_table(findings: Iterable[Notice]) -> pd.DataFrame:
     """Return the findings, the gravest first, otherwise in their order."""
-    table = pd.DataFrame(list(findings), columns=["severity", "run", "where", "message"])
-    rank = table["severity"].map(SEVERITIES.index) if len(table) else None
-    return table if rank is None else table.iloc[np.argsort(rank, kind="stable")]
-
-
-def checks_table(checks: Mapping[str, Sequence[Mapping[str, Any]]]) -> pd.DataFrame:
-    """Return every check of every run, also those that passed or were skipped.
-
-    Parameters
-    ----------
-    checks
-        By the run's name, as in report.json.
-    """
-    columns = ["check", "variable", "status", "value", "unit", "message"]
-    rows = [{"run": run} | dict(row) for run, mine in checks.items() for row in mine]
-    return pd.DataFrame(rows, columns=["run", *columns])
+    ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
+    return pd.DataFrame(ordered, columns=list(Notice._fields))
 
 
 # What a spreadsheet takes for a formula at the beginning of a cell; and our own sign, so that
@@ -161,14 +63,84 @@ def as_it_was(cell: Any) -> Any:
     return cell[1:] if isinstance(cell, str) and cell.startswith(_SIGN) else cell
 
 
-def write(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
+def write(table: pd.DataFrame, path: Path) -> None:
+    """Write a table as CSV, and as Parquet beside it."""
+    write_csv(table, path)
+    rows = table.astype({name: "float64" for name in table if table[name].isna().all()})
+    rows.to_parquet(path.with_suffix(".parquet"), index=False)
+
+
+def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
     """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
 
     Text that a spreadsheet would compute is made `harmless`; `read` gives it back.
     """
-    safe = _mapped(table, harmless)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        _append(table, file, header=True, digits=digits)
+
+
+def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[str]) -> None:
+    """Write a long table, which is never in memory as a whole, as CSV and as Parquet.
+
+    Parameters
+    ----------
+    rows
+        Gives the rows, as often as it is called. Those that lack a column have nothing there.
+    path
+        The CSV file.
+    columns
+        What a table without rows has.
+    """
+    types = _types(rows()) or dict.fromkeys(columns, "object")
+    schema = pa.schema([(name, _ARROW[dtype]) for name, dtype in types.items()])
+    with (
+        path.open("w", encoding="utf-8", newline="") as file,
+        parquet.ParquetWriter(path.with_suffix(".parquet"), schema) as columnar,
+    ):
+        _append(pd.DataFrame(columns=list(types)), file, header=True)
+        for part in _batches(rows(), _CHUNK):
+            table = pd.DataFrame.from_records(part, columns=list(types)).astype(types)
+            _append(table, file)
+            columnar.write_table(pa.Table.from_pandas(table, schema, preserve_index=False))
+
+
+def _types(rows: Iterable[Row]) -> dict[str, str]:
+    """Return the type of each column, in the order in which they appear."""
+    kinds: dict[str, set[type]] = {}
+    seen: Counter[str] = Counter()
+    count = 0
+    for row in rows:
+        count += 1
+        for name, value in row.items():
+            kinds.setdefault(name, set()).add(type(value))
+            seen[name] += 1
+    return {
+        name: _dtype(kind if seen[name] == count else kind | {type(None)})
+        for name, kind in kinds.items()
+    }
+
+
+def _batches(rows: Iterable[Row], size: int) -> Iterator[list[Row]]:
+    every = iter(rows)
+    while part := list(itertools.islice(every, size)):
+        yield part
+
+
+def _dtype(kinds: set[type]) -> str:
+    known = kinds - {type(None)}
+    if known <= {int}:
+        return "int64" if type(None) not in kinds and known else "float64"
+    if known <= {int, float}:
+        return "float64"
+    return "bool" if kinds == {bool} else "object"
+
+
+def _append(
+    table: pd.DataFrame, file: IO[str], *, header: bool = False, digits: int | None = None
+) -> None:
     float_format = None if digits is None else f"%.{digits}g"
-    safe.to_csv(path, index=False, encoding="utf-8", lineterminator="\n", float_format=float_format)
+    safe = _mapped(table, harmless)
+    safe.to_csv(file, index=False, header=header, lineterminator="\n", float_format=float_format)
 
 
 def read(path: Path) -> pd.DataFrame:

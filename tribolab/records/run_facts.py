@@ -1,96 +1,131 @@
-"""What the report says of one run: its figures and its numbers, made by a worker."""
+"""What is said of one run: its numbers, and what a reader should know of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.errors import AnalysisError, told
 from tribolab.friction.segments.find import why_no_segment
-from tribolab.report.figure_files import DRAWING, save_figure
-from tribolab.report.judgement import SURE, not_decided
-from tribolab.report.tables import friction_table
-from tribolab.report.traces import as_text, finer_trace, flagged_spans, trace
-from tribolab.report.wording import SPREAD_OF, SYMBOLS, UNITS, plain_value
-from tribolab.words import duration, explain, many, percent, span, speeds
+from tribolab.records.frames import friction_table
+from tribolab.records.judgement import SURE, not_decided
+from tribolab.records.parts import Notice, Row
+from tribolab.records.traces import FlaggedSpan, flagged_spans
+from tribolab.records.wording import SPREAD_OF, plain_value
+from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:
-    import pandas as pd
     import xarray as xr
-    from matplotlib.figure import Figure
 
-    from tribolab.campaign.outcome import RunOutcome
 
 _SPEED_TOLERANCE = 0.1
 
 
 @dataclass(frozen=True)
-class RunTask:
-    """A run to describe, the folder of the results, and what its traces may have.
+class Highlight:
+    """Mean friction over the strokes at one speed [m/s], with its scatter and its error."""
 
-    `points` of each signal are shown at once; the finer trace, into which the page zooms, may
-    have `fine_size` characters.
-    """
-
-    run: RunOutcome
-    folder: Path
-    points: int = 4000
-    fine_size: int = 0
-
-    @property
-    def key(self) -> str:
-        """What the run's own files are called."""
-        return Path(self.run.data_file).stem
+    where: str
+    sliding_speed_m_s: float | None
+    value: float | None
+    std: float | None
+    sem: float | None
+    segments: int
 
 
 @dataclass(frozen=True)
-class RunSummary:
-    """What a worker hands back: numbers ready for report.json, the table, the findings."""
+class LeftOut:
+    """What was left out of a run for one reason: how often, how long [s]."""
 
-    name: str
-    facts: dict[str, Any]
-    table: pd.DataFrame
-    findings: tuple[dict[str, str], ...]
-    key: str = ""
-    trace: str = ""  # for the page, as JSON
-    fine: str = ""  # with more points, as JSON
+    reason: str
+    intervals: int
+    duration_s: float | None
 
 
-def summarise_run(task: RunTask) -> RunSummary:
-    """Open a run's data file, draw its figures into the results, and collect its numbers."""
-    from tribolab.io.netcdf import read_groups
+@dataclass(frozen=True)
+class CheckRow:
+    """What one check said of a run."""
 
-    path = task.folder / task.run.data_file
-    with DRAWING:
-        parts = read_groups(path, ("run", "segments", "friction", "stick_slip"))
-        run, segments, friction, slip = parts.values()
-        findings = _findings(task.run.name, run, segments, friction)
-        figures = _figures(task, run, segments, friction, findings)
-        packed, fine = _traces(task, run, segments, friction, findings)
-    table = friction_table(friction)
-    facts = {
+    check: str
+    status: str
+    variable: str
+    message: str
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Waveform:
+    """The class of stick-slip of a run, and where it is seen."""
+
+    class_: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """Numbers of a run, as report.json has them: SI, units in the names, None if not known.
+
+    A run that failed has the defaults.
+    """
+
+    quantity: str | None = None
+    value_min: float | None = None
+    value_max: float | None = None
+    relative_scatter: float | None = None
+    relative_drift: float | None = None
+    unsteady_segments: int = 0
+    stick_slip: Waveform | None = None
+    sliding_speed_min_m_s: float | None = None
+    sliding_speed_max_m_s: float | None = None
+    offset: str = ""
+    trim: float | None = None
+    position_range_m: tuple[float, float] | None = None
+    velocity_source: str = ""
+    instrument: str = ""
+    quality: str = ""
+    checks: tuple[CheckRow, ...] = ()
+    recorded_at: str = ""
+    duration_s: float | None = None
+    samples: int = 0
+    signals: tuple[str, ...] = ()
+    columns_not_used: tuple[str, ...] = ()
+    clock_shift_s: float | None = None
+    clock_shift_uncertainty_s: float | None = None
+    clock_shift_source: str = ""
+    history: str = ""
+    highlights: tuple[Highlight, ...] = ()
+    omitted: tuple[LeftOut, ...] = ()
+    segments: tuple[Row, ...] = ()
+    flagged: tuple[FlaggedSpan, ...] = ()
+
+
+def facts_of(
+    run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, slip: xr.Dataset
+) -> RunFacts:
+    """Return the numbers of a run.
+
+    Parameters
+    ----------
+    run, segments, friction, slip
+        The run with the flags and the findings of its checks (time), and its results (segment).
+    """
+    return RunFacts(
         **_of_record(run),
         **_of_friction(friction),
-        "position_range_m": position_range(segments),
-        "stick_slip": stick_slip_of(slip),
-        "omitted": _omitted(segments),
-        "segments": table.to_dict("records"),
-        "figures": figures,
-        "flagged": flagged_spans(run),
-    }
-    return RunSummary(
-        task.run.name, plain_value(facts), table, tuple(findings), task.key, packed, fine
+        position_range_m=position_range(segments),
+        stick_slip=stick_slip_of(slip),
+        omitted=tuple(_omitted(segments)),
+        segments=tuple(plain_value(friction_table(friction).to_dict("records"))),
+        flagged=tuple(flagged_spans(run)),
     )
 
 
-def position_range(segments: xr.Dataset) -> list[float] | None:
+def position_range(segments: xr.Dataset) -> tuple[float, float] | None:
     """Return the part of the track that counts [m], where the campaign file names one."""
     ends = [segments.attrs.get(f"position_{end}_m") for end in ("low", "high")]
-    return None if None in ends else [float(end) for end in ends]
+    return None if None in ends else (float(ends[0]), float(ends[1]))
 
 
 def main_quantity(friction: xr.Dataset) -> str:
@@ -108,15 +143,15 @@ def _of_record(run: xr.Dataset) -> dict[str, Any]:
     return {
         "instrument": str(attrs.get("instrument", "")),
         "quality": str(attrs.get("quality", "")),
-        "checks": [
-            {key: row[key] for key in ("check", "status", "variable", "message", "value", "unit")}
+        "checks": tuple(
+            CheckRow(**{key: plain_value(row[key]) for key in _CHECK})
             for row in attrs.get("findings", [])
-        ],
+        ),
         "recorded_at": str(attrs.get("recorded_at", "")),
         "duration_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
-        "signals": sorted(str(name) for name in run.data_vars if run[name].dims == ("time",)),
-        "columns_not_used": [c for c in str(attrs.get("columns_not_used", "")).split("; ") if c],
+        "signals": tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
+        "columns_not_used": tuple(filter(None, str(attrs.get("columns_not_used", "")).split("; "))),
         "clock_shift_s": shift.get("clock_shift_s"),
         "clock_shift_uncertainty_s": shift.get("clock_shift_uncertainty_s"),
         "clock_shift_source": str(attrs.get("clock_shift_source", "")),
@@ -125,6 +160,7 @@ def _of_record(run: xr.Dataset) -> dict[str, Any]:
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
+_CHECK = ("check", "status", "variable", "message", "value", "unit")
 
 
 def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
@@ -136,7 +172,7 @@ def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
     scatter = scatter[np.isfinite(scatter)]
-    return {
+    facts = {
         "quantity": name,
         "offset": str(friction.attrs.get("offset", "")),
         "trim": friction.attrs.get("trim"),
@@ -148,11 +184,12 @@ def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
         "relative_scatter": float(np.median(scatter)) if scatter.size else None,
         "relative_drift": _drift(friction, value),
         "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
-        "highlights": _highlights(speed, value, std, _values(friction, f"{of}_sem", value.size)),
     }
+    sem = _values(friction, f"{of}_sem", value.size)
+    return plain_value(facts) | {"highlights": tuple(_highlights(speed, value, std, sem))}
 
 
-def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
+def stick_slip_of(slip: xr.Dataset) -> Waveform:
     """Return the class of waveform of a run and where it is seen, for the table of runs.
 
     Parameters
@@ -168,17 +205,14 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
     kind = (curve if over_speed else slip)["waveform"].values.astype(str)
     kind = kind[kind != NOT_EVALUATED]
     if not kind.size:
-        return {"class": NOT_EVALUATED, "detail": ""}
+        return Waveform(NOT_EVALUATED, "")
     moving = oscillating(kind)
     if not moving.any() and (kind == UNDECIDED).any():
         what = "speed" if over_speed else "segment"
-        return {
-            "class": UNDECIDED,
-            "detail": f"{'at' if over_speed else 'in'} {(kind == UNDECIDED).sum()} of "
-            f"{many(kind.size, what)}",
-        }
+        count = f"{(kind == UNDECIDED).sum()} of {many(kind.size, what)}"
+        return Waveform(UNDECIDED, f"{'at' if over_speed else 'in'} {count}")
     if not moving.any():  # without a speed, standing still may be among the sliding
-        return {"class": STEADY, "detail": "" if over_speed else "if it slides: speed not known"}
+        return Waveform(STEADY, "" if over_speed else "if it slides: speed not known")
     names, counts = np.unique(kind[moving], return_counts=True)
     names = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
     detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
@@ -186,7 +220,7 @@ def stick_slip_of(slip: xr.Dataset) -> dict[str, str]:
         detail = f"in {moving.sum()} of {many(kind.size, 'segment')}"
     if names[1:]:
         detail += f"; also {', '.join(names[1:])}"
-    return {"class": names[0], "detail": detail}
+    return Waveform(names[0], detail)
 
 
 def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:
@@ -217,7 +251,7 @@ def _values(data: xr.Dataset, name: str, size: int) -> np.ndarray:
 
 def _highlights(
     speed: np.ndarray, value: np.ndarray, std: np.ndarray, sem: np.ndarray
-) -> list[dict[str, Any]]:
+) -> list[Highlight]:
     """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
     fine = np.flatnonzero(np.isfinite(value))
     known = fine[np.isfinite(speed[fine]) & (speed[fine] > 0)]
@@ -232,50 +266,51 @@ def _highlights(
         chosen[0] = "slowest"
         groups = [(word, parts[k]) for k, word in sorted(chosen.items())]
     return [
-        {
-            "where": word,
-            "sliding_speed_m_s": float(np.mean(speed[index])),
-            "value": float(np.mean(value[index])),
-            "std": float(np.sqrt(np.mean(std[index] ** 2))),
+        Highlight(
+            where=word,
+            sliding_speed_m_s=plain_value(float(np.mean(speed[index]))),
+            value=plain_value(float(np.mean(value[index]))),
+            std=plain_value(float(np.sqrt(np.mean(std[index] ** 2)))),
             # independent strokes: the error of their mean
-            "sem": float(np.sqrt(np.sum(sem[index] ** 2)) / index.size),
-            "segments": int(index.size),
-        }
+            sem=plain_value(float(np.sqrt(np.sum(sem[index] ** 2)) / index.size)),
+            segments=int(index.size),
+        )
         for word, index in groups
     ]
 
 
-def _omitted(segments: xr.Dataset) -> list[dict[str, Any]]:
+def _omitted(segments: xr.Dataset) -> list[LeftOut]:
     if "omitted_reason" not in segments:
         return []
     reasons = np.asarray(segments["omitted_reason"]).astype(str)
     lengths = np.asarray(segments["omitted_stop"], float) - np.asarray(segments["omitted_start"])
     return [
-        {
-            "reason": reason,
-            "intervals": int((reasons == reason).sum()),
-            "duration_s": float(lengths[reasons == reason].sum()),
-        }
+        LeftOut(
+            reason=reason,
+            intervals=int((reasons == reason).sum()),
+            duration_s=plain_value(float(lengths[reasons == reason].sum())),
+        )
         for reason in dict.fromkeys(reasons.tolist())
     ]
 
 
-def _findings(
+def notices_of(
     name: str, run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset
-) -> list[dict[str, str]]:
-    found: list[dict[str, str]] = [
-        {
-            "severity": "note" if row["status"] in ("pass", "skipped") else row["status"],
-            "run": name,
-            "where": f"{row['check']} {row['variable']}".strip(),
-            "message": f"{row['message']}. {row['cure']}".strip(". ") + ".",
-        }
+) -> list[Notice]:
+    """Return what a reader should know of a run, from its checks and its results."""
+    notices = [
+        Notice(
+            "note" if row["status"] in ("pass", "skipped") else row["status"],
+            name,
+            f"{row['check']} {row['variable']}".strip(),
+            f"{row['message']}. {row['cure']}".strip(". ") + ".",
+        )
         for row in run.attrs.get("findings", [])
         if row["status"] not in ("pass", "skipped") or row.get("noted")
     ]
 
     def say(severity: str, where: str, message: str) -> None:
-        found.append({"severity": severity, "run": name, "where": where, "message": message})
+        notices.append(Notice(severity, name, where, message))
 
     count = segments.sizes["segment"]
     told = any(row["check"] == "segments" for row in run.attrs.get("findings", []))
@@ -303,80 +338,8 @@ def _findings(
         low, high = (f"{1e3 * end:.4g}" for end in track)
         say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
     for entry in _omitted(segments):
-        text = f"{many(entry['intervals'], 'interval')}, {duration(entry['duration_s'])}"
-        say("note", "left out", f"{entry['reason']}: {text}")
+        text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
+        say("note", "left out", f"{entry.reason}: {text}")
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
-    return found
-
-
-def _figures(
-    task: RunTask,
-    run: xr.Dataset,
-    segments: xr.Dataset,
-    friction: xr.Dataset,
-    findings: list[dict[str, str]],
-) -> list[dict[str, str]]:
-    from tribolab import plot
-
-    name, made = task.run.name, []
-    drawn: list[tuple[str, Callable[[], Figure], str]] = [
-        ("trace", lambda: plot.trace(run, segments, friction, title=name), _TRACE)
-    ]
-    if segments.sizes["segment"]:
-        drawn += [("strokes", lambda: plot.strokes(run, segments, friction, title=name), _STROKES)]
-    if main_quantity(friction) == "half_loop":
-        drawn += [("half_loop", lambda: plot.half_loop(friction, title=name), _HALF_LOOP)]
-    for kind, draw, caption in drawn:
-        file = f"figures/{task.key}_{kind}.svg"
-        alt = f"Run {name}: {_words(friction)} {caption}"
-        try:
-            saved = save_figure(draw(), task.folder, file, caption, alt)
-        except Exception as error:  # recorded: a figure that fails must not cost the report
-            text = f"could not be drawn: {explain(error)[0]}"
-            findings.append(
-                {"severity": "error", "run": name, "where": f"figure {kind}", "message": text}
-            )
-            continue
-        made.append(saved | {"kind": kind})
-    return made
-
-
-def _traces(
-    task: RunTask,
-    run: xr.Dataset,
-    segments: xr.Dataset,
-    friction: xr.Dataset,
-    findings: list[dict[str, str]],
-) -> tuple[str, str]:
-    """Return the trace for the page, and a finer one to zoom into, if any."""
-    try:
-        coarse = as_text(trace(run, segments, friction, task.points))
-        return coarse, finer_trace(run, segments, friction, task.points, task.fine_size)
-    except AnalysisError as error:  # recorded, as above
-        text = f"no trace to show: {told(error, 'campaign')}"
-        findings.append(
-            {"severity": "error", "run": task.run.name, "where": "trace", "message": text}
-        )
-        return "", ""
-
-
-_TRACE = (
-    "Trace over time, sliding velocity, and trace over the distance slid in the segments. Shaded: "
-    "segments, their trimmed ends paler. Extremes of every pixel column are drawn."
-)
-_STROKES = (
-    "Every stroke over its own length, slowest speed first; both directions count positive in "
-    "their own direction. Each panel has its own scale, fitted to the part that counts."
-)
-_HALF_LOOP = "Half the force difference of each pair of strokes, and their mean."
-
-
-def _words(friction: xr.Dataset) -> str:
-    name = main_quantity(friction)
-    values = [] if name not in friction else np.asarray(friction[name], float).tolist()
-    speed = _values(friction, "sliding_speed", len(values)).tolist()
-    return (
-        f"{many(friction.sizes['segment'], 'segment')} at {speeds(speed)}, "
-        f"{SYMBOLS[name]} from {span(values, UNITS[name])}."
-    )
+    return notices

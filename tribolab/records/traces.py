@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from tribolab.plot.reduce import envelope_index
 from tribolab.plot.signals import main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
-from tribolab.report.packed import Clock, clock_of, packed_points
+from tribolab.records.packed import Clock, clock_of, packed_points
 from tribolab.words import speed_text
 
 if TYPE_CHECKING:
@@ -19,9 +20,50 @@ if TYPE_CHECKING:
 
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 _MOST_SPANS = 400
+_FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal takes
 _FINEST = 24_000  # points of a signal that the page zooms into
 _SIGNAL_BYTES = 2 * 16 / 3  # of a point of two signals: four bytes each, as text a third more
 _COARSE_BYTES, _FINE_BYTES = 3e6, 6e6  # of all runs together
+
+
+class FlaggedSpan(TypedDict):
+    """Where a check objected to a signal."""
+
+    signal: str
+    severity: str
+    start_s: float | None
+    stop_s: float | None
+    checks: list[str]
+
+
+@dataclass(frozen=True)
+class PageTrace:
+    """A run's trace for the page, as JSON that may stand in a script element.
+
+    Parameters
+    ----------
+    coarse
+        What is shown at once.
+    fine
+        With more points, to zoom into; "" if there is none.
+    """
+
+    coarse: str
+    fine: str = ""
+
+
+def page_trace(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    fine_size: int,
+) -> PageTrace:
+    """Return what the page draws of a run; parameters as of `trace` and `finer_trace`."""
+    return PageTrace(
+        as_text(trace(run, segments, friction, points)),
+        finer_trace(run, segments, friction, points, fine_size),
+    )
 
 
 def trace_size(runs: int) -> tuple[int, int]:
@@ -36,11 +78,17 @@ def trace_size(runs: int) -> tuple[int, int]:
     size
         Of the finer trace, in characters of the page.
 
+    Notes
+    -----
+    The number of runs counts as the next power of two, so that one run more does not change what
+    is kept of the others.
+
     Examples
     --------
     >>> trace_size(5), trace_size(200), trace_size(2000)
-    ((2000, 1200000), (1406, 30000), (500, 3000))
+    ((2000, 750000), (1098, 23437), (500, 2929))
     """
+    runs = 1 << max(runs - 1, 0).bit_length()
     points = _COARSE_BYTES / (_SIGNAL_BYTES * max(runs, 1))
     return int(np.clip(points, 500, 2000)), int(_FINE_BYTES // max(runs, 1))
 
@@ -97,7 +145,7 @@ def finer_trace(
     points
         What the trace has that the page shows at once: with no more there is nothing to zoom into.
     size
-        Length of the text [characters]; the points are halved until it is met.
+        Length of the text [characters]; there are fewer points until it is met.
 
     Returns
     -------
@@ -106,12 +154,12 @@ def finer_trace(
         element; "" if that trace is complete or no finer one fits.
     """
     clock = clock_of(np.asarray(run["time"], float))
-    finer = _FINEST if run.sizes["time"] > points else 0
+    finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
         text = as_text(_signals(run, segments, friction, clock, finer, deflate=True))
         if len(text) <= size:
             return text
-        finer //= 2
+        finer = int(0.95 * finer * size / len(text))
     return ""
 
 
@@ -194,7 +242,7 @@ def _short(value: float) -> float | None:
     return float(f"{value:.9g}") if np.isfinite(value) else None
 
 
-def flagged_spans(run: xr.Dataset) -> list[dict[str, Any]]:
+def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
     """Return where checks objected to a run's signals.
 
     Parameters
@@ -204,7 +252,7 @@ def flagged_spans(run: xr.Dataset) -> list[dict[str, Any]]:
 
     Returns
     -------
-    list of dict
+    list of FlaggedSpan
         ``signal``, ``severity`` (suspect or fail), ``start_s``, ``stop_s`` and ``checks``. Spans
         nearer to each other than a thousandth of the record are one, and of very many only the
         longest are kept.
@@ -213,7 +261,7 @@ def flagged_spans(run: xr.Dataset) -> list[dict[str, Any]]:
     if time.size < 2:
         return []
     near = (time[-1] - time[0]) / 1000
-    spans = []
+    spans: list[FlaggedSpan] = []
     for name in sorted(str(n) for n in run.data_vars if f"{n}_qc" in run):
         flags = np.asarray(run[f"{name}_qc"])
         tests = np.asarray(run[f"{name}_qc_tests"]) if f"{name}_qc_tests" in run else None

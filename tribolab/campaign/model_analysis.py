@@ -1,22 +1,18 @@
-"""The model of one measured curve, as a worker process computes it."""
+"""What is computed of the model of one measured curve."""
 
 from __future__ import annotations
 
-import json
-import time
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.model_plan import PlannedModel, optional, read
-from tribolab.campaign.outcome import Finding, ModelOutcome, beyond_limits
-from tribolab.campaign.work import write_data
-from tribolab.errors import AnalysisError, OutputError
-from tribolab.provenance import made
+from tribolab.campaign.data_files import optional_data, read_data
+from tribolab.campaign.model_plan import PlannedModel
+from tribolab.errors import AnalysisError
 from tribolab.quantities import stamp
+from tribolab.records.parts import Finding, beyond_limits
 from tribolab.validity import together
 from tribolab.words import explain
 
@@ -24,44 +20,9 @@ if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
     from tribolab.fit.shear_stress import ShearStressFit
 
-RECORD = "model_record"
 _PROFILES = 5
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are shown
 _95 = 1.959963984540054
-
-
-@dataclass(frozen=True)
-class ModelTask:
-    """A model to compute, and the folder of the results."""
-
-    model: PlannedModel
-    folder: Path
-
-
-def process_model(task: ModelTask) -> ModelOutcome:
-    """Compute the curve, fit the shear stress, vary what is not known; write the data file.
-
-    What goes wrong with the model is in the outcome.
-
-    Raises
-    ------
-    OutputError
-        If the results cannot be written.
-    """
-    began = time.monotonic()
-    model = task.model
-    if model.missing:
-        return failed_model(model, model.missing, status="skipped")
-    try:
-        groups, findings = analyse(model, task.folder)
-        record = {"findings": findings, "parts": list(groups)}
-        write_data({None: _root(model, record)} | groups, task.folder / model.data_file)
-    except OutputError:
-        raise
-    except Exception as error:  # recorded: one model that fails must not stop the others
-        reason, name = explain(error)
-        return failed_model(model, reason, name, time.monotonic() - began)
-    return _done(model, tuple(groups), findings, seconds=time.monotonic() - began)
 
 
 def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
@@ -79,8 +40,8 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     from tribolab.contact.geometry import LineContact
     from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 
-    measured = read(folder / model.curve.data_file)
-    psd = read(folder / model.surface_file, "psd")
+    measured = read_data(folder / model.curve.data_file)
+    psd = read_data(folder / model.surface_file, "psd")
     contact = LineContact(**model.contact)
     load = contact.load(model.curve.normal_force)
     settings = model.settings
@@ -153,7 +114,7 @@ def _fit(
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
     """Area with adhesion over that without, at the load, and the bounds on it."""
     path = folder / model.surface_file
-    found = optional(path, "adhesion_loads")
+    found = optional_data(path, "adhesion_loads")
     if found is None or model.curve.medium not in found.medium.values:
         return 1.0, 1.0, 1.0
     at = int(np.argmin(np.abs(found["normal_force"].values.ravel() - model.curve.normal_force)))
@@ -246,99 +207,4 @@ def _uncertain(
         shear_stress=fit.shear_stress,
         shear_stress_error=fit.total_error,
         **given,
-    )
-
-
-def failed_model(
-    model: PlannedModel, reason: str, error: str = "", seconds: float = 0.0, status: str = "failed"
-) -> ModelOutcome:
-    """Return the outcome of a model that has no results."""
-    severity = "note" if status == "skipped" else "fail"
-    curve = model.curve
-    return ModelOutcome(
-        name=model.name,
-        curve=curve.name,
-        surface=curve.surface,
-        medium=curve.medium,
-        normal_force=curve.normal_force,
-        status=status,
-        reason=reason,
-        error=error,
-        seconds=seconds,
-        findings=(Finding(severity, f"no model: {reason}"),),
-    )
-
-
-def _done(
-    model: PlannedModel, parts: tuple[str, ...], findings: list[Finding], **facts: Any
-) -> ModelOutcome:
-    curve = model.curve
-    return ModelOutcome(
-        name=model.name,
-        curve=curve.name,
-        surface=curve.surface,
-        medium=curve.medium,
-        normal_force=curve.normal_force,
-        status="done",
-        data_file=model.data_file,
-        parts=parts,
-        findings=tuple(findings),
-        **facts,
-    )
-
-
-def known_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
-    """Return the outcome of earlier results, if data, settings and version are the same."""
-    from tribolab.version import __version__
-
-    found = None if model.missing else _stored(path, model)
-    if found is None:
-        return None
-    attrs, outcome = found
-    same = (attrs.get("config_sha256"), attrs.get("tribolab_version"))
-    return replace(outcome, reused=True) if same == (model.config_sha256, __version__) else None
-
-
-def earlier_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
-    """Return the outcome of earlier results, whatever the data and the settings were."""
-    found = _stored(path, model)
-    return found and found[1]
-
-
-def _stored(path: Path, model: PlannedModel) -> tuple[dict[str, Any], ModelOutcome] | None:
-    """Return attributes and outcome that a data file holds; None if it is damaged."""
-    import netCDF4
-
-    if not path.is_file():
-        return None
-    try:
-        with netCDF4.Dataset(path) as file:
-            attrs, groups = file.__dict__, tuple(file.groups)
-        record = json.loads(attrs[RECORD])
-        findings = [Finding(*finding) for finding in record["findings"]]
-        if groups != tuple(record["parts"]):
-            return None
-    except (OSError, RuntimeError, LookupError, ValueError, TypeError):  # damaged: done anew
-        return None
-    return attrs, _done(model, groups, findings)
-
-
-def _root(model: PlannedModel, record: dict[str, Any]) -> xr.Dataset:
-    curve = model.curve
-    return xr.Dataset(
-        attrs={
-            "surface": curve.surface,
-            "medium": curve.medium,
-            "normal_force_N": float(curve.normal_force),
-            "curve": curve.name,
-            "repeatability": model.repeatability,
-            "freedom": model.freedom,
-            RECORD: json.dumps(record, ensure_ascii=False),
-        }
-        | made(
-            f"model of {curve.name}",
-            source=model.source,
-            source_sha256=model.source_sha256,
-            config_sha256=model.config_sha256,
-        )
     )

@@ -1,0 +1,110 @@
+"""One way to do every kind of work: plan it, take over what is known, do the rest, record failures.
+
+Runs, curves, surfaces, models and figures are stages. A stage says what is to be done, what is
+known of it already, what a worker does (pure: a task in, a record out), and what stands in the
+place of a record when that failed. Where the work is done is any `concurrent.futures.Executor`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from typing import Any, ClassVar, Generic, TypeVar
+
+from tribolab.campaign.executor import completed
+from tribolab.errors import OutputError
+
+Task = TypeVar("Task")
+Record = TypeVar("Record")
+Came = TypeVar("Came")
+Progress = Callable[[str, int, int], None]
+
+
+class Stage(ABC, Generic[Task, Record, Came]):
+    """One kind of work in a campaign.
+
+    Attributes
+    ----------
+    name
+        What the progress calls it.
+    work
+        Function of the module, that it may travel to a worker: a task in, a record out. What goes
+        wrong with the task itself is in the record; it raises `OutputError` where results cannot
+        be written, and nothing else on purpose.
+    """
+
+    name: ClassVar[str]
+    work: ClassVar[Callable[[Any], Any]]
+
+    @abstractmethod
+    def plan(self) -> Sequence[Task]:
+        """Return what is to be done, in the order of the results."""
+
+    def known(self, task: Task, place: int) -> Came | None:
+        """Take over what is known, and return what it came to; None if it has to be done."""
+        return None
+
+    def order(self, tasks: Sequence[tuple[int, Task]]) -> list[tuple[int, Task]]:
+        """Return tasks in the order in which they should begin."""
+        return list(tasks)
+
+    @abstractmethod
+    def failed(self, task: Task, error: BaseException) -> Record:
+        """Return the record of a task whose worker could not even say what went wrong."""
+
+    @abstractmethod
+    def keep(self, task: Task, place: int, record: Record) -> Came:
+        """Write a record down; return the little that the next stages have to know of it."""
+
+
+def perform(
+    stage: Stage[Task, Record, Came], executor: Executor | None, tell: Progress
+) -> list[Came]:
+    """Do the work of a stage, and return what each task came to, in the order of the plan.
+
+    Parameters
+    ----------
+    stage
+        What is to be done.
+    executor
+        Where; None does it here, task by task.
+    tell
+        Called as ``tell(stage, done, total)``.
+
+    Raises
+    ------
+    OutputError
+        If results cannot be written. What else goes wrong is in the records.
+    """
+    tasks = stage.plan()
+    came: dict[int, Came] = {}
+    left = []
+    for place, task in enumerate(tasks):
+        known = stage.known(task, place)
+        if known is None:
+            left.append((place, task))
+        else:
+            came[place] = known
+    if came:
+        tell(stage.name, len(came), len(tasks))
+    for place, task, answer in answers(type(stage).work, stage.order(left), executor):
+        if isinstance(answer, OutputError):
+            raise answer
+        if isinstance(answer, BaseException):
+            answer = stage.failed(task, answer)
+        came[place] = stage.keep(task, place, answer)
+        tell(stage.name, len(came), len(tasks))
+    return [came[place] for place in range(len(tasks))]
+
+
+def answers(
+    work: Callable[[Task], Record],
+    tasks: Sequence[tuple[int, Task]],
+    executor: Executor | None,
+) -> Iterator[tuple[int, Task, Record | BaseException]]:
+    """Give (place, task, record or error) as the tasks end; nothing of them is held here."""
+    places = {id(task): place for place, task in tasks}
+    for task, future in completed(executor, work, [task for _, task in tasks]):
+        error = future.exception()
+        yield places[id(task)], task, error if error is not None else future.result()

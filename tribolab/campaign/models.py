@@ -1,0 +1,193 @@
+"""The models of a campaign: one beside each measured curve in a fluid."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.data_files import optional_data, write_data
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.kept import kept_model
+from tribolab.campaign.model_plan import PlannedModel, plan_models
+from tribolab.campaign.store import Store
+from tribolab.errors import OutputError
+from tribolab.provenance import made, sha256_of
+from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
+from tribolab.records.parts import Finding, ModelOutcome
+from tribolab.words import explain
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.campaign.config import Campaign
+
+KIND = "model"
+
+
+@dataclass(frozen=True)
+class ModelTask:
+    """A model to compute, and the folder of the results."""
+
+    model: PlannedModel
+    folder: Path
+
+
+class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
+    """The stage of the models.
+
+    Parameters
+    ----------
+    campaign
+        It knows the media and the contact.
+    curves, surfaces
+        What is recorded of them.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = KIND + "s"
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        curves: Sequence[CurveRecord],
+        surfaces: Sequence[SurfaceRecord],
+        store: Store,
+    ) -> None:
+        self._planned = plan_models(campaign, curves, surfaces)
+        self._store = store
+
+    def plan(self) -> list[ModelTask]:
+        """Return a task for each measured curve in a fluid."""
+        return [ModelTask(model, self._store.folder) for model in self._planned]
+
+    def known(self, task: ModelTask, place: int) -> ModelOutcome | None:
+        """Take over a model whose data, settings and version are the same."""
+        model = task.model
+        entry = None if model.missing else self._store.before.get(KIND, model.name, ModelRecord)
+        if entry is None or entry.fingerprint != fingerprint(model):
+            return None
+        before = entry.record.outcome
+        if not before.done or before.kept:
+            return None
+        if not self._store.link(KIND, model.name, before.data_file, model.data_file):
+            return None
+        outcome = replace(before, reused=True)
+        record = replace(entry.record, outcome=outcome)
+        self._store.put(KIND, model.name, place, entry.fingerprint, record)
+        return outcome
+
+    def order(self, tasks: Sequence[tuple[int, ModelTask]]) -> list[tuple[int, ModelTask]]:
+        """Return what takes longest first."""
+        return sorted(tasks, key=lambda pair: not pair[1].model.uncertain)
+
+    @staticmethod
+    def work(task: ModelTask) -> ModelRecord:
+        """Compute one model."""
+        return process_model(task)
+
+    def failed(self, task: ModelTask, error: BaseException) -> ModelRecord:
+        """Return the record of a model whose worker died."""
+        return ModelRecord(failed_model(task.model, *explain(error)))
+
+    def keep(self, task: ModelTask, place: int, record: ModelRecord) -> ModelOutcome:
+        """Write down what came of a model, or the earlier one where it could not be computed."""
+        model = task.model
+        record, is_kept = kept_model(self._store, record)
+        mark = "" if is_kept or not record.outcome.done else fingerprint(model)
+        self._store.put(KIND, model.name, place, mark, record)
+        return record.outcome
+
+
+def fingerprint(model: PlannedModel) -> str:
+    """Return the checksum of all that shapes a model, the data included."""
+    from tribolab.version import __version__
+
+    return sha256_of([__version__, model.config_sha256])
+
+
+def process_model(task: ModelTask) -> ModelRecord:
+    """Compute the curve, fit the shear stress, vary what is not known; write and record them.
+
+    What goes wrong with the model is in the record.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written.
+    """
+    from tribolab.campaign.model_analysis import analyse
+    from tribolab.records.model_rows import model_rows
+
+    began = time.monotonic()
+    model = task.model
+    if model.missing:
+        return ModelRecord(failed_model(model, model.missing, status="skipped"))
+    curve = model.curve
+    try:
+        groups, findings = analyse(model, task.folder)
+        write_data({None: _root(model)} | groups, task.folder / model.data_file)
+        adhesion = optional_data(task.folder / model.surface_file, "adhesion_loads")
+        rows = model_rows(groups, curve.medium, curve.normal_force or 0.0, adhesion)
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one model that fails must not stop the others
+        reason, name = explain(error)
+        return ModelRecord(failed_model(model, reason, name, time.monotonic() - began))
+    outcome = ModelOutcome(
+        name=model.name,
+        curve=curve.name,
+        surface=curve.surface,
+        medium=curve.medium,
+        normal_force=curve.normal_force,
+        status="done",
+        data_file=model.data_file,
+        parts=tuple(groups),
+        findings=tuple(findings),
+        seconds=time.monotonic() - began,
+    )
+    return ModelRecord(outcome, rows)
+
+
+def failed_model(
+    model: PlannedModel, reason: str, error: str = "", seconds: float = 0.0, status: str = "failed"
+) -> ModelOutcome:
+    """Return the outcome of a model that has no results."""
+    severity = "note" if status == "skipped" else "fail"
+    curve = model.curve
+    return ModelOutcome(
+        name=model.name,
+        curve=curve.name,
+        surface=curve.surface,
+        medium=curve.medium,
+        normal_force=curve.normal_force,
+        status=status,
+        reason=reason,
+        error=error,
+        seconds=seconds,
+        findings=(Finding(severity, f"no model: {reason}"),),
+    )
+
+
+def _root(model: PlannedModel) -> xr.Dataset:
+    import xarray as xr
+
+    curve = model.curve
+    attrs: dict[str, Any] = {
+        "surface": curve.surface,
+        "medium": curve.medium,
+        "normal_force_N": float(curve.normal_force or 0.0),
+        "curve": curve.name,
+        "repeatability": model.repeatability,
+        "freedom": model.freedom,
+    }
+    origin = made(
+        f"model of {curve.name}",
+        source=model.source,
+        source_sha256=model.source_sha256,
+        config_sha256=model.config_sha256,
+    )
+    return xr.Dataset(attrs=attrs | origin)

@@ -1,0 +1,244 @@
+"""How each measured contact of a campaign slides: judged from its curve, its model, its traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.campaign.curves import SLIP
+from tribolab.campaign.data_files import optional_data, read_data
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.store import Store
+from tribolab.mode.model import Mode
+from tribolab.provenance import sha256_of
+from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
+from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
+from tribolab.records.parts import CurveOutcome
+from tribolab.words import explain
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+
+KIND = "mode"
+_ROUGH_ENOUGH = 0.0  # J/m2: a surface without macroscopic adhesion slides steadily
+_CURVE = (
+    "friction_coefficient",
+    "friction_coefficient_model",
+    "regime",
+    "model_regime",
+    "waveform",
+    "regularity",
+    "drop",
+    "dominant_wavelength",
+    "recurrence_distance",
+    "dominant_frequency",
+)
+_ENDING = {"dominant_wavelength": "_m", "recurrence_distance": "_m", "dominant_frequency": "_Hz"}
+
+
+@dataclass(frozen=True)
+class ModeTask:
+    """A measured curve to judge, the data file of its model ("": none), and what else is known."""
+
+    curve: CurveOutcome
+    model_file: str
+    with_band: bool
+    known: Mode
+    folder: Path
+    fingerprint: str
+
+
+class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
+    """The stage of the sliding modes; what could not be judged is the reason, as text.
+
+    Parameters
+    ----------
+    campaign
+        It knows media and contact.
+    curves, surfaces, models
+        What is recorded of them.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = KIND + "s"
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        curves: Sequence[CurveRecord],
+        surfaces: Sequence[SurfaceRecord],
+        models: Sequence[ModelRecord],
+        store: Store,
+    ) -> None:
+        self._curves = [c for c in curves if c.outcome.done and _has_friction(c)]
+        self._known = _all_known(campaign, self._curves, surfaces, models)
+        self._models = {m.outcome.curve: m for m in models if m.outcome.done}
+        self._store = store
+
+    def plan(self) -> list[ModeTask]:
+        """Return a task for each measured curve."""
+        tasks = []
+        for record in self._curves:
+            curve = record.outcome
+            model = self._models.get(curve.name)
+            parts = model.outcome.parts if model else ()
+            fitted = model is not None and "fit" in parts
+            known = self._known[curve.name]
+            files = [curve.data_file, *([model.outcome.data_file] if model and fitted else [])]
+            shaping = [asdict(known), [self._store.identity(file) for file in files]]
+            tasks.append(
+                ModeTask(
+                    curve=curve,
+                    model_file=model.outcome.data_file if model and fitted else "",
+                    with_band="uncertainty" in parts,
+                    known=known,
+                    folder=self._store.folder,
+                    fingerprint=sha256_of(shaping),
+                )
+            )
+        return tasks
+
+    def known(self, task: ModeTask, place: int) -> ModeRecord | None:
+        """Take over the verdict on a curve whose data are the same."""
+        entry = self._store.before.get(KIND, task.curve.name, ModeRecord)
+        if entry is None or entry.fingerprint != task.fingerprint:
+            return None
+        self._store.put(KIND, task.curve.name, place, task.fingerprint, entry.record)
+        return entry.record
+
+    @staticmethod
+    def work(task: ModeTask) -> ModeRecord:
+        """Judge one curve."""
+        return judge(task)
+
+    def failed(self, task: ModeTask, error: BaseException) -> str:
+        """Return why a curve could not be judged."""
+        return explain(error)[0]
+
+    def keep(self, task: ModeTask, place: int, record: ModeRecord | str) -> ModeRecord | str:
+        """Write down the verdict on a curve."""
+        if isinstance(record, ModeRecord):
+            self._store.put(KIND, task.curve.name, place, task.fingerprint, record)
+        return record
+
+
+def judge(task: ModeTask) -> ModeRecord:
+    """Weigh what speaks for and against an adhesion-controlled sliding mode.
+
+    Raises
+    ------
+    TribolabError
+        If a data file cannot be read.
+    """
+    from tribolab.friction.oscillation.waveform import oscillating
+    from tribolab.mode.verdict import sliding_mode
+    from tribolab.records.wording import plain_value
+
+    curve = task.curve
+    measured = read_data(task.folder / curve.data_file)
+    slip = read_data(task.folder / curve.data_file, SLIP)
+    model = band = None
+    if task.model_file:
+        model = read_data(task.folder / task.model_file, "curve")
+        if task.with_band:
+            band = optional_data(task.folder / task.model_file, "uncertainty")
+    mode = sliding_mode(measured, model, slip, task.known, band=band, name=condition(curve))
+    speeds = [
+        {"sliding_speed_m_s": float(v)}
+        | {
+            name + _ENDING.get(name, ""): mode.curve[name].values[k]
+            for name in _CURVE
+            if name in mode.curve
+        }
+        for k, v in enumerate(mode.curve["sliding_speed"].values)
+    ]
+    counts = {
+        name: int(slip[name].sum()) if name in slip else 0
+        for name in ("segments", "segments_oscillating")
+    }
+    return ModeRecord(
+        curve=curve.name,
+        condition=condition(curve),
+        verdict=mode.verdict,
+        text=mode.text,
+        paragraph=mode.paragraph,
+        decide=tuple(mode.decide),
+        evidence=tuple(EvidenceRow(*piece) for piece in mode.evidence),
+        numbers=plain_value(mode.numbers),
+        **counts,
+        scaling=str(slip.attrs["scaling"]),
+        scaling_exponent=plain_value(slip.attrs["scaling_exponent"]),
+        scaling_error=plain_value(slip.attrs["scaling_error"]),
+        speeds=tuple(plain_value(speeds)),
+        moves="waveform" in slip and bool(oscillating(slip["waveform"].values).any()),
+    )
+
+
+def _has_friction(curve: CurveRecord) -> bool:
+    return any(row["friction_coefficient"] is not None for row in curve.points)
+
+
+def _all_known(
+    campaign: Campaign,
+    curves: Sequence[CurveRecord],
+    surfaces: Iterable[SurfaceRecord],
+    models: Iterable[ModelRecord],
+) -> dict[str, Mode]:
+    """Return what is known beside each curve, by its name; others' shear stresses included."""
+    rows = {surface.outcome.name: surface for surface in surfaces}
+    fits = {m.outcome.curve: m.rows.fit for m in models if m.rows is not None and m.rows.fit}
+    known = {c.outcome.name: _known(campaign, c, rows.get(c.outcome.surface)) for c in curves}
+    stresses = {
+        c.outcome.name: _stress(c, fits.get(c.outcome.name), known[c.outcome.name]) for c in curves
+    }
+    for record in curves:
+        curve, mine = record.outcome, known[record.outcome.name]
+        others = [
+            stress
+            for other in curves
+            if other.outcome.medium == curve.medium
+            and other.outcome.surface != curve.surface
+            and other.outcome.normal_force == curve.normal_force
+            and known[other.outcome.name].work_of_adhesion == _ROUGH_ENOUGH
+            and (stress := stresses[other.outcome.name])
+        ]
+        if mine.work_of_adhesion and others:
+            known[curve.name] = replace(mine, rough_shear_stress=min(others))
+    return known
+
+
+def _known(campaign: Campaign, record: CurveRecord, surface: SurfaceRecord | None) -> Mode:
+    curve = record.outcome
+    medium = campaign.medium.get(curve.medium)
+    fluid = curve.medium != "dry" if medium is None else medium.viscosity is not None
+    mode = Mode(youngs_modulus=campaign.contact.youngs_modulus, fluid=fluid)
+    rows = surface.rows if surface else None
+    adhesion = [row for row in rows.adhesion if row["medium"] == curve.medium] if rows else []
+    if not adhesion:
+        return mode
+    wanted = curve.normal_force or 0.0
+    loads = [abs(float(row["normal_force_N"] or 0) - wanted) for row in adhesion]
+    row = adhesion[int(np.argmin(loads))]
+    bounds = [row.get(f"macroscopic_work_of_adhesion_{end}_J_m2") for end in ("low", "high")]
+    return replace(
+        mode,
+        work_of_adhesion=row["macroscopic_work_of_adhesion_J_m2"],
+        work_of_adhesion_range=tuple(bounds) if None not in bounds else None,
+        area_ratio=row["contact_area_ratio"],
+        pressure=row["pressure_Pa"],
+    )
+
+
+def _stress(record: CurveRecord, fit: dict | None, known: Mode) -> float | None:
+    """Shear stress in the real contact area with adhesion: fitted, else from mu p = sigma A/A0."""
+    if fit is not None and fit["corrected_shear_stress_Pa"] > 0:
+        return float(fit["corrected_shear_stress_Pa"])
+    mu = [row["friction_coefficient"] for row in record.points]
+    if not mu or known.fluid or not known.area_ratio or not known.pressure:
+        return None
+    return float(np.median(np.array(mu, float))) * known.pressure / known.area_ratio

@@ -1,0 +1,342 @@
+"""The runs of a campaign: each read, analysed, checked, written and recorded by one worker."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+from tribolab.campaign.data_files import write_data
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.plan import PlannedRun
+from tribolab.campaign.store import Entry, Store
+from tribolab.campaign.zeros import attributes, zero_of
+from tribolab.errors import AnalysisError, ConfigError, OutputError, told
+from tribolab.provenance import made, sha256_of, sha256_of_file
+from tribolab.records.parts import Notice, RunOutcome, RunZero, Source
+from tribolab.records.run_record import RunRecord
+from tribolab.records.traces import PageTrace, page_trace, trace_size
+from tribolab.words import explain
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KIND = "run"
+# Attributes of a data file's run: the gravest status of its checks, and what they said.
+QUALITY, FINDINGS = "quality", "findings"
+
+
+@dataclass(frozen=True)
+class RunTask:
+    """A run to process, the folder for its data file, and what its traces may have.
+
+    `points` of each signal are shown at once; the finer trace, into which the page zooms, may
+    have `fine_size` characters.
+    """
+
+    run: PlannedRun
+    folder: Path
+    points: int = 2000
+    fine_size: int = 0
+
+    @property
+    def data_file(self) -> str:
+        """Path of the data file relative to the results folder."""
+        return f"data/{self.run.name}.nc"
+
+
+class RunAnswer(NamedTuple):
+    """What a worker hands back; nothing that is as large as a signal travels."""
+
+    record: RunRecord
+    trace: PageTrace | None = None
+
+
+class RunCame(NamedTuple):
+    """What the rest of a campaign has to know of a run."""
+
+    outcome: RunOutcome
+    sources: tuple[Source, ...]
+    zero: RunZero | None = None
+    fingerprint: str = ""
+
+    @property
+    def content(self) -> tuple[str, ...]:
+        """All that shapes the results of the run."""
+        lent = "" if self.zero is None else str(self.zero.lent)
+        return self.fingerprint, lent, *(checksum for _, checksum, _ in self.sources)
+
+
+class Runs(Stage[RunTask, RunAnswer, RunCame]):
+    """The stage of the runs.
+
+    Parameters
+    ----------
+    runs
+        What is to be done.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = KIND + "s"
+
+    def __init__(self, runs: Sequence[PlannedRun], store: Store) -> None:
+        self._runs = runs
+        self._lent: dict[str, PlannedRun] | None = None
+        self._store = store
+        self._began = time.time_ns()
+
+    def again(self, runs: Sequence[PlannedRun]) -> Self:
+        """Do these anew, with other settings than those that their fingerprints tell of."""
+        self._lent = {run.name: run for run in runs}
+        return self
+
+    def plan(self) -> list[RunTask]:
+        """Return the tasks; what the trace of a run may have follows from their number."""
+        points, fine_size = trace_size(len(self._runs))
+        runs = self._runs if self._lent is None else self._lent.values()
+        return [RunTask(run, self._store.folder, points, fine_size) for run in runs]
+
+    def known(self, task: RunTask, place: int) -> RunCame | None:
+        """Take over a run whose settings, version and files (by their checksums) are the same."""
+        if self._lent is not None:
+            return None
+        run = task.run
+        entry = self._store.before.get(KIND, run.name, RunRecord)
+        if entry is None or entry.fingerprint != fingerprint(run) or not entry.record.outcome.done:
+            return None
+        record = entry.record
+        sources = self._store.sources(zip(run.files, run.labels, strict=True))
+        if sorted(s[1] for s in sources) != sorted(s[1] for s in record.sources):
+            return None
+        outcome = replace(
+            record.outcome,
+            files=run.labels,
+            surface=run.surface,
+            medium=run.medium,
+            data_file=task.data_file,
+            reused=True,
+            kept="",
+        )
+        if not self._store.link(KIND, entry.name, record.outcome.data_file, task.data_file):
+            return None
+        record = replace(record, outcome=outcome, sources=sources)
+        self._store.put(KIND, run.name, place, entry.fingerprint, record)
+        self._store.take_trace(KIND, entry.name, run.name)
+        return RunCame(outcome, sources, record.zero, entry.fingerprint)
+
+    @staticmethod
+    def work(task: RunTask) -> RunAnswer:
+        """Process one run."""
+        return process_run(task)
+
+    def failed(self, task: RunTask, error: BaseException) -> RunAnswer:
+        """Return the record of a run whose worker died."""
+        return RunAnswer(RunRecord(failed_run(task.run, *explain(error)), ()))
+
+    def keep(self, task: RunTask, place: int, record: RunAnswer) -> RunCame:
+        """Write down what came of a run."""
+        run = record.record
+        if run.outcome.done and not (task.folder / run.outcome.data_file).is_file():
+            raise OutputError(
+                f"{run.outcome.data_file}: written by a worker, but not to be seen in "
+                f"{task.folder}; do the workers share this folder?"
+            )
+        mark = fingerprint(task.run)
+        if self._lent is not None:  # it stands where it stood
+            place = next(k for k, one in enumerate(self._runs) if one.name == task.run.name)
+        self._store.put(KIND, task.run.name, place, mark, run, record.trace)
+        self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
+        return RunCame(run.outcome, run.sources, run.zero, mark)
+
+
+def fingerprint(run: PlannedRun) -> str:
+    """Return the checksum of all that shapes a run's results, but of its files and lent zeros."""
+    from tribolab.version import __version__
+
+    return sha256_of([__version__, run.config_sha256])
+
+
+def keep_earlier(
+    store: Store, entry: Entry[RunRecord], outcome: RunOutcome, place: int
+) -> RunCame | None:
+    """Write down an earlier run in the place of one whose files cannot be read now.
+
+    None if its data file is not as it was written.
+    """
+    record = replace(entry.record, outcome=outcome)
+    if not store.link(KIND, entry.name, entry.record.outcome.data_file, outcome.data_file):
+        return None
+    store.put(KIND, outcome.name, place, entry.fingerprint, record)
+    store.take_trace(KIND, entry.name, outcome.name)
+    return RunCame(outcome, record.sources, record.zero, entry.fingerprint)
+
+
+def process_run(task: RunTask) -> RunAnswer:
+    """Read a run, find its segments, compute its friction, write and record everything of it.
+
+    What goes wrong with the run is in the record.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written: that is no fault of the run.
+    """
+    from tribolab.records.frames import stick_slip_table
+    from tribolab.records.run_facts import facts_of, notices_of
+    from tribolab.records.wording import plain_value
+
+    began = time.monotonic()
+    run = task.run
+    try:
+        signals, segments, friction, slip, quality = _analyse(run)
+        groups = {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip}
+        write_data({None: _root(run, signals.attrs)} | groups, task.folder / task.data_file)
+        notices = notices_of(run.name, signals, segments, friction)
+        trace, why = _trace(task, signals, segments, friction)
+        facts = facts_of(signals, segments, friction, slip)
+        rows = plain_value(stick_slip_table(slip).to_dict("records"))
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one bad file must not stop the others
+        reason, name = explain(error)
+        outcome = failed_run(run, reason, name, time.monotonic() - began)
+        return RunAnswer(RunRecord(outcome, tuple(source_of(*pair) for pair in _files(run))))
+    load = run.normal_force
+    if load is None:
+        load = signals.attrs.get("set_normal_force_N")
+    outcome = RunOutcome(
+        name=run.name,
+        files=run.labels,
+        surface=run.surface,
+        medium=run.medium,
+        normal_force=None if load is None else float(load),
+        status="done",
+        data_file=task.data_file,
+        seconds=time.monotonic() - began,
+        segments=segments.sizes["segment"],
+        quality=quality,
+    )
+    zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
+    sources = sources_of(run, signals.attrs)
+    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), tuple(rows))
+    return RunAnswer(record, trace)
+
+
+def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
+    """Return the outcome of a run that has no results."""
+    return RunOutcome(
+        name=run.name,
+        files=run.labels,
+        surface=run.surface,
+        medium=run.medium,
+        normal_force=run.normal_force,
+        status="failed",
+        reason=reason,
+        error=error,
+        seconds=seconds,
+    )
+
+
+def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
+    """Return the files of a run with the checksums that were taken while reading."""
+    names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
+    known = dict(zip(names, sums, strict=False))
+    return tuple(
+        (label, known[file.name], file.stat().st_size)
+        if file.name in known
+        else source_of(file, label)
+        for file, label in _files(run)
+    )
+
+
+def source_of(file: Path, label: str) -> Source:
+    """Return label, checksum and size of a file; no checksum if it cannot be read."""
+    try:
+        return label, sha256_of_file(file), file.stat().st_size
+    except OSError:  # vanished or unreadable: the outcome of its part says so
+        return label, "", 0
+
+
+def _files(run: PlannedRun) -> list[tuple[Path, str]]:
+    return list(zip(run.files, run.labels, strict=True))
+
+
+def _trace(
+    task: RunTask, run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset
+) -> tuple[PageTrace | None, list[Notice]]:
+    try:
+        return page_trace(run, segments, friction, task.points, task.fine_size), []
+    except AnalysisError as error:  # recorded: the run's numbers stand without it
+        text = f"no trace to show: {told(error, 'campaign')}"
+        return None, [Notice("error", task.run.name, "trace", text)]
+
+
+def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset, str]:
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.segments.find import find_segments
+    from tribolab.io.runs import read
+    from tribolab.qc.run_checks import check_run
+
+    files = list(run.files)
+    signals = read(
+        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
+    )
+    if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
+        missing = signals.attrs.get("companion_missing", "")
+        raise ConfigError(
+            f"{signals.attrs['source']}: there is no second log"
+            f"{missing and f' ({missing})'} whose clock could be shifted; "
+            "leave clock_shift out of its [[run]]"
+        )
+    if run.normal_force is not None:
+        signals.attrs["set_normal_force_N"] = run.normal_force
+    if run.sliding_speed is not None:
+        signals.attrs |= _stated_speed(signals, run.sliding_speed)
+    segments = find_segments(signals, **run.segments)
+    friction = friction_coefficient(signals, segments, **run.friction)
+    friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
+    slip = stick_slip(signals, segments)
+    found = check_run(signals, segments, friction, slip, **run.quality)
+    signals = found.flagged
+    signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
+    for data in (signals, segments, friction, slip):
+        data.attrs.update(_labels(run), config_sha256=run.config_sha256)
+    return signals, segments, friction, slip, found.status
+
+
+def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
+    """Attributes of a run whose speed the campaign file says.
+
+    The segments take it where nothing was recorded; else the check of the speed compares with it.
+    """
+    own = signals.attrs.get("set_speed_m_s", speed)
+    if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
+        raise ConfigError(
+            f"{signals.attrs['source']}: the file says its set speed itself; "
+            "leave sliding_speed out of its [[run]]"
+        )
+    return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}
+
+
+def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
+    """Attributes of the whole file, for those who open it without naming a group."""
+    import xarray as xr
+
+    origin = made(
+        f"friction of {run.name}",
+        source=attrs["source"],
+        source_sha256=attrs["source_sha256"],
+        config_sha256=run.config_sha256,
+    )
+    return xr.Dataset(attrs=_labels(run) | origin | {QUALITY: attrs[QUALITY]})
+
+
+def _labels(run: PlannedRun) -> dict[str, str]:
+    return {"run_name": run.name} | {
+        key: value for key in ("surface", "medium") if (value := getattr(run, key))
+    }

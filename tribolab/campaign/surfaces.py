@@ -1,0 +1,230 @@
+"""The surfaces of a campaign: spectrum, roughness, contact and adhesion, each by one worker."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.data_files import digest, write_data
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.kept import kept_surface
+from tribolab.campaign.runs import source_of
+from tribolab.campaign.store import Store
+from tribolab.campaign.surface_plan import PlannedSurface, plan_surfaces
+from tribolab.errors import OutputError
+from tribolab.provenance import made, sha256_of
+from tribolab.records.part_records import SurfaceRecord
+from tribolab.records.parts import Finding, RunOutcome, Source, SurfaceOutcome
+from tribolab.words import explain
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.surface_scans import CheckedScans
+
+KIND = "surface"
+SCANS = "scans"  # group of the scans as they were read, with their quality flags
+
+
+@dataclass(frozen=True)
+class SurfaceTask:
+    """A surface to process, and the folder of the results."""
+
+    surface: PlannedSurface
+    folder: Path
+
+
+class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
+    """The stage of the surfaces.
+
+    Parameters
+    ----------
+    campaign
+        It names their scans.
+    runs
+        What the runs came to: they tell at which loads.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = KIND + "s"
+
+    def __init__(self, campaign: Campaign, runs: Iterable[RunOutcome], store: Store) -> None:
+        self._campaign = campaign
+        self._runs = runs
+        self._store = store
+        self._began = time.time_ns()
+
+    def plan(self) -> list[SurfaceTask]:
+        """Return a task for each surface of the campaign file."""
+        planned = plan_surfaces(self._campaign, self._runs)
+        return [SurfaceTask(surface, self._store.folder) for surface in planned]
+
+    def known(self, task: SurfaceTask, place: int) -> SurfaceRecord | None:
+        """Take over a surface whose settings, version and files (by checksums) are the same."""
+        surface = task.surface
+        entry = self._store.before.get(KIND, surface.name, SurfaceRecord)
+        if entry is None or entry.fingerprint != fingerprint(surface) or not surface.files:
+            return None
+        sources = self._store.sources(_files(surface))
+        before = entry.record.outcome
+        if not before.done or before.kept or sources != entry.record.sources:
+            return None
+        if not self._store.link(KIND, surface.name, before.data_file, surface.data_file):
+            return None
+        outcome = replace(
+            before, files=surface.labels, data_file=surface.data_file, reused=True, kept=""
+        )
+        record = replace(entry.record, outcome=outcome)
+        self._store.put(KIND, surface.name, place, entry.fingerprint, record)
+        return record
+
+    @staticmethod
+    def work(task: SurfaceTask) -> SurfaceRecord:
+        """Process one surface."""
+        return process_surface(task)
+
+    def failed(self, task: SurfaceTask, error: BaseException) -> SurfaceRecord:
+        """Return the record of a surface whose worker died."""
+        return SurfaceRecord(failed_surface(task.surface, *explain(error)))
+
+    def keep(self, task: SurfaceTask, place: int, record: SurfaceRecord) -> SurfaceRecord:
+        """Write down what came of a surface; earlier results stay where scans cannot be read."""
+        surface = task.surface
+        mark = fingerprint(surface)
+        record, is_kept = kept_surface(self._campaign, surface, self._store, record)
+        self._store.put(KIND, surface.name, place, "" if is_kept else mark, record)
+        files = [path for path, _ in _files(surface)]
+        self._store.note_sources(zip(files, record.sources, strict=False), self._began)
+        return record
+
+
+def fingerprint(surface: PlannedSurface) -> str:
+    """Return the checksum of all that shapes a surface's results, but of its files."""
+    from tribolab.version import __version__
+
+    return sha256_of([__version__, surface.config_sha256])
+
+
+def process_surface(task: SurfaceTask) -> SurfaceRecord:
+    """Compute spectrum, roughness, contact, adhesion and rubber friction; write and record them.
+
+    What goes wrong with the surface is in the record.
+
+    Raises
+    ------
+    OutputError
+        If the results cannot be written: that is no fault of the surface.
+    """
+    from tribolab.records.surface_rows import surface_rows
+    from tribolab.records.wording import plain_value
+
+    began = time.monotonic()
+    surface = task.surface
+    if not surface.files:
+        text = "no scans are named, so its roughness and contact are not computed"
+        note = Finding("note", text)
+        return SurfaceRecord(SurfaceOutcome(surface.name, (), "skipped", findings=(note,)))
+    from tribolab.campaign.surface_scans import usable_scans
+
+    sources = sources_of(surface)
+    checked: CheckedScans | None = None
+    try:
+        checked = usable_scans(surface)
+        groups, findings = analyse(surface, checked)
+        outcome = SurfaceOutcome(
+            name=surface.name,
+            files=surface.labels,
+            status="done",
+            data_file=surface.data_file,
+            seconds=time.monotonic() - began,
+            parts=tuple(groups),
+            findings=tuple(findings),
+            quality=checked.quality,
+            checks=tuple(plain_value(checked.checks)),
+        )
+        root = _root(surface, sources, checked.quality)
+        write_data({None: root} | groups, task.folder / surface.data_file)
+        shown = {name: data for name, data in groups.items() if name != SCANS}
+        rows = surface_rows(surface.name, shown, checked.quality)
+        shaping = digest(groups["psd"], groups.get("adhesion_loads"))
+    except OutputError:
+        raise
+    except Exception as error:  # recorded: one bad surface must not stop the others
+        outcome = failed_surface(surface, *explain(error), time.monotonic() - began)
+        if checked is not None:  # what the checks said may be why
+            said = (*outcome.findings, *checked.findings)
+            outcome = replace(outcome, findings=said, checks=tuple(plain_value(checked.checks)))
+        return SurfaceRecord(outcome, sources)
+    return SurfaceRecord(outcome, sources, rows, shaping)
+
+
+def analyse(
+    surface: PlannedSurface, checked: CheckedScans
+) -> tuple[dict[str, xr.Dataset], list[Finding]]:
+    """Return the groups of a surface's data file, and the findings.
+
+    Raises
+    ------
+    TribolabError
+        If the scans have no spectrum.
+    """
+    from tribolab.campaign.surface_contact import contact_groups, lowest_wavenumber
+    from tribolab.campaign.surface_scans import spectra
+
+    findings = list(checked.findings)
+    q_low = lowest_wavenumber(surface)
+    if q_low is None and "q_low" not in surface.roughness:
+        text = "the spectrum begins where the scans do: no load and contact tell the width of both"
+        findings.append(Finding("note", text))
+    groups, more = spectra(surface, checked.scans, q_low)
+    findings += more
+    contact, more = contact_groups(surface, groups["psd"])
+    return {SCANS: checked.raw} | groups | contact, findings + more
+
+
+def failed_surface(
+    surface: PlannedSurface, reason: str, error: str, seconds: float = 0.0
+) -> SurfaceOutcome:
+    """Return the outcome of a surface that has no results."""
+    return SurfaceOutcome(
+        name=surface.name,
+        files=surface.labels,
+        status="failed",
+        reason=reason,
+        error=error,
+        seconds=seconds,
+        findings=(Finding("fail", reason),),
+    )
+
+
+def _files(surface: PlannedSurface) -> list[tuple[Path, str]]:
+    """Return the scans and the modulus file, with their labels."""
+    files = list(zip(surface.files, surface.labels, strict=True))
+    return files if surface.modulus_file is None else [*files, surface.modulus_file]
+
+
+def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
+    """Return label, checksum and size of the scans and of the modulus file."""
+    return tuple(source_of(path, label) for path, label in _files(surface))
+
+
+def named(sources: Sequence[Source]) -> dict[str, str]:
+    """Return ``source`` and ``source_sha256`` of files."""
+    return {
+        "source": "; ".join(label for label, _, _ in sources),
+        "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
+    }
+
+
+def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) -> xr.Dataset:
+    """Attributes of the whole file; checksums also of what could not be used."""
+    import xarray as xr
+
+    what = f"spectrum and contact of {surface.name}"
+    origin = made(what, **named(sources), config_sha256=surface.config_sha256)
+    return xr.Dataset(attrs={"surface": surface.name, "quality": quality} | origin)

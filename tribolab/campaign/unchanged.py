@@ -1,0 +1,148 @@
+"""Whether anything has changed since the results were made: told without doing any work."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.ledger import Ledger
+from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.plan import PlannedRun, scans_of, sha256_of_dialect
+from tribolab.campaign.store import Catalogue
+from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.records.parts import (
+    CurveOutcome,
+    ModelOutcome,
+    RunOutcome,
+    Source,
+    SurfaceOutcome,
+)
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.store import Store
+
+_FACT = "made from"
+_SOURCES = "sources"
+# Errors that the files themselves give: with the same files they would come again.
+_LASTING = ("ReadError", "AnalysisError", "UnitError", "ConfigError")
+
+
+def note(outcome: Outcome, runs: Sequence[PlannedRun], options: Mapping[str, object]) -> None:
+    """Write down what results are made from, so that `unchanged` finds it.
+
+    Parameters
+    ----------
+    outcome
+        What was made; nothing is written down of what may turn out otherwise next time.
+    runs
+        As they were planned.
+    options
+        Of the report.
+    """
+    parts = (*outcome.runs, *outcome.surfaces, *outcome.models)
+    lasting = all(part.status != "failed" or part.error in _LASTING for part in parts)
+    readable = all(checksum for _, checksum, _ in outcome.sources)
+    if lasting and readable and not outcome.kept and not any(c.crash for c in outcome.curves):
+        store: Store = outcome.store
+        store.say(_FACT, fingerprint(outcome.campaign, runs, options))
+        store.say(_SOURCES, json.dumps(outcome.sources))
+
+
+def fingerprint(
+    campaign: Campaign, runs: Sequence[PlannedRun], options: Mapping[str, object]
+) -> str:
+    """Return the checksum of all that results are made from, but of the raw files' content."""
+    from tribolab.version import __version__
+
+    surfaces = [[str(path) for path in scans_of(campaign, s)] for s in campaign.surface]
+    dialects = [s.instrument and _dialect(campaign, s.instrument) for s in campaign.surface]
+    return sha256_of(
+        {
+            "tribolab_version": __version__,
+            "campaign": sha256_of_file(campaign.file),
+            "runs": [[run.name, run.config_sha256, *map(str, run.files)] for run in runs],
+            "surfaces": surfaces,
+            "dialects": dialects,
+            "options": dict(options),
+        }
+    )
+
+
+def unchanged(
+    campaign: Campaign,
+    runs: Sequence[PlannedRun],
+    place: Path,
+    options: Mapping[str, object],
+    *,
+    verify: bool = False,
+) -> Outcome | None:
+    """Return what the results came to if nothing that they are made from has changed.
+
+    Parameters
+    ----------
+    campaign, runs
+        From `load_and_plan`.
+    place
+        Folder of the results.
+    options
+        Of the report.
+    verify
+        Whether files are read to tell; then the answer is None, since that is work.
+    """
+    catalogue = Catalogue.of(place)
+    made = catalogue.fact(_FACT)
+    if verify or not made or made != fingerprint(campaign, runs, options):
+        return None
+    ledger = Ledger.read(place)
+    if not ledger.is_whole or not _are_known(_inputs(campaign, runs), catalogue):
+        return None
+    sources: list[Source] = [(str(n), str(c), int(b)) for n, c, b in _listed(catalogue)]
+    return Outcome(
+        campaign=campaign,
+        folder=place,
+        store=catalogue,
+        runs=_as_before(catalogue.outcomes("run", RunOutcome)),
+        curves=tuple(catalogue.outcomes("curve", CurveOutcome)),
+        sources=tuple(sources),
+        surfaces=_as_before(catalogue.outcomes("surface", SurfaceOutcome)),
+        models=_as_before(catalogue.outcomes("model", ModelOutcome)),
+        foreign=tuple(ledger.foreign()),
+    )
+
+
+def _listed(catalogue: Catalogue) -> list[list[str]]:
+    listed: list[list[str]] = json.loads(catalogue.fact(_SOURCES) or "[]")
+    return listed
+
+
+def _as_before(parts: Sequence) -> tuple:
+    from dataclasses import replace
+
+    return tuple(replace(part, reused=part.status == "done") for part in parts)
+
+
+def _dialect(campaign: Campaign, instrument: str) -> str:
+    from tribolab.campaign.plan import instrument_of
+
+    return sha256_of_dialect(instrument_of(campaign, instrument))
+
+
+def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[Path]:
+    files = [file for run in runs for file in run.files]
+    files += [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
+    modulus = campaign.contact.modulus_file
+    return files if modulus is None else [*files, campaign.raw / modulus]
+
+
+def _are_known(files: Sequence[Path], catalogue: Catalogue) -> bool:
+    known = catalogue.files()
+    try:
+        return all(
+            (identity := known.get(str(file))) is not None and identity.is_of(file.stat())
+            for file in files
+        )
+    except OSError:
+        return False

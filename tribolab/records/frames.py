@@ -1,0 +1,118 @@
+"""Results over one dimension as tables: a row per segment or point, units in the names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from tribolab.friction.coefficient.steadiness import WORDS
+from tribolab.plot.labels import column
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_FRICTION_FIRST = [
+    "sliding_speed",
+    "direction",
+    "friction_coefficient",
+    "friction_coefficient_std",
+    "friction_coefficient_sem",
+    "effective_samples",
+    "friction_force",
+    "friction_force_std",
+    "friction_force_sem",
+    "normal_force",
+    "normal_force_std",
+    "half_loop",
+    "pair",
+    "start",
+    "stop",
+    "trimmed_start",
+    "trimmed_stop",
+    "sliding_distance",
+    "samples",
+]
+
+
+_CURVE = [
+    "sliding_speed",
+    "friction_coefficient",
+    "friction_coefficient_std",
+    "friction_coefficient_sem",
+    "friction_coefficient_within",
+    "friction_coefficient_between",
+    "runs",
+    "segments",
+]
+
+
+def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame:
+    """Return the variables over one dimension as a table.
+
+    Parameters
+    ----------
+    data
+        Any result of this package.
+    dim
+        The dimension whose entries become rows.
+    first
+        Variables that stand first, in this order; the others follow as in the dataset.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns are called as the variables with their unit; text stays text.
+    """
+    names = [str(n) for n in data.variables if data[n].dims == (dim,)]
+    ordered = [n for n in first if n in names] + [n for n in names if n not in first]
+    columns = {}
+    for name in ordered:
+        values = np.asarray(data[name])
+        columns[name if values.dtype.kind in "OUS" else column(name)] = values
+    return pd.DataFrame(columns)
+
+
+def friction_table(friction: xr.Dataset) -> pd.DataFrame:
+    """Return a run's friction result as a table, a row per segment, numbered from 1."""
+    table = frame(friction, "segment", _FRICTION_FIRST)
+    number = np.arange(1, friction.sizes["segment"] + 1)
+    table = table.drop(columns="segment", errors="ignore")
+    if "steady" in table:
+        table["steady"] = table["steady"].map(WORDS)
+    table.insert(0, "segment", number)
+    return table
+
+
+def curve_table(curve: xr.Dataset) -> pd.DataFrame:
+    """Return a measured curve as a table, a row per sliding speed."""
+    return frame(curve, "sliding_speed", _CURVE)
+
+
+_FIRST = [
+    "sliding_speed",
+    "direction",
+    "waveform",
+    "regularity",
+    "oscillating_time_share",
+    "dominant_frequency",
+    "dominant_wavelength",
+    "recurrence_distance",
+    "drop",
+    "events",
+]
+
+
+def stick_slip_table(slip: xr.Dataset) -> pd.DataFrame:
+    """Return a run's stick-slip as a table, a row per segment, numbered from 1."""
+    table = frame(slip, "segment", _FIRST).drop(columns="segment", errors="ignore")
+    probability = slip["class_probability"].max("waveform_class").values
+    table.insert(3, "class_probability", probability)
+    table.insert(0, "segment", np.arange(1, slip.sizes["segment"] + 1))
+    return table

@@ -1,0 +1,74 @@
+"""All that is recorded of how one measured contact slides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tribolab.records.parts import CurveOutcome, ModelOutcome, Row
+
+
+@dataclass(frozen=True)
+class EvidenceRow:
+    """One piece of evidence: for or against an adhesion-controlled mode, or neutral."""
+
+    side: str
+    text: str
+    topic: str
+
+
+@dataclass(frozen=True)
+class ModeRecord:
+    """The sliding mode of one measured curve.
+
+    Parameters
+    ----------
+    curve
+        Name of the measured curve; "" where the mode could not be judged.
+    condition
+        Its surface, medium and load in words.
+    verdict, text, paragraph, decide
+        See `tribolab.mode.verdict.SlidingMode`.
+    evidence
+        What it rests on.
+    numbers
+        By name, with their unit in it.
+    segments, segments_oscillating
+        How many were looked at, and how many oscillate.
+    scaling, scaling_exponent, scaling_error
+        Whether the frequency goes with the speed.
+    speeds
+        A row per sliding speed.
+    moves
+        Whether stick-slip is claimed at any speed.
+    """
+
+    curve: str
+    condition: str
+    verdict: str
+    text: str
+    paragraph: str
+    decide: tuple[str, ...]
+    evidence: tuple[EvidenceRow, ...]
+    numbers: Row = field(default_factory=dict)
+    segments: int = 0
+    segments_oscillating: int = 0
+    scaling: str = ""
+    scaling_exponent: float | None = None
+    scaling_error: float | None = None
+    speeds: tuple[Row, ...] = ()
+    moves: bool = False
+
+
+def condition(curve: CurveOutcome | ModelOutcome) -> str:
+    """Name a curve or its model by its surface, medium and load.
+
+    A curve whose runs name none of them is called by its own name.
+    """
+    words = curve.surface
+    if curve.medium:
+        words += f" {curve.medium}" if curve.medium == "dry" else f" in {curve.medium}"
+    if not words.strip():
+        return curve.name
+    if curve.normal_force is not None:
+        words += f" at {curve.normal_force:g} N"
+    return words.strip()

@@ -1,0 +1,136 @@
+"""Rows of one model: its fit, its curve, and what moves it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.records.frames import frame
+from tribolab.records.model_words import judgement
+from tribolab.records.parts import Row
+from tribolab.records.wording import plain_value, validity_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+LABELS = ("surface", "medium", "normal_force_N")
+
+
+FITTED = (
+    *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_common_error_Pa"),
+    *("shear_stress_total_error_Pa", "shear_stress_statistical_half_interval_Pa"),
+    *("area_enhancement", "area_enhancement_error"),
+    *("area_enhancement_low", "area_enhancement_high"),
+    *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa"),
+    *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
+    *("valid_speed_low_m_s", "valid_speed_high_m_s", "residual_correlation", "interval_says"),
+)
+
+
+@dataclass(frozen=True)
+class ModelRows:
+    """Rows of one model; `fit` is None where no shear stress could be fitted.
+
+    Parameters
+    ----------
+    fit
+        By the columns of the table of shear stresses.
+    curve
+        A row per sliding speed.
+    sensitivity
+        A row per variation of what is not known.
+    not_varied
+        What was held fixed.
+    shift
+        Relative change of the shear stress, downwards and upwards, that the spectrum's error makes.
+    validity
+        Why the model is not sure, beyond the limits of the theory.
+    """
+
+    fit: Row | None
+    curve: tuple[Row, ...]
+    sensitivity: tuple[Row, ...] = ()
+    not_varied: str = ""
+    shift: tuple[float, float] | None = None
+    validity: str = ""
+
+
+def model_rows(
+    groups: Mapping[str, xr.Dataset],
+    medium: str,
+    normal_force: float,
+    adhesion: xr.Dataset | None,
+) -> ModelRows:
+    """Return the rows of a model from the groups of its data file.
+
+    Parameters
+    ----------
+    groups
+        ``curve``; where there: ``fit``, ``uncertainty``.
+    medium, normal_force
+        In which, and at which load [N].
+    adhesion
+        Adhesion of the surface at the loads (medium, load); None if it is not known.
+    """
+    from tribolab.fit.spectrum_error import shear_stress_shift
+
+    curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
+    rows = ModelRows(
+        None, tuple(plain_value(curve.to_dict("records"))), validity=validity_of(groups.values())
+    )
+    if "fit" in groups:
+        attrs = groups["fit"].attrs
+        fit = {key: attrs[key] for key in FITTED}
+        fit["area_dry_over_wet"] = _dry_over_wet(adhesion, medium, normal_force)
+        fit["judgement"] = judgement(groups["fit"])
+        rows = replace(rows, fit=plain_value(fit))
+    if "uncertainty" in groups:
+        varied = groups["uncertainty"]
+        rows = replace(
+            rows,
+            sensitivity=tuple(plain_value(_sensitivity(varied))),
+            not_varied=str(varied.attrs["not_varied"]),
+            shift=shear_stress_shift(varied),
+        )
+    return rows
+
+
+def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
+    """Real contact area dry over that in the medium, at the same load; None if not known."""
+    from tribolab.plot.curves import is_dry
+
+    if adhesion is None:
+        return None
+    dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]
+    if not dry or medium not in adhesion.medium.values:
+        return None
+    forces = adhesion["normal_force"].values.ravel()
+    at = int(np.argmin(np.abs(forces - normal_force)))
+    area = adhesion["contact_area_ratio"].isel(load=at)
+    return float(area.sel(medium=dry[0]) / area.sel(medium=medium))
+
+
+def _sensitivity(found: xr.Dataset) -> list[dict[str, Any]]:
+    rows = []
+    for name in found["variation"].values.tolist():
+        one = found.sel(variation=name)
+        rows.append(
+            {
+                "variation": name,
+                "low": str(one["variation_low"].values),
+                "high": str(one["variation_high"].values),
+                "largest_change": float(one["largest_change"]),
+                "largest_change_speed_m_s": float(one["largest_change_speed"]),
+                "largest_relative_change": float(one["largest_relative_change"]),
+                "largest_relative_change_speed_m_s": float(one["largest_relative_change_speed"]),
+                "shear_stress_change_low": float(one["shear_stress_change_low"]),
+                "shear_stress_change_high": float(one["shear_stress_change_high"]),
+                "reason": str(one["variation_reason"].values),
+            }
+        )
+    rows.sort(key=lambda row: -row["largest_change"])
+    return rows

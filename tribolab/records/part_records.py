@@ -1,0 +1,99 @@
+"""All that is recorded of curves, surfaces, models and figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tribolab.records.model_rows import ModelRows
+from tribolab.records.parts import CurveOutcome, ModelOutcome, Row, Source, SurfaceOutcome
+from tribolab.records.surface_rows import SurfaceRows
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Files that a product was made from, and their checksums, as its attributes name them."""
+
+    source: str = ""
+    source_sha256: str = ""
+
+
+@dataclass(frozen=True)
+class CurveRecord:
+    """One measured curve.
+
+    Parameters
+    ----------
+    outcome
+        The little that the rest of a campaign has to know.
+    points
+        A row per sliding speed.
+    levels
+        Friction level of each run over that of all [1]; none of a curve of one run.
+    digest
+        Checksum of the curve's values.
+    origin
+        What it was made from.
+    no_slip
+        Why there is no stick-slip over speed; "" if there is.
+    """
+
+    outcome: CurveOutcome
+    points: tuple[Row, ...] = ()
+    levels: tuple[float, ...] = ()
+    digest: str = ""
+    origin: Origin = Origin()
+    no_slip: str = ""
+
+
+@dataclass(frozen=True)
+class SurfaceRecord:
+    """One surface.
+
+    Parameters
+    ----------
+    outcome
+        The little that the rest of a campaign has to know.
+    sources
+        Its scans, and the file of the modulus.
+    rows
+        What is shown of it; None of one that failed.
+    digest
+        Checksum of the values that models are made from.
+    """
+
+    outcome: SurfaceOutcome
+    sources: tuple[Source, ...] = ()
+    rows: SurfaceRows | None = None
+    digest: str = ""
+
+
+@dataclass(frozen=True)
+class ModelRecord:
+    """One model, and what is shown of it; None of one that failed."""
+
+    outcome: ModelOutcome
+    rows: ModelRows | None = None
+
+
+@dataclass(frozen=True)
+class FigureRecord:
+    """One figure in the results folder.
+
+    Parameters
+    ----------
+    file, data
+        Paths of the picture and of the numbers that it shows, relative to the folder; `data` is ""
+        if it keeps none.
+    caption
+        What stands below it.
+    alt
+        What it shows, in words and numbers, for who does not see it.
+    kind
+        What the page groups it by.
+    """
+
+    file: str
+    data: str
+    caption: str
+    alt: str
+    kind: str = ""

@@ -1,0 +1,241 @@
+"""One small record per run, curve, surface and model, and what is said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.validity import reasons_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class RunOutcome:
+    """One run: done or failed, and where its data are.
+
+    Parameters
+    ----------
+    name
+        Unique within the campaign; safe as a file name.
+    files
+        Raw files, relative to the campaign file.
+    surface, medium
+        As the campaign file calls them; "" where it says nothing.
+    normal_force
+        Set-point [N] of the campaign file, else of the raw file, else None.
+    status
+        "done" or "failed".
+    reason
+        Why it failed, in one line; "" for a run that is done.
+    error
+        Class name of the error; "" for a run that is done.
+    data_file
+        Path of the netCDF file relative to the results folder; "" for a failed run.
+    reused
+        Whether the data file was taken over from the previous results.
+    seconds
+        Time [s] that the run took.
+    segments
+        Number of segments found.
+    quality
+        Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
+        a run that could not be checked.
+    kept
+        Since when and why these are earlier results, because the raw file cannot be read now; ""
+        for everything else.
+    """
+
+    name: str
+    files: tuple[str, ...]
+    surface: str
+    medium: str
+    normal_force: float | None
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    segments: int = 0
+    quality: str = ""
+    kept: str = ""
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results of this run."""
+        return self.status == "done"
+
+
+@dataclass(frozen=True)
+class CurveOutcome:
+    """One measured curve: the runs of one surface, medium and load, taken together.
+
+    `status` and `reason` are as for a run; `data_file` is "" for a curve that failed. `crash` is
+    the traceback of an error that nobody raised on purpose, else "".
+    """
+
+    name: str
+    surface: str
+    medium: str
+    normal_force: float | None
+    data_file: str
+    run_names: tuple[str, ...]
+    status: str = "done"
+    reason: str = ""
+    crash: str = ""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a curve."""
+        return self.status == "done"
+
+
+Cell = float | int | str | bool | None
+Row = dict[str, Cell]  # of a table: by the column's name, with its unit; None where not known
+Source = tuple[str, str, int]  # label, sha256 ("" if it cannot be read), bytes
+
+
+class Notice(NamedTuple):
+    """A finding as the report shows it: how grave, of which run, where, and what."""
+
+    severity: str
+    run: str
+    where: str
+    message: str
+
+
+class RunZero(NamedTuple):
+    """What a run's result says of its zero.
+
+    Parameters
+    ----------
+    instrument
+        What recorded it; "" where that is not known, and then nothing is lent.
+    own
+        Its own zero [N], or None.
+    lent
+        What other runs lent to it, as text; None where it wants nothing.
+    """
+
+    instrument: str
+    own: float | None
+    lent: str | None
+
+
+class Finding(NamedTuple):
+    """Something that a reader of the results should know: "fail", "error", "suspect", "note".
+
+    `check` is the name of the check on the raw data that says so; "" for everything else.
+    """
+
+    severity: str
+    message: str
+    check: str = ""
+
+
+def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
+    """Return a finding for each limit of the theory that a result leaves, see `validity`.
+
+    Parameters
+    ----------
+    groups
+        Results by the name of their group, with the attribute ``validity_reasons``.
+    """
+    where: dict[str, list[str]] = {}
+    for name, data in groups.items():
+        for reason in reasons_of(data.attrs):
+            where.setdefault(reason, []).append(name)
+    return [Finding("suspect", f"{', '.join(names)}: {reason}") for reason, names in where.items()]
+
+
+@dataclass(frozen=True)
+class SurfaceOutcome:
+    """One surface: its spectrum, contact and adhesion, as far as they could be computed.
+
+    Parameters
+    ----------
+    name
+        As the campaign file calls it.
+    files
+        Scans, relative to the campaign file; those that could not be used are in the findings.
+    parts
+        Names of the groups in the data file.
+    findings
+        What went wrong, what was left out, and why.
+    quality
+        Gravest finding of the checks on the scans that were used, as for a run.
+    checks
+        What every check said of every scan: a row each, with the scan's file as "scan".
+    status, reason, error, data_file, reused, seconds, kept
+        As for a run.
+    """
+
+    name: str
+    files: tuple[str, ...]
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    parts: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    quality: str = ""
+    checks: tuple[Row, ...] = ()
+    kept: str = ""
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results of this surface."""
+        return self.status == "done"
+
+    @property
+    def unreadable(self) -> tuple[Finding, ...]:
+        """What could not be read or computed."""
+        grave = ("fail", "error")
+        return tuple(f for f in self.findings if f.severity in grave and not f.check)
+
+    @property
+    def objections(self) -> set[str]:
+        """Every status that the checks gave to the scans, also to those that were left out."""
+        return {f.severity for f in self.findings if f.check and f.severity != "note"}
+
+
+@dataclass(frozen=True)
+class ModelOutcome:
+    """The model of one measured curve, with the shear stress that was fitted to it.
+
+    Parameters
+    ----------
+    name
+        That of the data file: ``model_`` and the curve's name.
+    curve, surface, medium, normal_force
+        The measured curve that it belongs to, as in its `CurveOutcome`.
+    parts
+        Names of the groups in the data file.
+    status, reason, error, data_file, reused, seconds, kept
+        As for a run; "skipped" if the campaign file knows too little for a model.
+    """
+
+    name: str
+    curve: str
+    surface: str
+    medium: str
+    normal_force: float | None
+    status: str
+    reason: str = ""
+    error: str = ""
+    data_file: str = ""
+    reused: bool = False
+    seconds: float = 0.0
+    parts: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    kept: str = ""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a model."""
+        return self.status == "done"

@@ -1,0 +1,156 @@
+"""Rows of one surface: its roughness, its contact at the loads, its adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.plot.labels import column
+from tribolab.records.parts import Row
+from tribolab.records.wording import plain_value, validity_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_BAND = ("", "_low", "_high")
+
+
+ROUGHNESS = [
+    "scans",
+    *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
+    *(f"rms_roughness{end}_m" for end in _BAND),
+    *(f"rms_slope{end}" for end in _BAND),
+    *("measured_rms_roughness_m", "measured_rms_slope"),
+    *("hurst_exponent", "hurst_exponent_standard_error", "rolloff_wavenumber_1_m"),
+    *("wavenumber_low_1_m", "measured_low_1_m", "measured_high_1_m", "wavenumber_high_1_m"),
+    *("form_radius_m", "tip_radius_m", "lambda_c_m"),
+]
+
+
+CONTACT = [
+    *("normal_force_N", "load_N_m", "pressure_Pa", "hertz_max_pressure_Pa", "hertz_width_m"),
+    *(f"contact_area_ratio{end}" for end in _BAND),
+    *("separation_m", "rough_max_pressure_Pa", "rough_contact_width_m"),
+    *("rough_central_separation_m", "viscoelastic_friction_1_um_s", "viscoelastic_friction_1_mm_s"),
+]
+
+
+ADHESION = [
+    "medium",
+    *(f"work_of_adhesion{end}_J_m2" for end in _BAND),
+    *(f"macroscopic_work_of_adhesion{end}_J_m2" for end in _BAND),
+    "pull_off",
+    *("normal_force_N", "load_N_m", "pressure_Pa", "contact_area_ratio_no_adhesion"),
+    *(f"contact_area_ratio{end}" for end in _BAND),
+    *(f"area_enhancement{end}" for end in _BAND),
+    *("hertz_width_m", "jkr_width_m"),
+]
+
+
+@dataclass(frozen=True)
+class SurfaceRows:
+    """Rows of one surface: of roughness one, of contact one per load, of adhesion per medium too.
+
+    Keys are the tables' columns, with their unit in the name; None where it is not known.
+    """
+
+    name: str
+    roughness: Row
+    contact: tuple[Row, ...]
+    adhesion: tuple[Row, ...]
+    modulus: str
+    quality: str = ""
+    validity: str = ""
+
+
+def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> SurfaceRows:
+    """Return the rows of a surface from the groups of its data file.
+
+    Parameters
+    ----------
+    name
+        Of the surface.
+    groups
+        ``roughness`` and ``psd``; where there: ``contact``, ``loads``, ``line``, ``rubber``,
+        ``adhesion_loads``.
+    quality
+        Gravest status of the checks on its scans.
+    """
+    return SurfaceRows(
+        name,
+        plain_value(_roughness(groups["roughness"], groups["psd"])),
+        tuple(plain_value(_contact(groups))),
+        tuple(plain_value(_adhesion(groups))),
+        str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
+        quality,
+        validity_of(groups.values()),
+    )
+
+
+def _roughness(found: xr.Dataset, psd: xr.Dataset) -> dict[str, Any]:
+    rough = dict.fromkeys(ROUGHNESS)
+    for name in ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq"):
+        rough[column(name)] = float(found[name].mean())
+    for name in ("rms_roughness", "rms_slope"):
+        for end in _BAND:
+            if name + end in found:
+                rough[column(name + end)] = float(found[name + end])
+    attrs = psd.attrs | found.attrs
+    rough |= {key: attrs[key] for key in ROUGHNESS if key in attrs}
+    q = psd.wavenumber.values
+    rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
+    return rough
+
+
+def _contact(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+    """One row per load; without loads one per pressure."""
+    if "contact" not in groups:
+        return []
+    if "loads" not in groups:
+        return [dict.fromkeys(CONTACT) | row for row in _rows(groups["contact"], "pressure")]
+    renamed = {"max_pressure_Pa": "hertz_max_pressure_Pa", "contact_width_m": "hertz_width_m"}
+    result = [
+        dict.fromkeys(CONTACT) | {renamed.get(key, key): value for key, value in row.items()}
+        for row in _rows(groups["loads"], "load")
+    ]
+    if "line" in groups:
+        for row, line in zip(result, _rows(groups["line"], "load"), strict=True):
+            for key in ("max_pressure_Pa", "contact_width_m", "central_separation_m"):
+                row[f"rough_{key}"] = line[key]
+    if "rubber" in groups:
+        speed = groups["rubber"].sliding_speed.values
+        for end, at in (("1_um_s", 1e-6), ("1_mm_s", 1e-3)):
+            mu = groups["rubber"].friction_coefficient.values[:, np.argmin(abs(speed / at - 1))]
+            for row, value in zip(result, mu, strict=True):
+                row[f"viscoelastic_friction_{end}"] = float(value)
+    return result
+
+
+def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+    if "adhesion_loads" not in groups:
+        return []
+    found, result = groups["adhesion_loads"], []
+    widths = groups["loads"].contact_width.values if "loads" in groups else []
+    for medium in found.medium.values.tolist():
+        mine = found.sel(medium=medium)
+        whole = {"medium": medium} | {
+            column(str(name)): mine[name].item() for name in mine.data_vars if not mine[name].dims
+        }
+        rows = _rows(mine.drop_vars("magnification"), "load") or [{}]
+        for number, row in enumerate(rows):
+            width = {"jkr_width_m": row.pop("contact_width_m", None)}
+            if len(widths):
+                width["hertz_width_m"] = float(widths[number])
+            result.append(dict.fromkeys(ADHESION) | whole | row | width)
+    return result
+
+
+def _rows(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
+    """Return the variables over one dimension, a row per entry, named as the tables' columns."""
+    names = [str(name) for name in data.variables if data[name].dims == (dim,)]
+    values = {column(name): data[name].values.tolist() for name in names}
+    return [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]

@@ -1,0 +1,163 @@
+"""The figures of a report: drawn by workers, taken over where what they show is the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.store import Store
+from tribolab.errors import ConfigError, shown
+from tribolab.provenance import sha256_of
+from tribolab.records.part_records import FigureRecord
+from tribolab.records.parts import Notice
+from tribolab.report.figure_files import DRAWING, Drawn, save_figure
+from tribolab.words import explain
+
+KIND = "figure"
+Wanted = Literal["all", "curves", "none"]
+
+
+@dataclass(frozen=True)
+class FigureTask:
+    """A figure to draw.
+
+    Parameters
+    ----------
+    section
+        Key of report.json under which its record stands.
+    file
+        Path of the picture relative to the results folder.
+    title
+        What it shows.
+    draw
+        Function of a module, that it may travel: `what` in, and the results folder; the figure,
+        its caption, what it says in words, and its kind out. None where there is nothing to show.
+    what
+        What `draw` wants to know.
+    files
+        Data files that it reads.
+    pdf
+        Whether to write it as PDF, too.
+    """
+
+    section: str
+    file: str
+    title: str
+    draw: Callable[[Any, Path], Drawn | None]
+    what: Any
+    files: tuple[str, ...]
+    folder: Path = Path()
+    pdf: bool = False
+    fingerprint: str = ""
+
+
+class Figures(Stage[FigureTask, "FigureRecord | None", "tuple[str, FigureRecord | Notice | None]"]):
+    """The stage of the figures.
+
+    Parameters
+    ----------
+    tasks
+        What is to be drawn.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = KIND + "s"
+
+    def __init__(self, tasks: Sequence[FigureTask], store: Store) -> None:
+        self._tasks = tasks
+        self._store = store
+
+    def plan(self) -> Sequence[FigureTask]:
+        """Return the figures, each with the checksum of what it is drawn from."""
+        return self._tasks
+
+    def known(
+        self, task: FigureTask, place: int
+    ) -> tuple[str, FigureRecord | Notice | None] | None:
+        """Take over a figure whose data are the same."""
+        entry = self._store.before.get(KIND, task.file, FigureRecord)
+        if entry is None or entry.fingerprint != task.fingerprint:
+            return None
+        record = entry.record
+        if not self._store.link(KIND, task.file, record.file, record.file):
+            return None
+        beside = [record.data] if record.data else []
+        beside += [str(Path(record.file).with_suffix(".pdf"))] if task.pdf else []
+        if not all(self._store.link_beside(file) for file in beside):
+            return None
+        self._store.put(KIND, task.file, place, task.fingerprint, record)
+        return task.section, record
+
+    @staticmethod
+    def work(task: FigureTask) -> FigureRecord | None:
+        """Draw one figure into the results."""
+        return draw(task)
+
+    def failed(self, task: FigureTask, error: BaseException) -> Any:
+        """Return why a figure could not be drawn."""
+        return Notice("error", "", f"figure {task.title}", explain(error)[0])
+
+    def keep(
+        self, task: FigureTask, place: int, record: Any
+    ) -> tuple[str, FigureRecord | Notice | None]:
+        """Write down a figure."""
+        if isinstance(record, FigureRecord):
+            self._store.put(KIND, task.file, place, task.fingerprint, record)
+        return task.section, record
+
+
+def draw(task: FigureTask) -> FigureRecord | None:
+    """Draw one figure, and write it with the numbers that it shows."""
+    with DRAWING:
+        drawn = task.draw(task.what, task.folder)
+        if drawn is None:
+            return None
+        return save_figure(drawn, task.folder, task.file, pdf=task.pdf)
+
+
+def planned(
+    section: str,
+    figures: Sequence[Any],
+    draw: Callable[[Any, Path], Drawn | None],
+    store: Store,
+    *,
+    pdf: bool = False,
+) -> list[FigureTask]:
+    """Make tasks of what is to be drawn: things with `file`, `title` and the `files` they read."""
+    from tribolab.version import __version__
+
+    tasks = []
+    for what in figures:
+        identities = [store.identity(file) for file in what.files]
+        shaping = [__version__, draw.__qualname__, repr(what), identities]
+        tasks.append(
+            FigureTask(
+                section=section,
+                file=what.file,
+                title=what.title,
+                draw=draw,
+                what=what,
+                files=tuple(what.files),
+                folder=store.folder,
+                pdf=pdf,
+                fingerprint=sha256_of(shaping),
+            )
+        )
+    return tasks
+
+
+def wanted(word: str) -> Wanted:
+    """Return which figures are meant.
+
+    Raises
+    ------
+    ConfigError
+        If the word is none of ``"all"``, ``"curves"``, ``"none"``.
+    """
+    if word == "all" or word == "curves" or word == "none":
+        return word
+    raise ConfigError(f"figures: '{shown(word)}' is none of all, curves, none")
