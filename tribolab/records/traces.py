@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypedDict
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,14 +26,15 @@ _SIGNAL_BYTES = 2 * 16 / 3  # of a point of two signals: four bytes each, as tex
 _COARSE_BYTES, _FINE_BYTES = 3e6, 6e6  # of all runs together
 
 
-class FlaggedSpan(TypedDict):
-    """Where a check objected to a signal."""
+@dataclass(frozen=True)
+class FlaggedSpan:
+    """Where checks objected to a signal: suspect or fail, from when to when [s], which checks."""
 
     signal: str
     severity: str
-    start_s: float | None
-    stop_s: float | None
-    checks: list[str]
+    start_s: float
+    stop_s: float
+    checks: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ def trace(
         "clock": [clock.knots, clock.at_s],
         **_signals(run, segments, friction, clock, points, deflate=False),
         "segments": _segments(segments, friction, main_signal(run, friction).name),
-        "flags": flagged_spans(run),
+        "flags": [asdict(span) for span in flagged_spans(run)],
     }
 
 
@@ -272,24 +273,25 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
             breaks = np.flatnonzero(np.diff(time[hit]) > near)
             for part in np.split(hit, breaks + 1):
                 spans.append(
-                    {
-                        "signal": name,
-                        "severity": severity,
-                        "start_s": _short(time[part[0]]),
-                        "stop_s": _short(time[part[-1]]),
-                        "checks": [] if tests is None else _checks(run, name, tests[part]),
-                    }
+                    FlaggedSpan(
+                        signal=name,
+                        severity=severity,
+                        start_s=float(f"{time[part[0]]:.9g}"),
+                        stop_s=float(f"{time[part[-1]]:.9g}"),
+                        checks=() if tests is None else _checks(run, name, tests[part]),
+                    )
                 )
-    longest = sorted(spans, key=lambda span: span["start_s"] - span["stop_s"])[:_MOST_SPANS]
-    return sorted(longest, key=lambda span: span["start_s"])
+    longest = sorted(spans, key=lambda span: span.start_s - span.stop_s)[:_MOST_SPANS]
+    return sorted(longest, key=lambda span: span.start_s)
 
 
-def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> list[str]:
+def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
     attrs = run[f"{name}_qc_tests"].attrs
     masks = np.atleast_1d(np.asarray(attrs.get("flag_masks", [])))
     words = str(attrs.get("flag_meanings", "")).split()
     seen = np.bitwise_or.reduce(tests)
-    return [word for mask, word in zip(masks, words, strict=False) if int(mask) & int(seen)]
+    found = zip(masks, words, strict=False)
+    return tuple(word for mask, word in found if int(mask) & int(seen))
 
 
 def as_text(data: Any) -> str:
