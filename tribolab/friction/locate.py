@@ -24,7 +24,7 @@ KEPT = ("constant", "at rest")
 STILL = 1e-7  # of the highest speed: nothing slower is told from rest
 SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
 SOMEWHERE = 0.01  # of the longest way of a piece
-BRIEF = 4.0  # a plateau beside a ramp longer than this many times itself has to prove itself
+BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
 PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 

@@ -30,11 +30,14 @@ from tribolab.friction.plateaus import running_median
 
 MOST = 512  # readings of a fit; more are averaged
 WILD = 8.0  # times the usual distance from the neighbours' median
+WILD_SHARE = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
+BESIDE = (0.5, 1.0)  # lengths of the piece that are looked at beside it
 CORNERS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
 TURNS = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
+FINER = 4  # times the places of the turn are narrowed down, tenfold each
 BETTER = 10.0  # in Schwarz's criterion: very strong evidence
 KNOWN = 2.0  # standard errors of the change that have to lie within the drift
-SURE = 5.0  # standard errors by which a change is sure
+SURE = 4.0  # standard errors by which a change is sure
 
 
 class Readings(NamedTuple):
@@ -45,12 +48,15 @@ class Readings(NamedTuple):
     is_position: bool
 
     def within(self, begin: float, end: float) -> Readings:
-        """Readings from one moment to another, averaged where they are many."""
+        """Return the readings between two moments, averaged where they are many."""
         first, last = np.searchsorted(self.time, [begin, end])
         time, values = self.time[first:last], self.values[first:last]
         median = running_median(values)
-        off = np.abs(values - median)
-        values = np.where(off > WILD * max(np.mean(off), 1e-300), median, values)
+        if values.size:
+            off = np.abs(values - median)
+            # a turn is no spike, however little noise there is
+            least = WILD_SHARE[self.is_position] * float(np.ptp(median))
+            values = np.where(off > max(WILD * float(np.mean(off)), least), median, values)
         size = -(-time.size // MOST)
         if size > 1:
             count = time.size // size
@@ -165,7 +171,14 @@ def is_proven(
     change, error = change_along(readings, begin, end)
     if not change + KNOWN * error <= most:
         return False
-    size = end - begin
+    return any(_is_level(readings, begin, end, sides, beside) for beside in BESIDE)
+
+
+def _is_level(
+    readings: Readings, begin: float, end: float, sides: tuple[bool, bool], beside: float
+) -> bool:
+    """Whether a level with its flanks is better than one smooth motion or one turn."""
+    size = beside * (end - begin)
     window = readings.within(begin - sides[0] * size, end + sides[1] * size)
     time, values = window.time, window.values - window.values.mean()
     if time.size < 12:
@@ -173,32 +186,40 @@ def is_proven(
     middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
     place = (time - middle) / half
     corners = (begin - middle) / half, (end - middle) / half
-    level = _best(window, place, values, _levels(place, corners, sides))
-    other = _best(window, place, values, _motions(place))
-    return level + BETTER < other
 
+    def fitted(motion: list[np.ndarray], free: int) -> tuple[Fit, int]:
+        return _fit(_columns(window, place, motion), values), free
 
-def _best(
-    window: Readings, place: np.ndarray, values: np.ndarray, motions: list[tuple]
-) -> float:
-    """Least of Schwarz's criterion over some motions, each with its number of free places."""
-    fits = [(_fit(_columns(window, place, motion), values), free) for motion, free in motions]
-    least = min(fits, key=lambda one: one[0].variance)[0].samples
-    return min(
-        least * float(np.log(fit.variance)) + (fit.parameters + free) * float(np.log(place.size))
-        for fit, free in fits
-    )
+    levels = [fitted(*case) for case in _levels(place, corners, sides)]
+    others = [fitted(*case) for case in _motions(place)]
+    turns, width = TURNS, TURNS[1] - TURNS[0]
+    for _ in range(FINER):
+        found = [fitted(_turn(place, at), 1) for at in turns]
+        others += found
+        best = int(np.argmin([fit.variance for fit, _ in found]))
+        turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
+    # one count of readings for all: that of the motion that leaves least
+    count = min(levels + others, key=lambda one: one[0].variance)[0].samples
+
+    def schwarz(fits: list[tuple[Fit, int]]) -> float:
+        price = np.log(time.size)
+        return min(
+            count * float(np.log(fit.variance)) + (fit.parameters + free) * price
+            for fit, free in fits
+        )
+
+    return schwarz(levels) + BETTER < schwarz(others)
 
 
 def _levels(
     place: np.ndarray, corners: tuple[float, float], sides: tuple[bool, bool]
-) -> list[tuple]:
+) -> list[tuple[list[np.ndarray], int]]:
     """Levels with a line on each side that has a ramp; their corners move a little."""
-    size, flat = corners[1] - corners[0], np.ones(place.size)
+    size = corners[1] - corners[0]
     found = []
     for before in CORNERS if sides[0] else (None,):
         for after in CORNERS if sides[1] else (None,):
-            motion = [flat]
+            motion = [np.ones(place.size), place]
             for shift, corner, way in ((before, corners[0], -1), (after, corners[1], 1)):
                 if shift is not None:
                     beyond = way * (place - corner) - shift * size
@@ -207,8 +228,11 @@ def _levels(
     return found
 
 
-def _motions(place: np.ndarray) -> list[tuple]:
-    """Smooth motions and turns."""
-    flat = np.ones(place.size)
-    smooth = list(legendre.legvander(place, 4).T)
-    return [(smooth, 0), *(([flat, place, np.abs(place - at)], 1) for at in TURNS)]
+def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:
+    """Two lines that meet."""
+    return [np.ones(place.size), place, np.abs(place - at)]
+
+
+def _motions(place: np.ndarray) -> list[tuple[list[np.ndarray], int]]:
+    """Smooth motions."""
+    return [(list(legendre.legvander(place, degree).T), 0) for degree in (1, 2, 3, 4)]
