@@ -28,7 +28,7 @@ ALIKE = 0.35  # correlation of neighbouring bins from which on they are no noise
 BETTER = 0.35  # share of the variance about a constant that is left by one smooth motion
 SURE = 40.0  # squares (in variances) by which a cubic is better than a constant, if not by chance
 FEWEST = 6  # bins that tell a curvature
-FEW = 4096  # readings of a piece that are looked at one by one
+FEW = 16 * INSIDE  # readings of a piece whose bins hold too few to tell their own noise
 
 
 class Record:
