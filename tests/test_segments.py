@@ -1,5 +1,7 @@
 """All plateaus of a record are found and nothing else, whatever the noise, rate and order."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -406,6 +408,62 @@ def test_a_plateau_survives_its_start_and_a_ripple_of_one_percent(wave):
         assert found["direction"].values.tolist() == [1, -1, 1]
         assert found["sliding_speed"].values == pytest.approx([1e-3, 3e-3, 1e-2], rel=0.01)
         assert found["stop"].values == pytest.approx([30, 60, 90], abs=0.5)
+
+
+def cycles(name, count, place):
+    """Return one of the motions over many cycles; `place` from 0 to 1."""
+    turn = count * place
+    return {
+        "triangles": 1 - np.abs(2 * (turn % 1) - 1),
+        "both ways": 4 * np.abs((turn + 0.25) % 1 - 0.5) - 1,
+        "sines": np.sin(2 * np.pi * turn),
+        "half sines": np.abs(np.sin(np.pi * turn)),
+        "saws": turn % 1,
+    }[name]
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("name", ["triangles", "both ways", "sines", "half sines", "saws"])
+def test_many_cycles_leave_no_speck_of_constant_speed(name, seed):
+    rng = np.random.default_rng([seed, 4])
+    count, each = int(rng.integers(2, 18)), int(rng.choice([60, 200, 500]))
+    motion = cycles(name, count, np.arange(count * each) / (count * each))
+    motion = np.concatenate([np.zeros(each), motion, np.zeros(each)])
+    noise = rng.choice([0, 1e-3, 1e-2]) * rng.standard_normal(motion.size)
+    reading = motion * (1 + noise) + 1e-4 * rng.standard_normal(motion.size)
+    assert find_segments(velocity_run(reading)).sizes["segment"] == 0
+    run = position_run(motion)
+    way = float(np.ptp(run["position"].values))
+    scatter = rng.choice([0, 1e-4, 8e-4]) * rng.standard_normal(motion.size)
+    digit = way * 10 ** rng.uniform(-5, -3)
+    position = np.round((run["position"] + way * scatter) / digit) * digit
+    assert find_segments(run.assign(position=position)).sizes["segment"] == 0
+
+
+@pytest.mark.parametrize("of_position", [False, True])
+def test_plateaus_between_ramps_as_long_as_themselves_prove_themselves(of_position):
+    rng = np.random.default_rng(8)
+    levels = [0.0, 4e-3, 1e-2, -5e-3, 2e-3, 0.0]
+    parts = [np.zeros(300)]
+    for before, after in pairwise(levels):
+        parts += [np.linspace(before, after, 300), np.full(300, after)]
+    velocity = np.concatenate(parts)
+    reading = velocity * (1 + 0.01 * rng.standard_normal(velocity.size))
+    run = position_run(velocity, noise=1e-6) if of_position else velocity_run(reading)
+    found = find_segments(run, trim=0)
+    signed = found["sliding_speed"].values * found["direction"].values
+    assert signed == pytest.approx([4e-3, 1e-2, -5e-3, 2e-3], rel=0.02)
+    assert (found["stop"] - found["start"]).values == pytest.approx([3.0] * 4, abs=0.6)
+
+
+@pytest.mark.parametrize("steps", [0.126, 0.51, 0.875, 1.13])
+def test_digits_that_make_a_regular_pattern_split_no_stroke(steps):
+    """Readings that move on by 7/8 of a digit differ by a whole one seven times out of eight."""
+    velocity = np.tile(np.repeat([0.0, 1.0, 0.0, -1.0], [50, 1200, 50, 1200]), 3) * steps * 100
+    run = position_run(velocity)
+    found = find_segments(run.assign(position=np.round(run["position"]) * 1e-6), trim=0)
+    assert found["direction"].values.tolist() == [1, -1] * 3
+    assert found["sliding_speed"].values == pytest.approx(np.full(6, steps * 1e-4), rel=2e-3)
 
 
 def test_a_triangle_beside_a_plateau_takes_nothing_from_it():

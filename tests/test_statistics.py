@@ -226,3 +226,17 @@ def test_intervals_of_few_effective_samples_hold_by_student_s_t():
         assert one.sem >= 0.99 * student_widening(one.effective_samples) * one.std / np.sqrt(
             one.effective_samples
         )
+
+
+@pytest.mark.parametrize("share", [0.05, 0.15, 0.3])
+def test_three_errors_hold_the_mean_of_friction_whose_memory_is_long_beside_the_stroke(share):
+    records = memory(np.random.default_rng(17), share * N)[:150]
+    found = [describe(np.arange(N) * 0.1, one) for one in records]
+    off = np.abs([one.mean / one.sem for one in found])
+    assert np.mean(off > 3) <= 0.02
+
+
+def test_a_memory_that_might_be_there_hardly_widens_the_error_of_white_noise():
+    found = [describe(np.arange(N) * 0.1, one) for one in white(np.random.default_rng(18))[:100]]
+    error = np.array([one.sem for one in found]) * np.sqrt(N)
+    assert 0.95 < np.median(error) < 1.3

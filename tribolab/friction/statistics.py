@@ -32,11 +32,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.friction.memory import error_with_memory
+
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
 ORDER = 20  # highest order: as long as one of five teeth of a saw
 PENALTY = 3.0  # for each coefficient
 GRID = 2048  # frequencies of the spectrum's quadrature
 LINE = 150.0  # a peak so much above the spectrum at zero is a line
+HUMP = 4.0  # an oscillation so much above the spectrum at zero is no slow wander
 TAIL = 0.3  # share of the line's tail that is counted
 BESIDE = 0.3  # widening where the noise beside a line is all that moves the mean
 # how much the error is widened (and narrowed again where few samples were found because the memory
@@ -81,7 +84,8 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
         ``effective_samples`` n_eff is std^2 over the variance of the mean, at most the number of
         samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
         ``sem`` is widened below 8 effective samples to what Student's t asks for, so that 1.96 of
-        it make a 95 % interval with n_eff - 1 degrees of freedom (`student_widening`).
+        it make a 95 % interval with n_eff - 1 degrees of freedom (`student_widening`), and holds
+        what a memory that is long beside the record may hide (`error_with_memory`).
         ``trend_p_value`` tests the least-squares slope against the signal's own memory.
 
     Examples
@@ -110,9 +114,10 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    plain, sem = error_of_mean(blocks[None, :])
-    effective = float(np.clip((std / plain[0]) ** 2, 1.0, n))
-    error = max(float(sem[0]), float(plain[0]) * student_widening(effective))
+    plain, sem = (float(one[0]) for one in error_of_mean(blocks[None, :]))
+    effective = float(np.clip((std / plain) ** 2, 1.0, n))
+    slow = 0.0 if _oscillates(blocks) else error_with_memory(blocks)
+    error = max(sem, plain * student_widening(effective), slow)
     slope, p_value = trend(blocks)
     change = slope * blocks.size
     return Estimate(
@@ -126,6 +131,13 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
         change,
         p_value,
     )
+
+
+def _oscillates(record: np.ndarray) -> bool:
+    """Whether most of a record goes to and fro: its periods cancel, and no wander is left."""
+    power, _ = spectrum((record - record.mean())[None, :])
+    cycles = np.arange(power.shape[1]) * record.size / GRID
+    return bool(power[0, cycles > 2.5].max(initial=0.0) > HUMP * power[0, 0])
 
 
 def student_widening(effective: float) -> float:

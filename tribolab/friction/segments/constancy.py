@@ -17,15 +17,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.segments.plateaus import running_median
+from tribolab.friction.plateaus import running_median
+from tribolab.friction.proof import Readings, surely_changes
 
 INSIDE = 16  # bins within a piece
 BESIDE = 1.5  # of its length are looked at on each side
 GRADUAL = 0.3  # of its length: a plateau is left faster
 NEAR = 2.5  # times the drift: what is farther off in speed is not beside it
+ALIKE = 0.35  # correlation of neighbouring bins from which on they are no noise
 BETTER = 0.35  # share of the variance about a constant that is left by one smooth motion
 SURE = 40.0  # squares (in variances) by which a cubic is better than a constant, if not by chance
 FEWEST = 6  # bins that tell a curvature
+FEW = 16 * INSIDE  # readings of a piece whose bins hold too few to tell their own noise
 
 
 class Record:
@@ -49,9 +52,11 @@ class Record:
         self._from_position = position is not None
         # what white noise of a bin becomes in one of twice the width
         self.averaging = 2**-1.5 if self._from_position else 2**-0.5
-        values = running_median(position) if position is not None else velocity
-        if values is None:
+        own = position if position is not None else velocity
+        if own is None:
             raise ValueError("a velocity or a position is wanted")
+        self.readings = Readings(time, own, self._from_position)
+        values = running_median(own) if self._from_position else own
         # small numbers add up without loss
         self._total = np.concatenate([[0.0], np.cumsum(values - values[0])])
         self._first = float(values[0])
@@ -184,6 +189,8 @@ def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
     core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
     if _changes(place[core], inside[core], drift * abs(level)):
         return False
+    if last - first <= FEW and surely_changes(data.readings, begin, end, drift * abs(level)):
+        return False
     if _fluctuates(data, begin, end, last - first, NEAR * drift * abs(level)):
         return False
     return not _goes_on(data, inside, begin, end, level, drift)
@@ -207,14 +214,18 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
 
 def _fluctuates(data: Record, begin: float, end: float, samples: int, most: float) -> bool:
     """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
-    values = data.means(np.linspace(begin, end, min(samples, 1024) + 1))
-    values = values[np.isfinite(values)]
-    if values.size < 4 * FEWEST:
-        return False
-    variance = float(values.var())
-    # von Neumann: white noise differs between neighbours as much as anywhere
-    alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
-    return alike > 0.4 and alike * variance > most**2
+    count = min(samples, 1024)
+    while count >= 4 * FEWEST:  # wider bins show what noise hides from narrow ones
+        values = data.means(np.linspace(begin, end, count + 1))
+        values = values[np.isfinite(values)]
+        variance = float(values.var()) if values.size >= 4 * FEWEST else 0.0
+        if variance > most**2:
+            # von Neumann: white noise differs between neighbours as much as anywhere
+            alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance)
+            if alike > ALIKE + 1 / np.sqrt(values.size) and alike * variance > most**2:
+                return True
+        count //= 2
+    return False
 
 
 def _goes_on(

@@ -15,6 +15,7 @@ from tribolab.friction.segments.plateaus import (
     running_median,
     straight_pieces,
 )
+from tribolab.friction.proof import is_proven
 
 MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
 FEW_BLOCKS = 512  # in a second look
@@ -23,6 +24,7 @@ KEPT = ("constant", "at rest")
 STILL = 1e-7  # of the highest speed: nothing slower is told from rest
 SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
 SOMEWHERE = 0.01  # of the longest way of a piece
+BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
 PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
@@ -114,7 +116,37 @@ def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
         kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
         parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
         result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
-    return _paused(_fused(result, limits), limits)
+    return _beside(data, _paused(_fused(result, limits), limits), limits)
+
+
+def _beside(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+    """Call a plateau that is short beside a ramp a ramp, if the data do not prove that it is none.
+
+    A ramp is all that lies between two plateaus or rests.
+    """
+    result = list(pieces)
+    for i, piece in enumerate(pieces):
+        if piece.kind != "constant":
+            continue
+        begin, end = data.time[piece.first], data.time[piece.last - 1]
+        before, after = (_until_kept(data.time, pieces, i, way) for way in (-1, 1))
+        if max(before, after) <= BRIEF * (end - begin):
+            continue
+        sides = before > end - begin, after > end - begin
+        if not is_proven(data.readings, begin, end, limits.drift * abs(piece.velocity), sides):
+            result[i] = piece._replace(kind="ramp")
+    return _fused(result, limits)
+
+
+def _until_kept(time: np.ndarray, pieces: list[Piece], index: int, way: int) -> float:
+    """Time [s] from a piece to the next plateau or rest on one side of it."""
+    at = index + way
+    while 0 <= at < len(pieces) and pieces[at].kind not in KEPT:
+        at += way
+    if way < 0:
+        return float(time[pieces[index].first] - time[pieces[at].last - 1 if at >= 0 else 0])
+    last = pieces[at].first if at < len(pieces) else time.size - 1
+    return float(time[last] - time[pieces[index].last - 1])
 
 
 def _paused(pieces: list[Piece], limits: Limits) -> list[Piece]:

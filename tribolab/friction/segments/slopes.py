@@ -11,13 +11,17 @@ FEWEST = 8  # samples in a block
 JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
 FASTER = 3.0  # times the rate around it, for a single sample
 ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
+SAMPLE = 8192  # readings that suffice to find their last digit
+DUST = 0.01  # of a digit: what arithmetic adds
+ROUNDED = 0.5  # digits of noise that rounding may leave
 AROUND = 8  # samples on each side that tell the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """Estimate the standard deviation of the position readings [m].
 
-    From their distance to the chord of both neighbours, which a constant speed leaves at zero.
+    From their distance to the chord of both neighbours, which a constant speed leaves at zero;
+    no less than rounding to the last digit adds, which a regular pattern of digits hides.
     """
     if time.size < 3:
         return 0.0
@@ -25,13 +29,56 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
     noise = float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    rounding = digit(position) / np.sqrt(12)
     # readings that mostly repeat have no median distance
-    return noise if noise > 0 else quantum(position) / np.sqrt(12)
+    return max(noise, rounding) or quantum(position) / np.sqrt(12)
 
 
 def is_staircase(position: np.ndarray) -> bool:
     """Whether most readings repeat the one before: the digits are coarser than the motion."""
     return bool(position.size > 2 and np.mean(np.diff(position) == 0) > 0.5)
+
+
+def digit(position: np.ndarray) -> float:
+    """Return the last digit of the readings [m]; 0 where they are no multiples of one.
+
+    Parameters
+    ----------
+    position
+        Finite readings [m].
+
+    Examples
+    --------
+    >>> round(digit(np.array([0.0, 2e-6, 7e-6, 1e-5, 1.1e-5, 1.5e-5, 2.4e-5, 3.3e-5])), 9)
+    1e-06
+    >>> digit(np.array([0.0, 2.1e-6, 7.3e-6, 1e-5, 1.17e-5, 1.5e-5, 2.44e-5, 3.3e-5]))
+    0.0
+    """
+    levels = np.unique(position[:: 1 + position.size // SAMPLE])
+    gaps = np.diff(levels)
+    # what differs in the last bits only is one reading
+    gaps = gaps[gaps > 1e-9 * np.abs(levels).max(initial=0.0)]
+    if gaps.size < FEWEST - 1:
+        return 0.0
+    least = float(gaps.min())
+    times = gaps / least
+    return least if np.abs(times - np.round(times)).max() < DUST else 0.0
+
+
+def is_rounding(position: np.ndarray, noise: float) -> bool:
+    """Whether rounding to the last digit explains all the noise of a record.
+
+    Readings that move on by less than a digit or two a sample repeat a pattern, whose blocks
+    have less noise at some speeds, and more at others, than rounding has on the whole.
+
+    Parameters
+    ----------
+    position
+        Finite readings [m].
+    noise
+        From `position_noise` [m].
+    """
+    return is_staircase(position) or noise <= ROUNDED * digit(position)
 
 
 def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -73,6 +120,9 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     at = far[jump]
     moved = np.zeros(position.size)
     moved[at + 1] = steps[at] - usual[jump] * spacing[at]
+    last = digit(position)
+    if last > 0:  # the joined readings keep their digits
+        moved = np.round(moved / last) * last
     return position - np.cumsum(moved), at + 1
 
 

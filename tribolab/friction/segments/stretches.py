@@ -97,8 +97,9 @@ def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: in
     """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
     fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
-    # a staircase of its digits has blocks without noise beside such that hold a whole step
-    floor = error if slopes.is_staircase(position) else 0.0
+    # digits leave blocks without noise beside such that hold a whole step
+    noise = slopes.position_noise(time, position)
+    floor = error if slopes.is_rounding(position, noise) else 0.0
     blocks = locate(t, v, fewest, floor)
     pieces = [p._replace(first=p.first * size, last=p.last * size) for p in blocks]
     pieces[-1] = pieces[-1]._replace(last=time.size)

@@ -1,0 +1,238 @@
+"""Whether the data prove a short plateau beside a long ramp, or a ramp describes it as well.
+
+Notes
+-----
+A speck of a ramp, a turning point or the top of a sinusoid is as level as noise and digits let one
+see. So a piece that is short beside the ramp it touches has to prove two things:
+
+1. The parabola through its own readings changes by no more than `drift` of the speed, and by so
+   many readings that this is known.
+2. A level with its flanks, each a straight line of its own, describes the piece and as much
+   again on the sides of the ramp better than one smooth motion (a quartic) or one turn
+   (two lines that meet) does, by Schwarz's criterion [1]_.
+
+From positions the integrals of these motions are fitted to the readings themselves: differences
+of positions hold more noise than the positions do.
+
+References
+----------
+.. [1] Schwarz (1978), Ann. Stat. 6, 461-464. doi:10.1214/aos/1176344136
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from tribolab.friction.plateaus import running_median
+
+MOST = 512  # readings of a fit; more are averaged
+WILD = 8.0  # times the usual distance from the neighbours' median
+WILD_SHARE = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
+BESIDE = (0.5, 1.0)  # lengths of the piece that are looked at beside it
+CORNERS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
+TURNS = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
+FINER = 4  # times the places of the turn are narrowed down, tenfold each
+BETTER = 10.0  # in Schwarz's criterion: very strong evidence
+KNOWN = 2.0  # standard errors of the change that have to lie within the drift
+SURE = 4.0  # standard errors by which a change is sure
+
+
+class Readings(NamedTuple):
+    """Readings of a stretch: moments [s], and velocities [m/s] or positions [m]."""
+
+    time: np.ndarray
+    values: np.ndarray
+    is_position: bool
+
+    def within(self, begin: float, end: float) -> Readings:
+        """Return the readings between two moments, averaged where they are many."""
+        first, last = np.searchsorted(self.time, [begin, end])
+        time, values = self.time[first:last], self.values[first:last]
+        median = running_median(values)
+        if values.size:
+            off = np.abs(values - median)
+            # a turn is no spike, however little noise there is
+            least = WILD_SHARE[self.is_position] * float(np.ptp(median))
+            values = np.where(off > max(WILD * float(np.mean(off)), least), median, values)
+        size = -(-time.size // MOST)
+        if size > 1:
+            count = time.size // size
+            time, values = (
+                a[: count * size].reshape(count, size).mean(axis=1) for a in (time, values)
+            )
+        return self._replace(time=time, values=values)
+
+
+class Fit(NamedTuple):
+    """Coefficients, their covariance, variance left, readings that count, and parameters."""
+
+    coefficients: np.ndarray
+    covariance: np.ndarray
+    variance: float
+    samples: float
+    parameters: int
+
+
+def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
+    """Least squares; readings whose residuals have a memory count for less."""
+    found = np.linalg.lstsq(basis, values, rcond=None)[0]
+    rest = values - basis @ found
+    n, k = basis.shape
+    tiny = 1e-14 * float(np.mean(values**2)) + 1e-300
+    variance = max(float(rest @ rest) / max(n - k, 1), tiny)
+    alike = float(rest[1:] @ rest[:-1] / (rest @ rest)) if rest @ rest > 0 else 0.0
+    alike = min(max(alike, 0.0), 0.9)
+    samples = n * (1 - alike) / (1 + alike)
+    covariance = np.linalg.pinv(basis.T @ basis) * variance * n / samples
+    return Fit(found, covariance, variance, samples, k)
+
+
+def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) -> np.ndarray:
+    """Velocities over the places, integrated where positions are read."""
+    columns = np.stack(motion, axis=1)
+    if not readings.is_position:
+        return columns
+    steps = np.diff(place)[:, None] * (columns[1:] + columns[:-1]) / 2
+    way = np.concatenate([np.zeros((1, columns.shape[1])), np.cumsum(steps, axis=0)])
+    return np.column_stack([way, np.ones(place.size)])
+
+
+def change_along(readings: Readings, begin: float, end: float) -> tuple[float, float]:
+    """Change of speed along a piece by the parabola through it, and its standard error [m/s].
+
+    Parameters
+    ----------
+    readings
+        Of the record.
+    begin, end
+        The piece [s].
+
+    Returns
+    -------
+    tuple
+        Both NaN where there are too few readings.
+
+    Examples
+    --------
+    >>> time = np.linspace(0, 1, 101)
+    >>> change, error = change_along(Readings(time, 0.2 * time**2 / 2, True), 0.0, 2.0)
+    >>> round(change, 3), error < 1e-6
+    (0.2, True)
+    """
+    own = readings.within(begin, end)
+    degree = 3 if own.is_position else 2
+    if own.time.size < degree + 3 or not np.ptp(own.time) > 0:
+        return np.nan, np.nan
+    half = float(np.ptp(own.time)) / 2
+    place = (own.time - own.time[0]) / half - 1
+    shift = float(own.values.mean())
+    found = _fit(legendre.legvander(place, degree), own.values - shift)
+    ends = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+    unit = np.eye(degree + 1)
+    if own.is_position:
+        reading = np.stack([legendre.legval(ends, legendre.legder(u)) for u in unit], 1) / half
+    else:
+        reading = legendre.legvander(ends, degree)
+    speeds = reading @ found.coefficients
+    high, low = int(speeds.argmax()), int(speeds.argmin())
+    apart = reading[high] - reading[low]
+    return float(speeds[high] - speeds[low]), float(np.sqrt(apart @ found.covariance @ apart))
+
+
+def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
+    """Whether the parabola through a piece changes by more than `most` [m/s], beyond chance."""
+    change, error = change_along(readings, begin, end)
+    return bool(change > most + SURE * error)
+
+
+def is_proven(
+    readings: Readings,
+    begin: float,
+    end: float,
+    most: float,
+    sides: tuple[bool, bool],
+) -> bool:
+    """Whether a piece holds its speed where a long ramp begins or ends.
+
+    Parameters
+    ----------
+    readings
+        Of the record.
+    begin, end
+        The piece [s].
+    most
+        Change of speed that a plateau may show [m/s].
+    sides
+        Whether a ramp lies before and after the piece.
+    """
+    change, error = change_along(readings, begin, end)
+    if not change + KNOWN * error <= most:
+        return False
+    return any(_is_level(readings, begin, end, sides, beside) for beside in BESIDE)
+
+
+def _is_level(
+    readings: Readings, begin: float, end: float, sides: tuple[bool, bool], beside: float
+) -> bool:
+    """Whether a level with its flanks is better than one smooth motion or one turn."""
+    size = beside * (end - begin)
+    window = readings.within(begin - sides[0] * size, end + sides[1] * size)
+    time, values = window.time, window.values - window.values.mean()
+    if time.size < 12:
+        return False
+    middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
+    place = (time - middle) / half
+    corners = (begin - middle) / half, (end - middle) / half
+
+    def fitted(motion: list[np.ndarray], free: int) -> tuple[Fit, int]:
+        return _fit(_columns(window, place, motion), values), free
+
+    levels = [fitted(*case) for case in _levels(place, corners, sides)]
+    others = [fitted(*case) for case in _motions(place)]
+    turns, width = TURNS, TURNS[1] - TURNS[0]
+    for _ in range(FINER):
+        found = [fitted(_turn(place, at), 1) for at in turns]
+        others += found
+        best = int(np.argmin([fit.variance for fit, _ in found]))
+        turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
+    # one count of readings for all: that of the motion that leaves least
+    count = min(levels + others, key=lambda one: one[0].variance)[0].samples
+
+    def schwarz(fits: list[tuple[Fit, int]]) -> float:
+        price = np.log(time.size)
+        return min(
+            count * float(np.log(fit.variance)) + (fit.parameters + free) * price
+            for fit, free in fits
+        )
+
+    return schwarz(levels) + BETTER < schwarz(others)
+
+
+def _levels(
+    place: np.ndarray, corners: tuple[float, float], sides: tuple[bool, bool]
+) -> list[tuple[list[np.ndarray], int]]:
+    """Levels with a line on each side that has a ramp; their corners move a little."""
+    size = corners[1] - corners[0]
+    found = []
+    for before in CORNERS if sides[0] else (None,):
+        for after in CORNERS if sides[1] else (None,):
+            motion = [np.ones(place.size), place]
+            for shift, corner, way in ((before, corners[0], -1), (after, corners[1], 1)):
+                if shift is not None:
+                    beyond = way * (place - corner) - shift * size
+                    motion += [np.maximum(beyond, 0.0), (beyond > 0).astype(float)]
+            found.append((motion, sum(sides)))
+    return found
+
+
+def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:
+    """Two lines that meet."""
+    return [np.ones(place.size), place, np.abs(place - at)]
+
+
+def _motions(place: np.ndarray) -> list[tuple[list[np.ndarray], int]]:
+    """Smooth motions."""
+    return [(list(legendre.legvander(place, degree).T), 0) for degree in (1, 2, 3, 4)]
