@@ -22,7 +22,7 @@ APART = 0.25  # of a fast stroke's duration: shifts nearer than this are one
 _SPAN = 0.3  # of it, in which each is fitted
 _ALL = 0.8  # of a rival's changes of the motion have to lie in the force log, or it is not beaten
 _DECISIVE = 6.0  # log likelihood ratio
-_MORE = 1.5  # times as much unexplained, as no model is quite right
+_MORE = 4.0  # times as much unexplained, as no model is quite right
 
 
 class Candidate(NamedTuple):
@@ -40,11 +40,11 @@ class Candidate(NamedTuple):
     def beats(self, other: Candidate) -> bool:
         """Whether this one is decisively likelier than another.
 
-        >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.02, 80.0, 7))
+        >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
         True
-        >>> Candidate(0.0, 0.01, 10.0, 8).beats(Candidate(9.0, 0.02, 80.0, 7))
+        >>> Candidate(0.0, 0.01, 5.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
         False
-        >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.02, 80.0, 7))
+        >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.05, 80.0, 7))
         False
         """
         more = other.unexplained / max(self.unexplained, 1e-12)
