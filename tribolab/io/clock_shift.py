@@ -131,7 +131,9 @@ def estimate_clock_shift(
         return None
     fit = Classes(force_time, force, motion_time, classes)
     may = [Candidate(coarse.shift, np.nan, 0.0, 0)]
-    if len(coarse.rivals):
+    # strokes of so different speeds do not repeat; a rest only looks like the stroke before
+    wide = _wide(motion, way)
+    if len(coarse.rivals) and not wide:
         shifts = np.concatenate([[coarse.shift], coarse.rivals])
         if dated and abs(coarse.shift - expected) < _DATED:
             shifts = shifts[np.abs(shifts - expected) < _DATED]
@@ -189,7 +191,6 @@ def estimate_clock_shift(
             return None
         stroke = joint.stroke
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
-    wide = _wide(motion, way)
     if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
     elif sharp_fit:
@@ -204,7 +205,7 @@ def estimate_clock_shift(
     found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
     rivals = [one for one in may if one is not chosen]
-    doubt = _doubt(found, fit, coarse.half, stroke, chosen, rivals, wide)
+    doubt = _doubt(found, fit, coarse.half, stroke, chosen, rivals)
     return found._replace(refused=doubt)
 
 
@@ -247,7 +248,6 @@ def _doubt(
     stroke: float,
     chosen: Candidate,
     rivals: list[Candidate],
-    wide: bool,
 ) -> str:
     """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
     if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
@@ -261,8 +261,7 @@ def _doubt(
             continue
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
-        # strokes of so different speeds do not repeat; a rest only looks like the stroke before
-        as_good = not wide and 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
+        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
         as_good |= not np.isnan(chosen.unexplained + rival.unexplained)
         if abs(at - found.shift) > 0.5 * stroke and as_good:
             return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
