@@ -13,7 +13,7 @@ from tribolab import rig
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.plan import scan_files
 from tribolab.campaign.surface_plan import PlannedSurface
-from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of
+from tribolab.campaign.surfaces import SurfaceTask, known_surface, process_surface, sources_of
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf

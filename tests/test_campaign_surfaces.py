@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from campaigns import copied, simulated
-from tribolab.campaign.surface_work import SurfaceTask, known_surface, process_surface, sources_of
 from typer.testing import CliRunner
 
 import tribolab
@@ -20,6 +19,7 @@ from tribolab.app.run import run_campaign
 from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
+from tribolab.campaign.surfaces import SurfaceTask, known_surface, process_surface, sources_of
 from tribolab.cli import app
 from tribolab.contact.adhesion import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width

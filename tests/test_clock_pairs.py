@@ -27,7 +27,7 @@ def test_a_shift_that_is_told_lies_within_three_standard_errors(kind):
             told += 1
             error = abs(attrs["clock_shift_s"] - pair.shift)
             assert error < 3.0 * attrs["clock_shift_uncertainty_s"] < 0.3 * pair.shortest
-            assert set(attrs["clock_shift_ways"]) >= {"classes", "starts"}
+            assert "classes" in attrs["clock_shift_ways"] and len(attrs["clock_shift_ways"]) > 1
         else:
             assert np.isnan(attrs["clock_shift_uncertainty_s"])
     assert told > 0

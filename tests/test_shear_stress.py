@@ -110,7 +110,7 @@ def test_a_wrong_shape_is_seen_by_chi_square_and_runs_and_bounds_the_range():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("correlation", [0.0, 0.8])
+@pytest.mark.parametrize("correlation", [0.0, 0.5, 0.8])
 def test_intervals_hold_whether_or_not_neighbouring_errors_go_together(correlation):
     """Of 95 % intervals 93 to 97 % hold the truth; four of ten missed it by independence alone."""
     area = EXACT.friction_per_shear_stress.values
@@ -120,12 +120,14 @@ def test_intervals_hold_whether_or_not_neighbouring_errors_go_together(correlati
     error = 0.02 * EXACT.friction_coefficient.values
     weights = area / error**2 / np.sum((area / error) ** 2)
     held = []
-    for noise in rng.standard_normal((1000, SPEEDS.size)):
+    for noise in rng.standard_normal((2500, SPEEDS.size)):
         mu = EXACT.friction_coefficient.values + error * (lower @ noise)
         stress = weights @ (mu - fluid)
         found = residual_error(mu - fluid - stress * area, area[:, None], error, np.log(SPEEDS))
         held.append(abs(stress - TRUE) < found.half_interval)
-    assert 0.93 <= np.mean(held) <= 0.97
+    # as far as a count can tell: 2 of 100 such tests fail at the very ends of what is wanted
+    assert stats.binom.cdf(np.sum(held), len(held), 0.93) > 0.01
+    assert stats.binom.sf(np.sum(held) - 1, len(held), 0.97) > 0.01
     data = measured(1.0)
     data["friction_coefficient"][:] = mu
     data["friction_coefficient_sem"][:] = error

@@ -9,12 +9,15 @@ from contact_cases import CONTACT, SURFACES, reference_psd, self_affine
 
 from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.gap import gap_distribution
+from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, jkr_half_width
 from tribolab.contact.limits import line_limits
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
+from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
 from tribolab.records.parts import beyond_limits
 from tribolab.records.wording import validity_of
@@ -22,6 +25,7 @@ from tribolab.report.page import _environment
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026
+from tribolab.surface.moments import rms_slope
 from tribolab.validity import LIMITS, examine
 
 SOFT = replace(CONTACT, radius=7e-3, youngs_modulus=0.1e6)
@@ -33,6 +37,36 @@ def table(low, high):
     omega = np.geomspace(low, high, 200)
     value = PDMS_STAND_IN(omega)
     return TabulatedModulus(omega, value.real, value.imag)
+
+
+def test_pressures_beyond_the_table_come_back_until_they_are_refused():
+    """The second limit is where p(u) ends as a number: twice as far the separation is 0."""
+    table, limit = separation_table(reference_psd("Sb-S"), 2e6), LIMITS["pressure"]
+    ends = table.table_pressure[-1] * np.array([limit.suspect, limit.refuse])
+    np.testing.assert_allclose(table.pressure(table.separation(ends)), ends, rtol=1e-4)
+    assert table.separation(2 * ends[1]) == 0
+
+
+def test_flow_factors_say_where_slopes_are_too_steep_for_thin_film_flow():
+    psd = reference_psd("Sb-S")
+    for slope, word in ((0.5, "pass"), (2.0, "suspect")):
+        steep = psd.assign(psd_2d=psd.psd_2d * (slope / rms_slope(psd)) ** 2)
+        found = flow_factors(steep).dataset([1e-6])
+        assert found.attrs["validity"] == word
+        assert ("rms slope" in found.attrs["validity_reasons"]) == (word == "suspect")
+    assert smooth_factors().dataset([1e-6]).attrs["validity"] == "pass"
+
+
+def test_the_band_says_which_variation_alone_leaves_the_theory():
+    given = {"viscosity": 1.4, "load": 100.0, "shear_stress": 0.0, "speed": [1e-3], "cells": 60}
+    body = LineContact("7 mm", "10 cm", "0.17 MPa", 0.5)
+    inside = model_uncertainty(body, None, **given)
+    assert inside.attrs["validity"] == "pass"
+    soft = model_uncertainty(
+        body, None, youngs_modulus_range=("0.08 MPa", "0.3 MPa"), **given
+    ).attrs
+    assert soft["validity"] == "suspect"
+    assert soft["validity_reasons"].startswith("varied Young's modulus (0.08 MPa): half-width")
 
 
 @pytest.mark.slow

@@ -47,7 +47,8 @@ class Limit:
 LIMITS = {
     "film": Limit(
         "film thickness over the radius R",
-        1e-2,
+        1e-2,  # a cylinder's gap is 0.5 % wider than the parabola's where the film is doubled,
+        # 6 % at R/10 and twice as wide at R/2: there its own edge is reached, sqrt(2 R h) = R
         0.5,
         "the gap is taken as a parabola and the film as thin",
         "take lower speeds or a thinner liquid",
@@ -85,7 +86,9 @@ LIMITS = {
     "pressure": Limit(
         "contact pressure over the largest in the table of p(u)",
         1.0,
-        10.0,  # a nearly smooth surface is flat long before: the curve then hardly feels p(u)
+        # at the table's end u is 1e-17 h_rms, and ~ exp(-k p^2) from there on: 1e-205 at four
+        # times, where p(u) still comes back to 1e-5; at five dp/du overflows, at 5.3 u is 0
+        4.0,
         "beyond it the roughness is pressed flat and p(u) is extrapolated",
         "take a smaller load, or smooth surfaces",
     ),

@@ -17,6 +17,7 @@ from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import CELLS, stribeck_curve
 from tribolab.quantities import labelled, stamp
 from tribolab.units import positive, to_si
+from tribolab.validity import reasons_of, together
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
 _CELLS = 200  # a change needs no finer mesh than this: its error is in both curves
@@ -77,7 +78,8 @@ def model_uncertainty(
         sigma_f that each end needs to fit the given curve. The curves themselves are
         ``friction_coefficient_varied`` (variation, range_end, sliding_speed), NaN where there is
         no such end. The attribute ``not_varied`` names what was left out, and all that no variation
-        reaches, with the reason.
+        reaches, with the reason; ``validity`` and ``validity_reasons`` also say which variation
+        alone is beyond the theory's limits.
 
     Raises
     ------
@@ -156,7 +158,7 @@ def model_uncertainty(
         reference = stribeck_curve(contact, psd, **coarse) if cells > _CELLS else curve
         found = variations(base)
         varied = [one for one in found if isinstance(one, Variation)]
-        mu, fitted = _all_ends(contact, psd, coarse, varied, reference, refit)
+        mu, fitted, limits = _all_ends(contact, psd, coarse, varied, reference, refit)
     left = [one for one in found if isinstance(one, Skipped)]
     height = reference["friction_coefficient"].values
     if error is None:
@@ -194,6 +196,7 @@ def model_uncertainty(
         not_varied="; ".join(f"{one.name}: {one.reason}" for one in left + held_fixed(base)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
+        **together([curve.attrs, *limits]),
     )
 
 
@@ -204,10 +207,14 @@ def _all_ends(
     varied: list[Variation],
     reference: xr.Dataset,
     refit: bool,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Friction (variation, end, speed) and relative change of the refitted sigma_f; NaN if none."""
+) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
+    """Friction (variation, end, speed), relative change of the refitted sigma_f, and validity.
+
+    The numbers are NaN where a variation has no such end.
+    """
     stress, aim = coarse["shear_stress"], reference["friction_coefficient"].values
-    mu = np.full((len(varied), 2, aim.size), np.nan)
+    mu, limits = np.full((len(varied), 2, aim.size), np.nan), []
+    beyond = {reason.split(" is ")[0] for reason in reasons_of(reference.attrs)}
     fitted = np.full((len(varied), 2), np.nan)
     for i, one in enumerate(varied):
         for j, end in enumerate(one.ends):
@@ -217,13 +224,18 @@ def _all_ends(
                 changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
             except AnalysisError as error:
                 raise AnalysisError(error, where=f"varied {one.name} ({one.texts[j]})") from error
+            limits += [
+                {"validity_reasons": f"varied {one.name} ({one.texts[j]}): {reason}"}
+                for reason in reasons_of(changed.attrs)
+                if reason.split(" is ")[0] not in beyond
+            ]
             fluid = sum(changed[part].values for part in _PARTS)
             area = changed["friction_per_shear_stress"].values
             solid = float(area @ area)
             best = float(area @ (aim - fluid)) / solid if solid > 0 else np.nan
             fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
             mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
-    return mu, fitted
+    return mu, fitted, limits
 
 
 def _range(

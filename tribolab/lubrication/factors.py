@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
@@ -17,8 +18,9 @@ from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.quantities import labelled, stamp
-from tribolab.surface.moments import cumulative, rms_roughness, spectrum_arrays
+from tribolab.surface.moments import cumulative, rms_roughness, rms_slope, spectrum_arrays
 from tribolab.units import positive
+from tribolab.validity import examine, together
 
 PERCOLATION = 0.42  # relative contact area at which the last open channel closes
 CUTOFF = 1e-9  # m, gap under which <1/u> leaves out
@@ -65,6 +67,8 @@ class FlowFactors:
     flow, friction
         Tables for a rough body at rest, of phi_p and (u + h_rms phi_s)/u; and of phi_f, phi_fs and,
         where reciprocity does not give it, phi_fp. None if smooth.
+    limits
+        Attributes of `tribolab.validity`: whether the slopes are small enough for thin-film flow.
     """
 
     rms_roughness: float
@@ -73,6 +77,7 @@ class FlowFactors:
     model: str
     flow: FactorTable | None = field(default=None, repr=False)
     friction: FactorTable | None = field(default=None, repr=False)
+    limits: Mapping[str, str] = field(default_factory=lambda: together([]), repr=False)
 
     def at(self, separation: np.ndarray) -> Factors:
         """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
@@ -114,6 +119,7 @@ class FlowFactors:
             rough_body=self.rough_body,
             rms_roughness_m=self.rms_roughness,
             percolation_separation_m=self.percolation_separation,
+            **self.limits,
         )
 
     @property
@@ -257,6 +263,7 @@ def _tabulated(
             np.array([1.0, 3 * ends]) * height**2,
             np.array([1.0, 0.0]),
         ),
+        limits=examine("flow_factors", slope=rms_slope(psd)),
     )
 
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.plateaus import running_median
-from tribolab.friction.proof import Readings, surely_changes
+from tribolab.friction.segments.plateaus import running_median
+from tribolab.friction.segments.proof import Readings, surely_changes
 
 INSIDE = 16  # bins within a piece
 BESIDE = 1.5  # of its length are looked at on each side

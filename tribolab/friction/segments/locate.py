@@ -15,7 +15,7 @@ from tribolab.friction.segments.plateaus import (
     running_median,
     straight_pieces,
 )
-from tribolab.friction.proof import is_proven
+from tribolab.friction.segments.proof import is_proven
 
 MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
 FEW_BLOCKS = 512  # in a second look

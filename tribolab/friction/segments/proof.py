@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from tribolab.friction.plateaus import running_median
+from tribolab.friction.segments.plateaus import running_median
 
 MOST = 512  # readings of a fit; more are averaged
 WILD = 8.0  # times the usual distance from the neighbours' median

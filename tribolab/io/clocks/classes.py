@@ -69,9 +69,14 @@ def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def coarse_shift(
-    force_time: Array, force: Array, motion_time: Array, classes: NDArray[np.int64], expected: float
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    classes: NDArray[np.int64],
+    expected: float,
+    apart: float = 0.0,
 ) -> Coarse | None:
-    """Best shift on a grid, and the half width in which the true one lies."""
+    """Best shift on a grid, the half width in which the true one lies, and others `apart` [s]."""
     spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
     cell = max(spans) / _GRID
     cells = [int(span / cell) + 1 for span in spans]
@@ -110,8 +115,13 @@ def coarse_shift(
     # the same motion again and again fits at other shifts too, though fewer samples overlap
     may = np.flatnonzero(peak & (explained > usual + 0.5 * (best - usual)))
     may = may[np.argsort(-explained[may])]
-    may = may[np.abs(shifts[may] - chosen) > 8.0 * cell][:_RIVALS]
-    return Coarse(chosen, 2.0 * cell, shifts[may])
+    rivals: list[float] = []
+    for shift in map(float, shifts[may]):
+        if len(rivals) == _RIVALS:
+            break
+        if all(abs(shift - other) > max(apart, 8.0 * cell) for other in (chosen, *rivals)):
+            rivals.append(shift)
+    return Coarse(chosen, 2.0 * cell, np.array(rivals))
 
 
 class Classes:

@@ -238,17 +238,21 @@ def told_by_motion(
         None if too few samples lie around the changes of the motion, or nothing is explained.
     """
     basis = Basis(motion_time, motion)
-    period = np.hypot(
-        *(_interval(t, basis, s) for t, s in ((force_time, shift), (motion_time, 0.0)))
-    )
+    period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
-    answers = joint_fit(force_time, force, basis, shift, span, float(period))
+    answers = joint_fit(force_time, force, basis, shift, span, period)
     if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
         return None
     mean, error = mixture(answers)
     least = float(np.hypot(0.5 * period, 0.2 * motion.averaged))
     when = float(motion_time[basis.events].mean())
     return Joint(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
+
+
+def sampling(force_time: Array, basis: Basis, shift: float) -> float:
+    """Return the sampling interval [s] of both logs after starts of the motion, as one error."""
+    own, other = _interval(force_time, basis, shift), _interval(basis.time, basis, 0.0)
+    return float(np.hypot(own, other))
 
 
 def _interval(time: Array, basis: Basis, shift: float) -> float:

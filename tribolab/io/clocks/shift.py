@@ -23,10 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from tribolab.io.clocks.classes import Classes, Coarse, coarse_shift, motion_classes
-from tribolab.io.clocks.joint import told_by_motion
+from tribolab.io.clocks.classes import Classes, coarse_shift, motion_classes
+from tribolab.io.clocks.joint import Basis, told_by_motion
 from tribolab.io.clocks.motion import Motion, clean_motion
 from tribolab.io.clocks.onset import refine_by_onsets
+from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
 from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
 
 Array = NDArray[np.float64]
@@ -48,6 +49,7 @@ _HELD = 0.15  # least part of the square of the ways' difference that is in the 
 _AGREE = 3.0  # standard deviations that two ways may lie apart
 _RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
 _AS_GOOD = 0.8  # nor explains less than this part of what the best does
+_PLACED = 0.1  # most that a fit leaves unexplained that tells the shift to half a stroke
 _DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
 
 
@@ -122,18 +124,30 @@ def estimate_clock_shift(
     if classes.min() == classes.max():
         return None
     force = (force - force.mean()) / force.std()
-    coarse = coarse_shift(force_time, force, motion_time, classes, expected)
+    basis = Basis(motion_time, motion)
+    apart = APART * basis.stroke
+    coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
     if coarse is None:
         return None
     fit = Classes(force_time, force, motion_time, classes)
-    shift = _refined(fit, coarse.shift, coarse.half)
+    may = [Candidate(coarse.shift, np.nan, 0.0, 0)]
+    # strokes of so different speeds do not repeat; a rest only looks like the stroke before
+    wide = _wide(motion, way)
+    if len(coarse.rivals) and not wide:
+        shifts = np.concatenate([[coarse.shift], coarse.rivals])
+        if dated and abs(coarse.shift - expected) < _DATED:
+            shifts = shifts[np.abs(shifts - expected) < _DATED]
+        may = candidates(force_time, force, basis, shifts)
+    chosen = likeliest(may)
+    shift = _refined(fit, chosen.shift, coarse.half)
     significance = fit.significance(shift)
     if significance < _LEAST_AT_ALL:
         return None
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
     uncertainty = fit.uncertainty(shift)
     sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
-    if uncertainty > sharp:
+    placed = chosen.unexplained < _PLACED
+    if uncertainty > sharp and not placed:
         return None
     weak = significance < _LEAST_SIGNIFICANCE
     ways = {"classes": Told(shift, uncertainty)}
@@ -142,7 +156,12 @@ def estimate_clock_shift(
     logs = Logs(force_time, force, motion_time, motion.velocity, way)
     ratio = fit.ratio(shift)
     unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
-    told = shift_from_starts(logs, shift, span, lambda s: 1.0 - fit.ratio(s) < unexplained)
+    reach = 0.5 * basis.stroke if placed else np.inf
+
+    def allowed(at: float) -> bool:
+        return abs(at - shift) <= reach and 1.0 - fit.ratio(at) < unexplained
+
+    told = shift_from_starts(logs, shift, span, allowed)
     found = Estimate(shift, uncertainty, ratio)
     if told is not None:
         found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
@@ -152,7 +171,8 @@ def estimate_clock_shift(
         anew = Estimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
         found = anew if anew.uncertainty < found.uncertainty else found
-    ways["starts"] = Told(found.shift, found.uncertainty)
+    if found.shift != shift:
+        ways["starts"] = Told(found.shift, found.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     paced = motion_time + found.rate * (motion_time - middle)
     durations = np.diff(motion_time[changes(way)])
@@ -167,28 +187,25 @@ def estimate_clock_shift(
         apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
         error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
         ways["motion"] = Told(joint.shift, error)
-        if weak and abs(joint.shift - found.shift) > 0.5 * sharp:
+        if weak and not placed and abs(joint.shift - found.shift) > 0.5 * sharp:
             return None
         stroke = joint.stroke
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
-    wide = _wide(motion, way)
-    if wide and "motion" in ways and _agree(ways["starts"], ways["motion"]):
+    if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
     elif sharp_fit:
-        first = "starts" if found.uncertainty < _SHARP * stroke else "classes"
+        known = "starts" in ways and found.uncertainty < _SHARP * stroke
+        first = "starts" if known else "classes"
         combined, part = _combined(ways[first], ways["motion"]), _PART
-    elif _agree(ways["starts"], ways["classes"]):
+    elif "starts" in ways and _agree(ways["starts"], ways["classes"]):
         combined, part = ways["starts"], _PART
     else:
         return found._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
     found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
     found = found._replace(explained=fit.ratio(combined.shift))
-    if (
-        wide
-    ):  # strokes of so different speeds do not repeat; a rest only looks like the stroke before
-        coarse = coarse._replace(rivals=np.zeros(0))
-    doubt = _doubt(found, fit, coarse, stroke, expected if dated else None)
+    rivals = [one for one in may if one is not chosen]
+    doubt = _doubt(found, fit, coarse.half, stroke, chosen, rivals)
     return found._replace(refused=doubt)
 
 
@@ -225,7 +242,12 @@ def _combined(first: Told, second: Told) -> Told:
 
 
 def _doubt(
-    found: Estimate, fit: Classes, coarse: Coarse, stroke: float, expected: float | None
+    found: Estimate,
+    fit: Classes,
+    half: float,
+    stroke: float,
+    chosen: Candidate,
+    rivals: list[Candidate],
 ) -> str:
     """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
     if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
@@ -234,12 +256,14 @@ def _doubt(
     if found.uncertainty > _SHARP * stroke:
         return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
-    for rival in coarse.rivals:
-        at = _refined(fit, float(rival), coarse.half)
-        known = expected is not None and abs(found.shift - expected) < _DATED < abs(at - expected)
+    for rival in rivals:
+        if chosen.beats(rival):
+            continue
+        at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
         as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
-        if abs(at - found.shift) > 0.5 * stroke and as_good and not known:
+        as_good |= not np.isnan(chosen.unexplained + rival.unexplained)
+        if abs(at - found.shift) > 0.5 * stroke and as_good:
             return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
     return ""
 

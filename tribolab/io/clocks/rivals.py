@@ -1,0 +1,94 @@
+"""Which of several shifts of two clocks it is, where the motion repeats or friction comes late.
+
+Classes of velocity explain a force that comes late, through slack or over a distance, better a
+stroke or a period off than at the true shift. A fit by all that the motion does
+(`tribolab.io.clocks.joint`) is not deceived so: where the record begins and ends, and where strokes
+differ, it leaves more unexplained. One shift is taken for another only if the likelihood, with as
+many independent residuals as there are, says so decisively.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribolab.io.clocks.joint import Basis, joint_fit, sampling
+
+Array = NDArray[np.float64]
+
+APART = 0.25  # of a fast stroke's duration: shifts nearer than this are one
+_SPAN = 0.3  # of it, in which each is fitted
+_ALL = 0.8  # of a rival's changes of the motion have to lie in the force log, or it is not beaten
+_DECISIVE = 6.0  # log likelihood ratio
+_MORE = 4.0  # times as much unexplained, as no model is quite right
+
+
+class Candidate(NamedTuple):
+    """A shift that may be the true one [s], what a fit leaves unexplained, and its freedom.
+
+    `changes` is how many changes of the motion lie in the force log: of few, any model explains
+    much. `unexplained` is NaN where they are too few for a fit.
+    """
+
+    shift: float
+    unexplained: float
+    freedom: float
+    changes: int
+
+    def beats(self, other: Candidate) -> bool:
+        """Whether this one is decisively likelier than another.
+
+        >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
+        True
+        >>> Candidate(0.0, 0.01, 5.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
+        False
+        >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.05, 80.0, 7))
+        False
+        """
+        more = other.unexplained / max(self.unexplained, 1e-12)
+        likelihood = 0.5 * min(self.freedom, other.freedom) * np.log(max(more, 1e-12))
+        sees_all = self.changes >= _ALL * other.changes
+        return bool(sees_all and more > _MORE and likelihood > _DECISIVE)
+
+
+def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> list[Candidate]:
+    """Fit the force by all that the motion does, around each of several shifts.
+
+    Parameters
+    ----------
+    force_time, force
+        Force log: its own clock [s] and the friction force.
+    basis
+        What the motion log shows.
+    shifts
+        Shifts [s], `APART` of a fast stroke's duration from one another.
+    """
+    return [_fitted(force_time, force, basis, shift) for shift in map(float, shifts)]
+
+
+def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Candidate:
+    finest = sampling(force_time, basis, shift)
+    answers = joint_fit(force_time, force, basis, shift, _SPAN * basis.stroke, finest)
+    at = basis.time[basis.events] + shift
+    changes = int(np.count_nonzero((at > force_time[0]) & (at < force_time[-1])))
+    if not answers:
+        return Candidate(shift, np.nan, 0.0, changes)
+    best = min(answers, key=lambda answer: answer.unexplained)
+    return Candidate(shift, best.unexplained, best.freedom, changes)
+
+
+def likeliest(found: list[Candidate]) -> Candidate:
+    """Return the first, or the one that beats all others.
+
+    >>> likeliest([Candidate(0.0, 0.2, 70.0, 8), Candidate(4.5, 0.003, 180.0, 8)]).shift
+    4.5
+    >>> likeliest([Candidate(0.0, 0.011, 70.0, 8), Candidate(4.5, 0.01, 180.0, 8)]).shift
+    0.0
+    """
+    fitted = [one for one in found if not np.isnan(one.unexplained)]
+    if not fitted or np.isnan(found[0].unexplained):
+        return found[0]
+    best = min(fitted, key=lambda one: one.unexplained)
+    return best if best.beats(found[0]) else found[0]
