@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from chromium import BROWSER, chromium
 from report_pages import FLAGGED, LONG, RUNS, Reader, made, page_of
-from reporting import made_outcome, made_run, write_groups
+from reporting import made_outcome, made_run, with_run
 
 from tribolab.qc.flags import attach
 from tribolab.report import page as page_module
@@ -64,12 +64,9 @@ def hostile(tmp_path_factory):
     }
     segments["omitted_reason"] = ("omitted", np.array(HOSTILE[:3], dtype=object))
     friction.attrs |= {"offset": HOSTILE[3], "velocity_source": HOSTILE[1]}
-    file = outcome.folder / outcome.runs[0].data_file
-    file.unlink()
-    write_groups(file, run, segments, friction)
-    changed = replace(outcome.runs[0], files=tuple(HOSTILE), kept=HOSTILE[0])
-    sources = tuple((name, "", 0) for name in HOSTILE)
-    write_report(replace(outcome, runs=(changed, outcome.runs[1]), sources=sources))
+    parts = run, segments, friction
+    outcome = with_run(outcome, 0, parts, files=tuple(HOSTILE), kept=HOSTILE[0])
+    write_report(replace(outcome, sources=tuple((name, "", 0) for name in HOSTILE)))
     return outcome.folder
 
 

@@ -259,11 +259,17 @@ class Store(Catalogue):
         """Write down a fact about the results as a whole."""
         self._new.execute("INSERT OR REPLACE INTO fact VALUES (?,?)", (name, value))
 
-    def close(self) -> None:
-        """Write everything to the disk."""
+    def save(self) -> None:
+        """Write everything to the disk, so that others may read it; more may be written then."""
         rows = [(path, *identity) for path, identity in self._seen.items()]
         self._new.executemany("INSERT OR REPLACE INTO file VALUES (?,?,?,?,?)", rows)
         self.say("format", _FORMAT)
+        self._new.execute("COMMIT")
+        self._new.execute("BEGIN")
+
+    def close(self) -> None:
+        """Write everything to the disk, and nothing more."""
+        self.save()
         self._new.execute("COMMIT")
         super().close()
         self.before.close()
