@@ -1,0 +1,201 @@
+"""Kill a run of a campaign at random moments; its results are the old or the new ones, whole.
+
+    PYTHONPATH=$PWD python tests/benchmarks/kill_campaign.py --kills 50 --seed 1
+
+The campaign holds runs in two media, a surface and its models. Before each kill its file is
+changed, back and forth, so that runs, surface and models all are computed again; every other run
+that is killed works in two processes. The kill, SIGKILL to the whole group of processes, comes at
+a moment that is uniform over the duration of a run. After it
+
+- the results are whole: each file that the marker lists has its content, the page is there, and
+  the tables are those of the campaign before the change or after it, to the byte;
+- the raw files are as they were, and no process is left;
+- the next run, undisturbed, gives the tables that a run in a fresh folder gives, to the byte,
+  and leaves nothing beside the results.
+
+A run that was done before its kill came is looked at as well, and is no kill.
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import numpy as np
+from campaigns import fingerprint, simulated
+
+from tribolab.campaign.ledger import Ledger, _digest
+
+# What is stated before and after the change: segments (so runs and curves) and modulus (so
+# contact and models) all follow.
+STATED = (("trim = 0.10", '"1.5 MPa"'), ("trim = 0.12", '"1.6 MPa"'))
+OWN = {"campaign.toml", "raw", "truth"}
+
+
+class Bench:
+    """A campaign that is killed again and again, and what its tables have to be.
+
+    Attributes
+    ----------
+    file, results
+        The campaign file and its results folder.
+    lasted, duration
+        Time [s] of the latest undisturbed run, and of the latest that had everything to do.
+    wanted
+        For each of `STATED`, the tables of a run in a fresh folder, by name.
+    """
+
+    def __init__(self, folder: Path):
+        self.file = simulated(folder, repeats=1, scans=True, models=True)
+        self.results = self.file.parent / "results"
+        self.text = self.file.read_text("utf-8")
+        self.raw = fingerprint(self.file.parent / "raw")
+        self.wanted = []
+        for which in range(len(STATED)):
+            self.state(which)
+            self.undisturbed("-o", str(folder / f"fresh_{which}"))
+            self.wanted.append(tables(folder / f"fresh_{which}"))
+        assert self.wanted[0] != self.wanted[1]
+        self.state(0)
+        self.undisturbed()
+        self.duration = self.lasted
+
+    def state(self, which: int) -> None:
+        """Write the campaign file as one of `STATED`."""
+        text = self.text
+        for old, new in zip(STATED[0], STATED[which], strict=True):
+            assert old in text
+            text = text.replace(old, new)
+        self.file.write_text(text, "utf-8")
+
+    def start(self, jobs: int, *more: str) -> subprocess.Popen:
+        """Start a run in a group of processes of its own."""
+        command = [sys.executable, "-m", "tribolab", "run", str(self.file), "-q", "-j", str(jobs)]
+        return subprocess.Popen(
+            [*command, *more],
+            start_new_session=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def undisturbed(self, *more: str) -> str:
+        """Run to the end; returns what is wrong with that."""
+        began = time.monotonic()
+        process = self.start(1, *more)
+        said, _ = process.communicate(timeout=600)
+        self.lasted = time.monotonic() - began
+        return f"exit code {process.returncode}: {said[-300:]}" if process.returncode > 1 else ""
+
+    def kill(self, moment: float, jobs: int) -> tuple[bool, str]:
+        """Run and kill at a moment [s]; returns whether it was killed, and what is wrong."""
+        process = self.start(jobs)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.communicate(timeout=moment)
+        killed = process.poll() is None
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        for _ in range(50):
+            try:
+                os.killpg(process.pid, 0)
+            except ProcessLookupError:
+                return killed, ""
+            time.sleep(0.1)
+        return killed, "processes are left"
+
+    def faults(self) -> list[str]:
+        """Say what is wrong with the results, whichever they are, and with the raw files."""
+        found = []
+        ledger = Ledger.read(self.results)
+        if not ledger.files:
+            found.append("the marker lists nothing")
+        for name, entry in ledger.files.items():
+            path = self.results / name
+            if not path.is_file() or _digest(path) != entry.digest:
+                found.append(f"{name} is missing or changed")
+        found += [f"{name} is nobody's" for name in ledger.foreign()]
+        if "report.html" not in ledger.files:
+            found.append("no page")
+        try:
+            json.loads((self.results / "report.json").read_text("utf-8"))
+        except (OSError, ValueError) as error:
+            found.append(f"report.json: {error}")
+        if fingerprint(self.file.parent / "raw") != self.raw:
+            found.append("raw files changed")
+        return found
+
+
+def tables(results: Path) -> dict[str, bytes]:
+    """Return the content of all tables, those beside figures included."""
+    files = (*results.glob("tables/*"), *results.glob("figures/*.csv"))
+    return {str(path.relative_to(results)): path.read_bytes() for path in sorted(files)}
+
+
+def one_round(bench: Bench, number: int, rng: np.random.Generator) -> tuple[bool, str, list[str]]:
+    """Change, kill, look, run, look; returns whether it was killed, how it went, and faults."""
+    before, after = number % 2, (number + 1) % 2
+    bench.state(after)
+    files = fingerprint(bench.results)
+    jobs = 1 + (number // 2) % 2
+    moment = rng.uniform(0, bench.duration)
+    killed, left = bench.kill(moment, jobs)
+    faults = [left] if left else []
+    faults += bench.faults()
+    now = tables(bench.results)
+    which = "old" if now == bench.wanted[before] else "new" if now == bench.wanted[after] else ""
+    if not which:
+        faults.append("tables are neither the old nor the new ones")
+    if which == "old" and fingerprint(bench.results) != files:
+        faults.append("old results, but touched")
+    beside = {path.name for path in bench.file.parent.iterdir()} - OWN - {"results"}
+    if wrong := bench.undisturbed():
+        faults.append(f"next run: {wrong}")
+    if which == "old":  # it had everything to do
+        bench.duration = bench.lasted
+    faults += [f"next run: {fault}" for fault in bench.faults()]
+    now = tables(bench.results)
+    differ = [n for n in {*now, *bench.wanted[after]} if now.get(n) != bench.wanted[after].get(n)]
+    if differ:
+        faults.append(f"next run: {', '.join(sorted(differ))} are not those of a fresh run")
+    if odd := {path.name for path in bench.file.parent.iterdir()} - OWN - {"results"}:
+        faults.append(f"next run left {', '.join(sorted(odd))}")
+    end = "killed" if killed else "was done"
+    said = f"{moment:5.1f} s of {bench.duration:5.1f} s, -j {jobs}: {end}, {which or '?'}"
+    return killed, f"{said}, {'a room was left' if beside else 'nothing left'}", faults
+
+
+def main() -> int:
+    """Run the rounds of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kills", type=int, default=50)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    rng = np.random.default_rng(given.seed)
+    failed, kills, number, kinds = 0, 0, 0, collections.Counter()
+    with tempfile.TemporaryDirectory(prefix="kill_campaign_") as name:
+        bench = Bench(Path(name))
+        print(f"a run takes {bench.duration:.1f} s", flush=True)
+        while kills < given.kills:
+            killed, said, faults = one_round(bench, number, rng)
+            failed, kills, number = failed + bool(faults), kills + killed, number + 1
+            kinds[said.split(": ")[1]] += 1
+            print(f"{number:>4}  {said}  {'; '.join(faults) or 'ok'}", flush=True)
+    for said, count in sorted(kinds.items()):
+        print(f"{count:>4}  {said}")
+    print(f"{number} rounds, {kills} kills, {failed} failures")
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
