@@ -217,10 +217,10 @@ def _kept_run(run: EarlierRun, entry: RunEntry, folder: Path, why: str) -> RunOu
 
 
 def _text(path: Path, why: str) -> str:
-    import netCDF4
+    from tribolab.io.netcdf import opened
 
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             when = str(getattr(file, "history", "")).split(" ")[0]
     except (OSError, RuntimeError):
         when = ""

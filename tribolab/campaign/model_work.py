@@ -306,12 +306,12 @@ def earlier_model(path: Path, model: PlannedModel) -> ModelOutcome | None:
 
 def _stored(path: Path, model: PlannedModel) -> tuple[dict[str, Any], ModelOutcome] | None:
     """Return attributes and outcome that a data file holds; None if it is damaged."""
-    import netCDF4
+    from tribolab.io.netcdf import opened
 
     if not path.is_file():
         return None
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             attrs, groups = file.__dict__, tuple(file.groups)
         record = json.loads(attrs[RECORD])
         findings = [Finding(*finding) for finding in record["findings"]]

@@ -46,7 +46,7 @@ from tribolab.campaign.work import (
 )
 from tribolab.campaign.zeros import RunZero, to_lend, zero_of
 from tribolab.errors import ConfigError, OutputError, TribolabError
-from tribolab.provenance import sha256_of_file
+from tribolab.provenance import as_text, sha256_of_file
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -196,14 +196,13 @@ def _taken_over(
 
 def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutcome, RunZero] | None:
     """Checksums, outcome and zero of an earlier data file, if settings and version are the same."""
-    import netCDF4
-
     from tribolab import __version__
+    from tribolab.io.netcdf import opened
 
     if not path.is_file():
         return None
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             attrs = file["run"].__dict__
             segments = len(file["segments"].dimensions["segment"])
             complete = "friction" in file.groups
@@ -237,7 +236,7 @@ def _known(path: Path, run: PlannedRun) -> tuple[list[tuple[str, str]], RunOutco
 
 def _checksums(files: Iterable[Path]) -> list[Source]:
     try:
-        return [(file.name, sha256_of_file(file), file.stat().st_size) for file in files]
+        return [(as_text(file.name), sha256_of_file(file), file.stat().st_size) for file in files]
     except OSError:  # vanished: nothing is the same; processing it says why
         return []
 

@@ -171,12 +171,12 @@ def earlier_surface(
 
 def _stored(path: Path) -> tuple[dict[str, Any], tuple[Source, ...], SurfaceOutcome] | None:
     """Return attributes, sources and outcome that a data file holds; None if it is damaged."""
-    import netCDF4
+    from tribolab.io.netcdf import opened
 
     if not path.is_file():
         return None
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             attrs, groups = file.__dict__, tuple(file.groups)
         record: dict[str, Any] = json.loads(attrs[RECORD])
         sources = tuple((str(n), str(c), int(b)) for n, c, b in record["sources"])

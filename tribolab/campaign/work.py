@@ -21,7 +21,7 @@ from tribolab.campaign.outcome import CurveOutcome, RunOutcome
 from tribolab.campaign.plan import PlannedRun
 from tribolab.campaign.zeros import RunZero, attributes, zero_of
 from tribolab.errors import ConfigError, OutputError, TribolabError, brief, shown
-from tribolab.provenance import made, sha256_of, sha256_of_file
+from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
 from tribolab.quantities import stamp
 
 if TYPE_CHECKING:
@@ -174,8 +174,8 @@ def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
     """Return the files of a run with the checksums that were taken while reading."""
     known = dict(checksums(attrs))
     return tuple(
-        (label, known[file.name], file.stat().st_size)
-        if file.name in known
+        (label, known[as_text(file.name)], file.stat().st_size)
+        if as_text(file.name) in known
         else source_of(file, label)
         for file, label in _files(run)
     )

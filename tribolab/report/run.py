@@ -99,7 +99,7 @@ def run_campaign(
                     campaign, folder, executor=pool, previous=place, progress=progress
                 )
                 fingerprint = _fingerprint(outcome)
-                if _is_complete(place, fingerprint) and _all_reused(outcome):
+                if _is_complete(place, fingerprint, outcome) and _all_reused(outcome):
                     raise _Unchanged
                 write_report(outcome, executor=pool, progress=progress)
             if finish is not None:
@@ -134,9 +134,12 @@ def _all_reused(outcome: Outcome) -> bool:
     return all(part.reused for part in (*outcome.runs, *surfaces, *models))
 
 
-def _is_complete(place: Path, fingerprint: str) -> bool:
-    made = place / FINGERPRINT
-    return Ledger.read(place).is_whole and made.read_text(encoding="utf-8") == fingerprint
+def _is_complete(place: Path, fingerprint: str, outcome: Outcome) -> bool:
+    made, ledger = place / FINGERPRINT, Ledger.read(place)
+    if not ledger.is_whole or made.read_text(encoding="utf-8") != fingerprint:
+        return False
+    # a curve that could not be made then, for want of memory say, may be there now
+    return all(curve.data_file in ledger.files for curve in outcome.curves if curve.done)
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:
