@@ -7,7 +7,7 @@ import mmap
 import re
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
+from typing import AnyStr, NamedTuple
 
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
@@ -117,10 +117,22 @@ def _mended(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
             content = decoder.decode(content, final=not head_only).encode()
     except (OSError, UnicodeDecodeError) as error:
         raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
-    for _ in range(_ODD_ENDS):
-        content = content.replace(b"\r\n", b"\n")
-    content = content.replace(b"\r", b"\n")
+    content = line_feeds(content)
     return _tabbed(content) if spaced else content
+
+
+def line_feeds(content: AnyStr) -> AnyStr:
+    r"""Return text or bytes with LF at the end of each line, whatever stood there.
+
+    Examples
+    --------
+    >>> line_feeds("one\rtwo\r\nthree\r\r\n\nfive")
+    'one\ntwo\nthree\n\nfive'
+    """
+    cr, lf = ("\r", "\n") if isinstance(content, str) else (b"\r", b"\n")
+    for _ in range(_ODD_ENDS):
+        content = content.replace(cr + lf, lf)
+    return content.replace(cr, lf)
 
 
 def _tabbed(content: bytes) -> bytes:
