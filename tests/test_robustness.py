@@ -60,6 +60,40 @@ def test_a_damaged_file_is_a_dataset_or_our_error(shared_data, tmp_path_factory,
             assert (np.diff(data.time) > 0).all()
 
 
+# ---- text whose lines do not end
+
+
+def test_a_line_longer_than_any_row_is_refused_where_it_begins(tmp_path):
+    path = tmp_path / "long.csv"
+    head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    path.write_text(f"{head}{'0,1,2' + chr(10)}{'0.1,' * (5 << 20)}")
+    with pytest.raises(ReadError, match=r"long.csv: line 4 is longer than 4 MB"):
+        tl.read(path)
+
+
+@pytest.mark.parametrize("end", ["\r", "\r\n", "\r\r\n"])
+def test_a_table_is_the_same_with_any_line_end(tmp_path, end):
+    lines = [
+        "# Linear slider, force log",
+        "Time [s],Fx [N],Fz [N]",
+        *(f"{n},1,2" for n in range(9)),
+    ]
+    found = []
+    for ends in ("\n", end):
+        path = tmp_path / "a.csv"
+        path.write_bytes(ends.join(lines).encode() + ends.encode())
+        found.append(tl.read(path).drop_attrs())
+    xr.testing.assert_identical(*found)
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xff\xfe"])
+def test_a_file_of_empty_lines_is_empty_in_any_encoding(tmp_path, mark):
+    path = tmp_path / "a.csv"
+    path.write_bytes(mark + (b"\n\0" if mark else b"\n") * 5_000_000)
+    with pytest.raises(ReadError, match=r"a.csv: the file is empty"):
+        tl.read(path)
+
+
 # ---- MAT
 
 

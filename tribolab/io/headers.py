@@ -15,7 +15,6 @@ from tribolab.io.dialect_model import Dialect
 from tribolab.io.patterns import Guarded
 from tribolab.io.signature import File, peek
 
-_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _BOM = b"\xef\xbb\xbf"
 # one class of letters: a repeated group would take sixty bytes of memory for each line
 _BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
@@ -56,10 +55,12 @@ def split_name(text: str) -> tuple[str, str | None]:
     >>> split_name("COF")
     ('COF', None)
     """
-    match = _BRACKETS.match(text.strip())
-    if match is None:
-        return text.strip(), None
-    return match["name"].strip(), match["unit"].strip() or None
+    text = text.strip()
+    start = max(text.rfind("["), text.rfind("("))
+    unit = text[start + 1 : -1]
+    if start < 0 or not text.endswith(("]", ")")) or "]" in unit or ")" in unit:
+        return text, None
+    return text[:start].strip(), unit.strip() or None
 
 
 def split_row(line: str, delimiter: str) -> list[str]:
