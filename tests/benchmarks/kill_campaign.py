@@ -3,8 +3,8 @@
     PYTHONPATH=$PWD python tests/benchmarks/kill_campaign.py --kills 50 --seed 1
 
 The campaign holds runs in two media, a surface and its models. Before each kill its file is
-changed, back and forth, so that runs, surface and models all are computed again; every other run
-that is killed works in two processes. The kill, SIGKILL to the whole group of processes, comes at
+changed, back and forth, so that runs, surface and models all are computed again; some of the runs
+that are killed work in one process, some in two. The kill, SIGKILL to the whole group of processes, comes at
 a moment that is uniform over the duration of a run. After it
 
 - the results are whole: each file that the marker lists has its content, the page is there, and
@@ -39,7 +39,7 @@ from tribolab.campaign.ledger import Ledger, _digest
 # What is stated before and after the change: segments (so runs and curves) and modulus (so
 # contact and models) all follow.
 STATED = (("trim = 0.10", '"1.5 MPa"'), ("trim = 0.12", '"1.6 MPa"'))
-OWN = {"campaign.toml", "raw", "truth"}
+OWN = {"campaign.toml", "raw", "truth", "results"}
 
 
 class Bench:
@@ -51,6 +51,8 @@ class Bench:
         The campaign file and its results folder.
     lasted, duration
         Time [s] of the latest undisturbed run, and of the latest that had everything to do.
+    stated, shown
+        Which of `STATED` the campaign file says, and the results show.
     wanted
         For each of `STATED`, the tables of a run in a fresh folder, by name.
     """
@@ -68,11 +70,11 @@ class Bench:
         assert self.wanted[0] != self.wanted[1]
         self.state(0)
         self.undisturbed()
-        self.duration = self.lasted
+        self.duration, self.shown = self.lasted, 0
 
     def state(self, which: int) -> None:
         """Write the campaign file as one of `STATED`."""
-        text = self.text
+        text, self.stated = self.text, which
         for old, new in zip(STATED[0], STATED[which], strict=True):
             assert old in text
             text = text.replace(old, new)
@@ -117,6 +119,10 @@ class Bench:
             time.sleep(0.1)
         return killed, "processes are left"
 
+    def beside(self) -> set[str]:
+        """Return what lies beside the results and is none of the campaign's."""
+        return {path.name for path in self.file.parent.iterdir()} - OWN
+
     def faults(self) -> list[str]:
         """Say what is wrong with the results, whichever they are, and with the raw files."""
         found = []
@@ -145,13 +151,12 @@ def tables(results: Path) -> dict[str, bytes]:
     return {str(path.relative_to(results)): path.read_bytes() for path in sorted(files)}
 
 
-def one_round(bench: Bench, number: int, rng: np.random.Generator) -> tuple[bool, str, list[str]]:
-    """Change, kill, look, run, look; returns whether it was killed, how it went, and faults."""
-    before, after = number % 2, (number + 1) % 2
+def one_kill(bench: Bench, rng: np.random.Generator) -> tuple[bool, str, list[str]]:
+    """Change, run, kill, look; returns whether it was killed, how it went, and faults."""
+    before, after = bench.shown, 1 - bench.shown
     bench.state(after)
-    files = fingerprint(bench.results)
-    jobs = 1 + (number // 2) % 2
-    moment = rng.uniform(0, bench.duration)
+    files, jobs = fingerprint(bench.results), int(rng.integers(1, 3))
+    moment, lasts = rng.uniform(0, bench.duration), bench.duration
     killed, left = bench.kill(moment, jobs)
     faults = [left] if left else []
     faults += bench.faults()
@@ -161,42 +166,52 @@ def one_round(bench: Bench, number: int, rng: np.random.Generator) -> tuple[bool
         faults.append("tables are neither the old nor the new ones")
     if which == "old" and fingerprint(bench.results) != files:
         faults.append("old results, but touched")
-    beside = {path.name for path in bench.file.parent.iterdir()} - OWN - {"results"}
-    if wrong := bench.undisturbed():
-        faults.append(f"next run: {wrong}")
-    if which == "old":  # it had everything to do
-        bench.duration = bench.lasted
-    faults += [f"next run: {fault}" for fault in bench.faults()]
-    now = tables(bench.results)
-    differ = [n for n in {*now, *bench.wanted[after]} if now.get(n) != bench.wanted[after].get(n)]
-    if differ:
-        faults.append(f"next run: {', '.join(sorted(differ))} are not those of a fresh run")
-    if odd := {path.name for path in bench.file.parent.iterdir()} - OWN - {"results"}:
-        faults.append(f"next run left {', '.join(sorted(odd))}")
+    bench.shown = after if which == "new" else before
     end = "killed" if killed else "was done"
-    said = f"{moment:5.1f} s of {bench.duration:5.1f} s, -j {jobs}: {end}, {which or '?'}"
-    return killed, f"{said}, {'a room was left' if beside else 'nothing left'}", faults
+    beside = "a room was left" if bench.beside() else "nothing left"
+    said = f"{moment:5.1f} s of {lasts:5.1f} s, -j {jobs}: {end}, {which or '?'}, {beside}"
+    return killed, said, faults
+
+
+def next_run(bench: Bench) -> list[str]:
+    """Run undisturbed; returns what differs from a run that was never killed."""
+    wrong = bench.undisturbed()
+    if bench.shown != bench.stated:  # it had everything to do
+        bench.duration = bench.lasted
+    bench.shown = bench.stated
+    faults = [wrong] if wrong else []
+    faults += bench.faults()
+    now, wanted = tables(bench.results), bench.wanted[bench.stated]
+    differ = sorted(name for name in {*now, *wanted} if now.get(name) != wanted.get(name))
+    faults += [f"{name} is not that of a fresh run" for name in differ]
+    faults += [f"{name} was left behind" for name in sorted(bench.beside())]
+    return [f"next run: {fault}" for fault in faults]
 
 
 def main() -> int:
-    """Run the rounds of the command line."""
+    """Run the kills of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kills", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--in-a-row", type=int, default=1, help="kills before the next whole run")
     given = parser.parse_args()
     rng = np.random.default_rng(given.seed)
-    failed, kills, number, kinds = 0, 0, 0, collections.Counter()
+    failed, kills, number, whole, kinds = 0, 0, 0, 0, collections.Counter()
     with tempfile.TemporaryDirectory(prefix="kill_campaign_") as name:
         bench = Bench(Path(name))
         print(f"a run takes {bench.duration:.1f} s", flush=True)
         while kills < given.kills:
-            killed, said, faults = one_round(bench, number, rng)
-            failed, kills, number = failed + bool(faults), kills + killed, number + 1
+            killed, said, faults = one_kill(bench, rng)
+            kills, number = kills + killed, number + 1
             kinds[said.split(": ")[1]] += 1
+            if number % given.in_a_row == 0 or kills == given.kills:
+                whole += 1
+                faults += next_run(bench)
+            failed += bool(faults)
             print(f"{number:>4}  {said}  {'; '.join(faults) or 'ok'}", flush=True)
     for said, count in sorted(kinds.items()):
         print(f"{count:>4}  {said}")
-    print(f"{number} rounds, {kills} kills, {failed} failures")
+    print(f"{kills} kills, {whole} whole runs after them, {failed} failures")
     return int(failed > 0)
 
 
