@@ -4,8 +4,8 @@
 
 The campaign holds runs in two media, a surface and its models. Before each kill its file is
 changed, back and forth, so that runs, surface and models all are computed again; some of the runs
-that are killed work in one process, some in two. The kill, SIGKILL to the whole group of processes, comes at
-a moment that is uniform over the duration of a run. After it
+that are killed work in one process, some in two. The kill, SIGKILL to the whole group of
+processes, comes at a moment that is uniform over the duration of a run. After it
 
 - the results are whole: each file that the marker lists has its content, the page is there, and
   the tables are those of the campaign before the change or after it, to the byte;

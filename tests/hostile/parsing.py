@@ -134,6 +134,8 @@ for _command in ("dialect", "info", "check"):
                 file.write(end)
             return [*TRIBOLAB, command, "long.txt"]
 
+    # The 5 s are for depth, which no office program writes. A million flat rows are what a legal
+    # workbook may hold (1 048 576): reading them takes as long as there are cells, some 20 s.
     for _tag, _depth in (("a", 3000), ("row", 100_000), ("a", 5_000_000)):
 
         @case(f"large 8: {_command}, xlsx with {_depth} <{_tag}>", _command, _tag, _depth)
