@@ -137,9 +137,10 @@ def kept_surface(
     staging: Path,
     record: SurfaceRecord,
 ) -> SurfaceRecord:
-    """Return the earlier record of a surface some of whose scans cannot be read now.
+    """Return the earlier record of a surface some of whose files cannot be read now.
 
-    Without such scans, or without earlier results, the record comes back as it is.
+    They are its scans and its modulus. Without such files, or without earlier results, the record
+    comes back as it is.
     """
     now = record.outcome
     if previous is None or now.reused or now.status == "skipped":
@@ -162,11 +163,17 @@ def kept_surface(
     }
     why = sorted(f"{PurePosixPath(label).name}: {_GONE}" for label in gone)
     why += sorted(f"{PurePosixPath(label).name} cannot be read" for label in spoilt)
+    what = "scans"
+    if planned.modulus_file is not None and planned.modulus_file[1] in names:
+        lost = {"modulus"} & {*before.parts} - {*now.parts}
+        if lost and any(f.severity in ("fail", "error") for f in now.findings if not f.check):
+            what = "scans" if why else "its modulus"
+            why.append(f"{planned.modulus_file[0].name} cannot be read")
     if not now.done and now.error not in _VERDICTS:
         why.append(now.reason)
     if not why:
         return record
-    text = _text(path, f"scans cannot be read now ({why[0]})")
+    text = _text(path, f"{what} cannot be read now ({why[0]})")
     link(path, staging / before.data_file)
     findings = (*before.findings, Finding("fail", text))
     return SurfaceRecord(replace(before, findings=findings, reused=False, kept=text), sources)
