@@ -22,11 +22,17 @@ from mutations import mat_inside, mutate
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
+from tribolab.io.dialect_model import Dialect
+from tribolab.io.headers import find_tables
 from tribolab.io.mat5 import read_variables
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scan_results import read_tester_results
 from tribolab.io.scans import read_scans
 
+COLUMNS = [
+    {"quantity": "time", "position": 1, "unit": "s"},
+    {"quantity": "friction_force", "position": 2, "unit": "N"},
+]
 HEAD = "# Surftest profile\nx [mm],z [um]\n"
 REAL = {
     "bearing_profiles_MIT/NU206-RE-1.txt": read_scans,
@@ -69,6 +75,15 @@ def test_a_line_longer_than_any_row_is_refused_where_it_begins(tmp_path):
     path.write_text(f"{head}{'0,1,2' + chr(10)}{'0.1,' * (5 << 20)}")
     with pytest.raises(ReadError, match=r"long.csv: line 4 is longer than 4 MB"):
         tl.read(path)
+
+
+def test_a_line_without_end_below_a_header_that_repeats_is_refused_too(tmp_path):
+    path = tmp_path / "steps.txt"
+    path.write_text("Step 1\n" + "1," * (3 << 20))
+    settings = {"name": "d", "title": "d", "column": COLUMNS}
+    settings["header"] = {"pattern": "^Step", "repeats": True}
+    with pytest.raises(ReadError, match=r"steps.txt: line 2 is longer than 4 MB"):
+        find_tables(path, Dialect.model_validate(settings))
 
 
 @pytest.mark.parametrize("end", ["\r", "\r\n", "\r\r\n"])

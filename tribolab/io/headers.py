@@ -256,7 +256,7 @@ def _line(file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect) 
     if end < 0:
         end = len(content)
     if end - start > LONGEST_LINE:
-        raise ReadError(endless(content.count(b"\n", 0, start) + 1), where=file.path)
+        raise ReadError(endless(content[:start].count(b"\n") + 1), where=file.path)
     text = content[start:end].decode(_encoding(dialect), errors="replace")
     return text.rstrip("\r"), min(end + 1, len(content))
 
