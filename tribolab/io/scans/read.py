@@ -12,7 +12,7 @@ import xarray as xr
 
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
-from tribolab.io.dialects import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
+from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
