@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.outcome import Finding, beyond_limits
-from tribolab.campaign.runs import explain
 from tribolab.errors import ReadError, TribolabError
 from tribolab.quantities import stamp
+from tribolab.records.parts import Finding, beyond_limits
 from tribolab.validity import together
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.surface_plan import PlannedSurface
