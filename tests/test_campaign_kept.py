@@ -130,6 +130,24 @@ def test_the_spectrum_of_all_scans_is_kept_when_one_cannot_be_read(tmp_path):
         assert (new / surface.data_file).read_bytes() == content
 
 
+@pytest.mark.slow
+def test_rubber_friction_is_kept_when_its_modulus_cannot_be_read(tmp_path):
+    campaign = simulated(tmp_path, repeats=1, scans=True)
+    modulus = campaign.parent / "raw/dma.csv"
+    modulus.write_text("f,E_stor,E_loss\nHz,MPa,MPa\n0.001,1.5,0.1\n1e3,1.8,0.3\n1e9,90,30\n")
+    text = campaign.read_text("utf-8")
+    campaign.write_text(text.replace("[contact]", '[contact]\nmodulus_file = "dma.csv"'), "utf-8")
+    read = load_campaign(campaign)
+    [before] = process(read, tmp_path / "0").surfaces
+    assert "modulus" in before.parts and not before.unreadable
+    modulus.write_bytes(b"")
+    [alone] = process(read, tmp_path / "alone").surfaces
+    assert "modulus" not in alone.parts and alone.unreadable
+    [surface] = process(read, tmp_path / "1", previous=tmp_path / "0").surfaces
+    assert surface.kept.startswith("kept from 20") and "dma.csv cannot be read" in surface.kept
+    assert surface.parts == before.parts and surface.unreadable
+
+
 def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
     for name in ("old", "new"):
         (tmp_path / name / "data").mkdir(parents=True)

@@ -137,6 +137,19 @@ def test_what_somebody_put_into_the_results_survives_every_rerun(tmp_path):
     assert beside(output) == []
 
 
+def test_a_folder_that_we_left_empty_is_ours_and_goes_with_the_next_run(tmp_path):
+    output = tmp_path / "results"
+    with staged(output) as folder:
+        (folder / "report.json").write_text("everything failed")
+        (folder / "figures" / "traces").mkdir(parents=True)
+        (folder / "data").mkdir()
+    assert Ledger.read(output).foreign() == []
+    (output / "theirs").mkdir()
+    assert Ledger.read(output).foreign() == ["theirs"]
+    write(output, "second")
+    assert sorted(p.name for p in output.iterdir()) == [MARKER, "answer.txt", "theirs"]
+
+
 def test_a_file_of_ours_that_somebody_changed_is_kept_under_another_name(tmp_path):
     output = tmp_path / "results"
     with staged(output) as folder:

@@ -107,7 +107,7 @@ def test_results_beside_their_profile_are_compared_with_it(scans, shared_data, t
     ],
 )
 def test_known_troubles_too_small_to_object_to_are_shown(shared_data, path, said):
-    done = tribolab_check(shared_data / path)
+    done = tribolab_check(shared_data / path, "--notes")
     assert done.exit_code == 0
     assert re.search(said, done.stdout)
 

@@ -20,7 +20,7 @@ from tribolab.io.scans.read import read_scans
 
 _QUICK = re.compile(
     r"units 6: (header|campaign)|patterns 7: \(a|large 8: dialect, (5000.*True, clock True)"
-    r"|large 8: info, xlsx with 100000"
+    r"|large 8: info, xlsx with 100000|large 8: info, 300 000 times ('\(|' ).* in (a row|the h)"
     r"|netcdf 10: check|sdf 10: check, scales (0|1e-6) and 0|quotes 10|links 10: \w+ of"
     r"|names 10: a dialect|toml 10|secrets 15: (as|parted|run|info)"
 )

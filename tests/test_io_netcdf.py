@@ -1,6 +1,8 @@
 """What is written as netCDF comes back the same."""
 
+import os
 import pickle
+from pathlib import Path
 
 import netCDF4
 import numpy as np
@@ -12,6 +14,7 @@ from hypothesis import strategies as st
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.netcdf import CHUNK, read_groups, read_netcdf, write_netcdf
+from tribolab.io.seal import unseal
 
 ATTRIBUTES = st.dictionaries(
     st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),
@@ -27,6 +30,19 @@ ATTRIBUTES = st.dictionaries(
     ),
     max_size=5,
 )
+
+
+def test_a_file_of_any_name_comes_back(tmp_path):
+    folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe"))
+    folder.mkdir()
+    run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    for group in ("run", "friction"):
+        write_netcdf(run, folder / "a.nc", group)
+    assert [path.name for path in folder.iterdir()] == ["a.nc"]
+    for group in ("run", "friction"):
+        xr.testing.assert_identical(read_netcdf(folder / "a.nc", group), run)
+    unseal(folder / "a.nc")  # tried out in another process first
+    xr.testing.assert_identical(read_netcdf(folder / "a.nc", "run"), run)
 
 
 def example_run(n=200_000):

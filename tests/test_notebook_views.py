@@ -31,7 +31,7 @@ def test_findings_tell_each_objection_whole_and_fold_the_rest_away(spiked):
 
 def test_findings_print_what_the_command_shows(spiked, tmp_path, capsys):
     found = tl.check(spiked)
-    checks.show([checks.Checked((tmp_path / "<a>.csv",), found)])
+    checks.show([checks.Checked.of((tmp_path / "<a>.csv",), found)])
     summary, *rows = capsys.readouterr().out.splitlines()
     printed = str(found)
     assert printed.splitlines()[0] == summary

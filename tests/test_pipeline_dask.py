@@ -65,15 +65,25 @@ def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(
 ):
     monkeypatch.setattr("tribolab.campaign.executor._PATIENCE", 3.0)
     campaign = simulated(tmp_path, repeats=1)
+    levels = _levels()
+    heard: set[str] = set()
     with _processes(tmp_path) as (address, scheduler, alive):
 
         def progress(stage, done, total):
+            heard.update(n for n in _levels() if logging.getLogger(n).isEnabledFor(logging.ERROR))
             for process in alive if victims == "workers" else [scheduler]:
                 process.kill()
 
         with pytest.raises(ClusterGone, match=r"Dask cluster is lost.*repeat the command"):
             run_campaign(campaign, scheduler=address, progress=progress)
     assert {path.name for path in campaign.parent.iterdir()} == {"campaign.toml", "raw", "truth"}
+    assert not heard  # Dask's own errors would stand beside ours
+    assert {name: _levels()[name] for name in levels} == levels
+
+
+def _levels():
+    names = [n for n in logging.root.manager.loggerDict if n.split(".")[0] == "distributed"]
+    return {name: logging.getLogger(name).level for name in names}
 
 
 @contextlib.contextmanager

@@ -1,12 +1,14 @@
 """The pipeline over the runs: all that can be done is done, what cannot be says why."""
 
 import errno
+import json
 import multiprocessing
 import os
 import pickle
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -167,6 +169,24 @@ def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
     ]
     assert outcome.curves == done.curves
     assert outcome.sources == done.sources
+
+
+@pytest.mark.slow
+def test_files_and_folders_whose_names_are_not_utf8_are_analysed(campaign, tmp_path):
+    folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/in\xff"))
+    campaign.parent.rename(folder)
+    for path in list((folder / "raw/friction").glob("*dry_31N_02*")):
+        path.rename(Path(os.fsdecode(os.fsencode(path).replace(b"N_02", b"N_\xe4"))))
+    config = load_campaign(folder / campaign.name)
+    outcome = process(config, folder / "new")
+    assert [run.status for run in outcome.runs] == ["done"] * 4
+    assert all(curve.done for curve in outcome.curves)
+    files = [name for run in outcome.runs for name in run.files]
+    assert "raw/friction/sb-r_dry_31N_\\xe4_force.csv" in files
+    assert reused(process(config, folder / "next", previous=outcome.folder)) == [
+        run.name for run in outcome.runs
+    ]
+    json.dumps([files, outcome.sources], ensure_ascii=False).encode()  # it is text throughout
 
 
 def reused(outcome):

@@ -22,11 +22,17 @@ from mutations import mat_inside, mutate
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
+from tribolab.io.dialects.headers import find_tables
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 from tribolab.io.tables.mat5 import read_variables
 
+COLUMNS = [
+    {"quantity": "time", "position": 1, "unit": "s"},
+    {"quantity": "friction_force", "position": 2, "unit": "N"},
+]
 HEAD = "# Surftest profile\nx [mm],z [um]\n"
 REAL = {
     "bearing_profiles_MIT/NU206-RE-1.txt": read_scans,
@@ -58,6 +64,49 @@ def test_a_damaged_file_is_a_dataset_or_our_error(shared_data, tmp_path_factory,
         assert isinstance(data, xr.Dataset) and len(data) > 0
         if "time" in data.dims:
             assert (np.diff(data.time) > 0).all()
+
+
+# ---- text whose lines do not end
+
+
+def test_a_line_longer_than_any_row_is_refused_where_it_begins(tmp_path):
+    path = tmp_path / "long.csv"
+    head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    path.write_text(f"{head}{'0,1,2' + chr(10)}{'0.1,' * (5 << 20)}")
+    with pytest.raises(ReadError, match=r"long.csv: line 4 is longer than 4 MB"):
+        tl.read(path)
+
+
+def test_a_line_without_end_below_a_header_that_repeats_is_refused_too(tmp_path):
+    path = tmp_path / "steps.txt"
+    path.write_text("Step 1\n" + "1," * (3 << 20))
+    settings = {"name": "d", "title": "d", "column": COLUMNS}
+    settings["header"] = {"pattern": "^Step", "repeats": True}
+    with pytest.raises(ReadError, match=r"steps.txt: line 2 is longer than 4 MB"):
+        find_tables(path, Dialect.model_validate(settings))
+
+
+@pytest.mark.parametrize("end", ["\r", "\r\n", "\r\r\n"])
+def test_a_table_is_the_same_with_any_line_end(tmp_path, end):
+    lines = [
+        "# Linear slider, force log",
+        "Time [s],Fx [N],Fz [N]",
+        *(f"{n},1,2" for n in range(9)),
+    ]
+    found = []
+    for ends in ("\n", end):
+        path = tmp_path / "a.csv"
+        path.write_bytes(ends.join(lines).encode() + ends.encode())
+        found.append(tl.read(path).drop_attrs())
+    xr.testing.assert_identical(*found)
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xff\xfe"])
+def test_a_file_of_empty_lines_is_empty_in_any_encoding(tmp_path, mark):
+    path = tmp_path / "a.csv"
+    path.write_bytes(mark + (b"\n\0" if mark else b"\n") * 5_000_000)
+    with pytest.raises(ReadError, match=r"a.csv: the file is empty"):
+        tl.read(path)
 
 
 # ---- MAT

@@ -166,6 +166,23 @@ def test_a_file_that_is_no_dma_table_is_refused_with_the_column(tmp_path, text, 
         read_modulus(path)
 
 
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"root:x:0:0:hunter2:/root:/bin/bash\ndaemon:x:1:1:hunter2:/usr/sbin:/bin/sh\n",
+        b"hunter2,\xff\xfe,1\n1,2,3\n",
+        b"hunter2\n1,2\n1,2,3\n",
+        b"",
+    ],
+)
+def test_what_a_file_that_is_no_dma_table_holds_is_not_told(tmp_path, content):
+    path = tmp_path / "dma.csv"
+    path.write_bytes(content)
+    with pytest.raises(ReadError, match=r"dma.csv: ") as error:
+        read_modulus(path)
+    assert "hunter2" not in str(error.value) and "root" not in str(error.value)
+
+
 def test_units_and_order_of_the_rows_do_not_matter(tmp_path):
     path = tmp_path / "dma.txt"
     path.write_text("omega;E'';E'\nrad/s;kPa;GPa\n20;5;2\n10;4;1\n", encoding="utf-8")

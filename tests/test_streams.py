@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -34,6 +35,26 @@ def test_every_text_can_be_shown_in_every_terminal(settings, wanted):
     env = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))} | settings
     done = subprocess.run([*SAY, code], capture_output=True, env=env, check=True)
     assert done.stdout == wanted
+
+
+SHORT = [sys.executable, "-m", "tribolab", "--version"]
+
+
+def test_an_output_on_a_full_disk_is_one_sentence_and_an_exit_code():
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(SHORT, stdout=full, stderr=subprocess.PIPE, check=False)
+    assert done.returncode == 3
+    assert done.stderr == (
+        b"tribolab: standard output cannot be written (No space left on device)\n"
+    )
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-"])
+def test_a_stream_that_is_closed_changes_nothing_but_what_is_shown(closed):
+    command = ["bash", "-c", f'"$@" {closed}', "bash", *SHORT]
+    done = subprocess.run(command, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert bool(done.stdout) == (closed == "2>&-")
 
 
 STOPPED = """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,9 +13,12 @@ from tribolab.app.progress import progress_bars
 from tribolab.app.streams import Terminated, prepared, say
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from tribolab.campaign.outcome import Outcome
 
 USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
+_MANY = 12  # files, from which on it pays to start other processes
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -149,6 +152,17 @@ def run(
             show_default=False,
         ),
     ] = None,
+    figures: Annotated[
+        str,
+        typer.Option(help="Figures for publication: all, curves (measured curves only) or none."),
+    ] = "all",
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
+    verify: Annotated[
+        bool,
+        typer.Option(
+            "--verify", help="Read every file to tell what changed, not its size and time only."
+        ),
+    ] = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -166,7 +180,14 @@ def run(
 
         with progress_bars(quiet) as progress:
             outcome = run_campaign(
-                campaign, output=output, jobs=jobs, scheduler=scheduler, progress=progress
+                campaign,
+                output=output,
+                jobs=jobs,
+                scheduler=scheduler,
+                progress=progress,
+                figures=figures,
+                pdf=pdf,
+                verify=verify,
             )
         code = _show(outcome, debug)
     raise typer.Exit(code)
@@ -204,17 +225,17 @@ def simulate(
         tribolab simulate faulty --small --fault spikes --fault sign
     """
     with _reported(debug):
-        from tribolab.campaign.executor import default_jobs
+        from tribolab.campaign.executor import workers
         from tribolab.rig import simulate_campaign
 
-        with progress_bars(quiet) as progress:
+        with progress_bars(quiet) as progress, workers(jobs) as pool:
             campaign = simulate_campaign(
                 folder,
                 seed,
                 small=small,
                 n_repeats=repeats,
                 faults=fault or (),
-                jobs=jobs or default_jobs(),
+                executor=pool,
                 progress=progress,
             )
         say(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
@@ -234,7 +255,10 @@ def check(
         bool | None,
         typer.Option(help="Compare scans as repeats.", show_default="by names but the last number"),
     ] = None,
+    notes: Annotated[bool, typer.Option("--notes", help="Show notes on sound files.")] = False,
     everything: Annotated[bool, typer.Option("--all", help="Show what passed, too.")] = False,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Say whether runs and scans are usable, while the sample is still mounted.
@@ -252,12 +276,15 @@ def check(
         from tribolab.app import checks
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
-        checked = checks.check_files(files, instrument, repeats=repeats)
+        with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
+            checked = checks.check_files(
+                files, instrument, repeats=repeats, executor=pool, progress=progress
+            )
         code = checks.code_of(checked, fail_on)
         if as_json:
             say(checks.as_json(checked, fail_on))
         else:
-            checks.show(checked, everything)
+            checks.show(checked, notes=notes, everything=everything)
     raise typer.Exit(code)
 
 
@@ -265,6 +292,8 @@ def check(
 def info(
     files: Annotated[list[Path], typer.Argument(help="Raw files.")],
     instrument: Instrument = None,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Show how raw files are understood, before anything is computed.
@@ -274,17 +303,18 @@ def info(
     tribolab info odd.txt --instrument my_tribometer.toml
     """
     with _reported(debug):
-        from tribolab.app.file_info import file_lines
-        from tribolab.errors import ReadError
+        from tribolab.app.file_info import Descriptions
+        from tribolab.campaign.engine import perform
 
-        unreadable = 0
-        for file in files:
-            try:
-                say("\n".join(file_lines(file, instrument)))
-            except ReadError as error:  # the other files want to be seen too
-                unreadable += 1
-                say(f"tribolab: {error.told('terminal')}", to_stderr=True)
-    raise typer.Exit(UNREADABLE if unreadable else 0)
+        with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
+            tell = progress or (lambda stage, done, total: None)
+            described = perform(Descriptions(files, instrument), pool, tell)
+        for one in described:
+            if one.error:
+                say(f"tribolab: {one.error}", to_stderr=True)
+            else:
+                say("\n".join(one.lines))
+    raise typer.Exit(UNREADABLE if any(one.error for one in described) else 0)
 
 
 @app.command()
@@ -334,6 +364,15 @@ def dialect(
             print_next(draft, save_draft(draft, target, force=force), console())
         else:
             _fail(f"{file}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+
+
+def _pool(
+    jobs: int | None, files: Sequence[Path]
+) -> contextlib.AbstractContextManager[Executor | None]:
+    """Return processes to look at files in; a few files are looked at here, which is sooner."""
+    from tribolab.campaign.executor import workers
+
+    return workers(1 if jobs is None and len(files) < _MANY else jobs)
 
 
 @contextlib.contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,18 @@ def sha256_of_file(path: str | Path) -> str:
 def sha256_of(value: Any) -> str:
     """SHA-256 of anything that JSON can hold; the order of keys does not matter."""
     text = json.dumps(value, sort_keys=True, default=str, ensure_ascii=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()
+
+
+def as_text(path: str | Path) -> str:
+    r"""Return a path, or a name, as results write it: bytes that are not UTF-8 as ``\xff``.
+
+    Examples
+    --------
+    >>> as_text("raw/Öl.csv"), as_text(os.fsdecode(b"raw/\xd6l.csv"))
+    ('raw/Öl.csv', 'raw/\\xd6l.csv')
+    """
+    return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
 def history_line(action: str) -> str:
@@ -118,7 +130,7 @@ def provenance(
     paths = [Path(source) for source in sources]
     return made(
         action,
-        source="; ".join(path.name for path in paths),
+        source="; ".join(as_text(path.name) for path in paths),
         source_sha256="; ".join(sha256_of_file(path) for path in paths),
         config_sha256="" if config is None else sha256_of(config),
     )

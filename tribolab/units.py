@@ -78,7 +78,7 @@ def registry() -> pint.UnitRegistry:
 
 # exponents and signs of multiplication as typesetters write them
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
-_PRODUCT = re.compile(r"\s*[·⋅]\s*")
+_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
 
 
 def _clean(unit: str) -> str:

@@ -180,3 +180,17 @@ def explain(error: BaseException) -> tuple[str, str]:
         frame = (ours or frames)[-1]
         where = f" at {Path(frame.filename).name}:{frame.lineno}"
     return f"crashed with {name}{where}: {text}" if text else f"crashed with {name}{where}", name
+
+
+_DRY = {"dry", "none", "air"}
+
+
+def is_dry(medium: str) -> bool:
+    """Whether a medium's name means that there is no fluid.
+
+    Examples
+    --------
+    >>> is_dry("Dry"), is_dry("glycerol")
+    (True, False)
+    """
+    return medium.strip().lower() in _DRY

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from hostile.base import LONG, UNREADABLE, USAGE, Command, campaign, case, run, whole
+from hostile.base import LONG, TRIBOLAB, UNREADABLE, USAGE, Command, campaign, case, run, whole
 
 # ---- 1 to 5: loss
 
@@ -112,48 +112,64 @@ def _nothing_left(folder: Path) -> str:
     large=True,
 )
 def _(folder: Path) -> Command:
-    return run(campaign(folder), "--scheduler", "tcp://127.0.0.1:1")
+    file = str(campaign(folder))
+    return [*TRIBOLAB, "run", file, "-q", "--scheduler", "tcp://127.0.0.1:1"]
 
 
+# A scheduler and two workers as they are started by hand; what is named in the second argument is
+# killed as soon as the run has given them work.
 _LOST = """
-import os, sys
-from tribolab.cli import main
-from tribolab.app import run
-from dask.distributed import LocalCluster
-if __name__ == "__main__":
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
-                      host="127.0.0.1", processes=True) as cluster:
-        pids = [worker.pid for worker in cluster.workers.values()]
-        whole = run.run_campaign
-        def dying(*args, progress=None, **options):
-            def kill(*_):
-                import signal
-                for nanny in cluster.workers.values():
-                    nanny.auto_restart = False
-                for pid in pids:
-                    try:
-                        os.kill(pid, signal.SIGKILL)
-                    except ProcessLookupError:
-                        pass
-            return whole(*args, progress=kill, **options)
-        run.run_campaign = dying
-        import tribolab.campaign.executor as executor
-        sys.argv = ["tribolab", "run", sys.argv[1], "-q", "--scheduler", cluster.scheduler_address]
-        main()
+import json, os, subprocess, sys, time
+from pathlib import Path
+from distributed import Client
+
+campaign, victims = sys.argv[1:]
+file = Path("scheduler.json")
+quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+
+def start(kind, *options):
+    command = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--scheduler-file", str(file)]
+    return subprocess.Popen([*command, "--no-dashboard", *options], **quiet)
+
+started = [start("scheduler", "--host", "127.0.0.1", "--port", "0")]
+try:
+    started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
+    while not file.is_file():
+        time.sleep(0.1)
+    address = json.loads(file.read_text())["address"]
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(2)
+        run = subprocess.Popen(
+            [sys.executable, "-m", "tribolab", "run", campaign, "-q", "--scheduler", address]
+        )
+        while not client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)):
+            time.sleep(0.02)
+        client.close()
+    for process in started[:1] if victims == "scheduler" else started[1:]:
+        process.kill()
+    sys.exit(run.wait(90))
+finally:
+    for process in started:
+        process.kill()
+        process.wait()
 """
 
 
-@case(
-    "cluster 9: both workers gone",
-    codes=(UNREADABLE,),
-    says="Dask cluster is lost",
-    after=_nothing_left,
-    seconds=90.0,
-    large=True,
-)
-def _(folder: Path) -> Command:
-    (folder / "lost.py").write_text(_LOST)
-    return [sys.executable, str(folder / "lost.py"), str(campaign(folder))]
+for _victims in ("both workers", "the scheduler"):
+
+    @case(
+        f"cluster 9: {_victims} gone",
+        _victims.split()[1],
+        codes=(UNREADABLE,),
+        says="Dask cluster is lost",
+        never="distributed",
+        after=_nothing_left,
+        seconds=90.0,
+        large=True,
+    )
+    def _(folder: Path, victims: str) -> Command:
+        (folder / "lost.py").write_text(_LOST)
+        return [sys.executable, str(folder / "lost.py"), str(campaign(folder)), victims]
 
 
 # ---- moments
@@ -170,6 +186,8 @@ def _old(folder: Path) -> str:
 
 _STOPPED = """
 import os, signal, subprocess, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # else left ignored by what started us
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 process = subprocess.Popen([sys.executable, "-m", "tribolab", "run", sys.argv[1], "-q", "-j", "2"])
 time.sleep(float(sys.argv[3]))
 process.send_signal(int(sys.argv[2]))
@@ -209,22 +227,3 @@ def _(folder: Path) -> Command:
     mount = ["mount", "-t", "tmpfs", "tmpfs", str(folder / "c/volume")]
     subprocess.run(mount, check=False, capture_output=True)  # else it is a folder like others
     return run(file, "-o", str(folder / "c/volume"))
-
-
-@case(
-    "cluster 9: the scheduler gone",
-    codes=(UNREADABLE,),
-    says="Dask cluster is lost",
-    after=_nothing_left,
-    seconds=90.0,
-    large=True,
-)
-def _(folder: Path) -> Command:
-    one = "pids = [worker.pid for worker in cluster.workers.values()]"
-    (folder / "lost.py").write_text(
-        _LOST.replace(one, "pids = []").replace(
-            "for nanny in cluster.workers.values():",
-            "cluster.sync(cluster.scheduler.close)\n                for nanny in ():",
-        )
-    )
-    return [sys.executable, str(folder / "lost.py"), str(campaign(folder))]

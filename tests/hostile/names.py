@@ -54,6 +54,7 @@ for _where, _settings in (("UTF-8", {}), ("POSIX", POSIX)):
     @case(
         f"names 10: a campaign of such names, {_where}",
         codes=(0, 1),
+        says="2 of 2 runs",
         settings=_settings,
         after=_results_there,
         **LONG,
@@ -65,6 +66,23 @@ for _where, _settings in (("UTF-8", {}), ("POSIX", POSIX)):
             new = os.fsencode(old).replace(b"dry_31N_01", b"dry_31N_\xff\xe4")
             os.rename(old, new)  # noqa: PTH104 - a name of bytes
         return run(file)
+
+
+@case(
+    "names 10: a campaign in a folder of such a name",
+    codes=(0, 1),
+    says="2 of 2 runs",
+    never="cannot be",
+    after=lambda folder: _results_there(next(folder.glob("in*"))),
+    **LONG,
+)
+def _(folder: Path) -> Command:
+    inner = Path(os.fsdecode(os.fsencode(folder) + b"/in\xff\xfe"))
+    inner.mkdir()
+    file = campaign(inner)
+    scan = next((file.parent / "raw/profiles").glob("*.csv"))
+    scan.rename(Path(os.fsdecode(os.fsencode(scan).replace(b"_1.csv", b"_\xe4.csv"))))
+    return run(file)
 
 
 def _shell(command: Command, *rest: str) -> Command:

@@ -60,6 +60,29 @@ def _(folder: Path) -> Command:
 # ---- 8: large and strange files
 
 
+def _pieces(folder: Path, command: str, where: str, piece: str) -> Command:
+    """Write a file in which a time that grows with the square of a line would be minutes."""
+    numbers, many = "1,2\n2,4\n3,1\n" * 10, piece * 300_000
+    (folder / "odd.txt").write_text(
+        {
+            "a row": f"1{many}3\n{numbers}",
+            "the header": f"Time [s],F{many}x [N]\n{numbers}",
+            "the end": f"Time [s],Fx [N]\n{numbers}7{many}x\n",
+        }[where]
+    )
+    return [*TRIBOLAB, command, "odd.txt"]
+
+
+for _command in ("dialect", "info", "check"):
+    for _where in ("a row", "the header", "the end"):
+        for _piece in (" ", "\t", "\r", "(", "1,", "a,", "[N] "):
+            case(
+                f"large 8: {_command}, 300 000 times {_piece!r} in {_where}",
+                *(_command, _where, _piece),
+                codes=(0, 1, 3),
+            )(_pieces)
+
+
 def _wide(folder: Path, head: bool, clock: bool) -> Path:
     n = 5000
     rows = [",".join(f"{(7 * r + 13 * c) % 97 / 9:.4f}" for c in range(n)) for r in range(50)]
@@ -111,6 +134,8 @@ for _command in ("dialect", "info", "check"):
                 file.write(end)
             return [*TRIBOLAB, command, "long.txt"]
 
+    # The 5 s are for depth, which no office program writes. A million flat rows are what a legal
+    # workbook may hold (1 048 576): reading them takes as long as there are cells, some 20 s.
     for _tag, _depth in (("a", 3000), ("row", 100_000), ("a", 5_000_000)):
 
         @case(f"large 8: {_command}, xlsx with {_depth} <{_tag}>", _command, _tag, _depth)

@@ -48,14 +48,15 @@ def _(folder) -> Command:
 
 
 def _policy(folder) -> str:
+    import html
     import re
 
     page = (folder / "c/results/report.html").read_text("utf-8")
     found = re.search(r'Content-Security-Policy" content="([^"]*)"', page)
-    scripts = re.search(r"script-src ([^;]*)", found[1] if found else "")
+    scripts = re.search(r"script-src ([^;]*)", html.unescape(found[1]) if found else "")
     if scripts is None:
         return "the page has no policy for scripts"
-    loose = [one for one in scripts[1].split() if not one.startswith(("'sha256-", "&#39;sha256-"))]
+    loose = [one for one in scripts[1].split() if not one.startswith("'sha256-")]
     return f"scripts may come from {loose}" if loose else ""
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,12 +15,14 @@ from rich.table import Table
 
 from tribolab.app.file_info import read_scan
 from tribolab.app.streams import say
+from tribolab.campaign.engine import Progress, Stage, perform
 from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
 from tribolab.io.scans.results import read_tester_results
-from tribolab.qc.findings import Findings, exit_code
+from tribolab.qc.findings import Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run
+from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,23 +43,102 @@ _STYLES = {
 class Checked:
     """One run or scan: its files, and what the checks found, or why it could not be read.
 
-    `kind` is "run", "scan", "results" (of a roughness tester), or "file" if it is not known.
+    Parameters
+    ----------
+    files
+        Of the run, or the scan.
+    rows
+        Of `Findings`; none if it could not be read.
+    status
+        The gravest status, or "unreadable".
+    summary
+        In one line, without the name.
+    error
+        Why it could not be read; "" if it could.
+    kind
+        "run", "scan", "results" (of a roughness tester), or "file" if it is not known.
     """
 
     files: tuple[Path, ...]
-    findings: Findings | None
+    rows: tuple[dict[str, Any], ...] = ()
+    status: str = "unreadable"
+    summary: str = ""
     error: str = ""
     kind: str = "run"
+
+    @classmethod
+    def of(cls, files: Iterable[Path], findings: Findings, kind: str = "run") -> Checked:
+        """Keep of findings what is shown."""
+        # a run of two logs is called by the first, not by both
+        summary = findings.summary.removeprefix(findings.name).removeprefix(": ")
+        return cls(tuple(files), tuple(findings.rows), findings.status, summary, kind=kind)
 
     @property
     def name(self) -> str:
         """The name of the first file."""
         return self.files[0].name
 
-    @property
-    def status(self) -> str:
-        """The gravest status, or "unreadable"."""
-        return "unreadable" if self.findings is None else self.findings.status
+
+@dataclass(frozen=True)
+class CheckTask:
+    """Files to check together: a run, repeated scans with what testers said of them, or results."""
+
+    kind: str
+    files: tuple[Path, ...]
+    results: tuple[Path, ...] = ()
+    instrument: str | Path | None = None
+
+
+class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
+    """The stage of `tribolab check`.
+
+    Parameters
+    ----------
+    paths, instrument, repeats
+        As of `check_files`.
+    """
+
+    name = "checks"
+
+    def __init__(
+        self, paths: Iterable[str | Path], instrument: str | Path | None, repeats: bool | None
+    ) -> None:
+        self.groups = [tuple(g) for g in group_files([Path(p) for p in paths], instrument)]
+        self._instrument = instrument
+        self._repeats = repeats
+
+    def plan(self) -> list[CheckTask]:
+        """Put together what is to be compared."""
+        kinds = {
+            group: kind_of(group[0], self._instrument) if len(group) == 1 else "run"
+            for group in self.groups
+        }
+        scans = [g[0] for g, kind in kinds.items() if kind not in ("run", "results")]
+        results = [g[0] for g, kind in kinds.items() if kind == "results"]
+        sets = [scans] if self._repeats else [[path] for path in scans]
+        if self._repeats is None:
+            sets = repeats_by_name(scans)
+        tasks = [CheckTask("run", g, (), self._instrument) for g, k in kinds.items() if k == "run"]
+        for files in filter(None, sets):
+            own = tuple(r for r in results if any(_belongs(r, scan) for scan in files))
+            tasks.append(CheckTask("scan", tuple(files), own, self._instrument))
+        alone = [r for r in results if not any(_belongs(r, scan) for scan in scans)]
+        return [*tasks, *(CheckTask("results", (path,)) for path in alone)]
+
+    @staticmethod
+    def work(task: CheckTask) -> list[Checked]:
+        """Read and check what belongs together."""
+        return _WORK[task.kind](task)
+
+    def failed(self, task: CheckTask, error: BaseException) -> list[Checked]:
+        """Return why files could not be checked."""
+        if isinstance(error, ConfigError):
+            raise error  # a wrong instrument is wrong for every file
+        return [Checked((file,), error=explain(error)[0], kind="file") for file in task.files]
+
+    def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
+        """Return what was found."""
+        return record
 
 
 def check_files(
@@ -63,6 +146,8 @@ def check_files(
     instrument: str | Path | None = None,
     *,
     repeats: bool | None = None,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
 ) -> list[Checked]:
     """Read and check runs, scans and results of roughness testers; a bad file stops no other.
 
@@ -75,50 +160,66 @@ def check_files(
     repeats
         Whether the scans are of one surface, to be compared with each other. By default those are
         whose names differ in their last number only.
+    executor
+        Where to work; without one everything is done here.
+    progress
+        Called as ``progress(stage, done, total)``.
 
     Raises
     ------
     ConfigError
         If there is no such instrument.
     """
-    groups = group_files([Path(path) for path in paths], instrument)
-    kinds = {
-        tuple(group): kind_of(group[0], instrument) if len(group) == 1 else "run"
-        for group in groups
-    }
-    checked: dict[tuple[Path, ...], Checked] = {}
+    stage = Checks(paths, instrument, repeats)
+    done = perform(stage, executor, progress or (lambda stage, done, total: None))
+    place = {file: number for number, group in enumerate(stage.groups) for file in group}
+    return sorted((one for part in done for one in part), key=lambda one: place[one.files[0]])
+
+
+def _check_run(task: CheckTask) -> list[Checked]:
+    try:
+        run = read(list(task.files) if len(task.files) > 1 else task.files[0], task.instrument)
+        return [Checked.of(task.files, check_run(run))]
+    except ConfigError:
+        raise
+    except (TribolabError, OSError) as error:
+        return [Checked(task.files, error=told(error, "terminal"), kind="file")]
+
+
+def _check_scans(task: CheckTask) -> list[Checked]:
+    from tribolab.qc.scan_sets import check_scan_set
+
     scans: dict[Path, xr.Dataset] = {}
     results: dict[Path, xr.Dataset] = {}
-    for group, kind in kinds.items():
+    checked = []
+    for path in (*task.files, *task.results):
         try:
-            if kind == "results":
-                results[group[0]] = read_tester_results(group[0])
-            elif kind == "run":
-                run = read(list(group) if len(group) > 1 else group[0], instrument)
-                checked[group] = Checked(group, check_run(run))
+            if path in task.results:
+                results[path] = read_tester_results(path)
             else:
-                scans[group[0]] = read_scan(group[0], instrument)
+                scans[path] = read_scan(path, task.instrument)
         except ConfigError:
-            raise  # a wrong instrument is wrong for every file
+            raise
         except (TribolabError, OSError) as error:
-            checked[group] = Checked(group, None, told(error, "terminal"), kind="file")
-    every = list(scans)
-    sets = (
-        [every] if repeats else repeats_by_name(every) if repeats is None else [[p] for p in every]
-    )
-    for files in filter(None, sets):
-        own = [[r for path, r in results.items() if _belongs(path, file)] for file in files]
-        from tribolab.qc.scan_sets import check_scan_set
+            checked.append(Checked((path,), error=told(error, "terminal"), kind="file"))
+    if scans:
+        own = [[r for path, r in results.items() if _belongs(path, file)] for file in scans]
+        judged = check_scan_set(list(scans.values()), results=own)
+        checked += [Checked.of((f,), said, "scan") for f, said in zip(scans, judged, strict=True)]
+    return checked
 
-        found = check_scan_set([scans[file] for file in files], results=own)
-        for file, findings in zip(files, found, strict=True):
-            checked[(file,)] = Checked((file,), findings, kind="scan")
-    for path, result in results.items():
-        if not any(_belongs(path, file) for file in every):
-            from tribolab.qc.scan_sets import check_results
 
-            checked[(path,)] = Checked((path,), check_results(result), kind="results")
-    return [checked[group] for group in kinds if group in checked]
+def _check_results(task: CheckTask) -> list[Checked]:
+    from tribolab.qc.scan_sets import check_results
+
+    try:
+        results = read_tester_results(task.files[0])
+    except (TribolabError, OSError) as error:
+        return [Checked(task.files, error=told(error, "terminal"), kind="file")]
+    return [Checked.of(task.files, check_results(results), "results")]
+
+
+_WORK = {"run": _check_run, "scan": _check_scans, "results": _check_results}
 
 
 def _belongs(results: Path, scan: Path) -> bool:
@@ -128,37 +229,61 @@ def _belongs(results: Path, scan: Path) -> bool:
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
     """Exit code: 3 if a file is unreadable or a check crashed, 1 from `fail_on` on, else 0."""
-    code = exit_code({c.findings.status for c in checked if c.findings is not None}, fail_on)
-    return UNREADABLE if any(c.findings is None for c in checked) else code
+    code = exit_code({c.status for c in checked if not c.error}, fail_on)
+    return UNREADABLE if any(c.error for c in checked) else code
 
 
-def findings_table(findings: Findings, everything: bool = False) -> Table:
-    """Return objections and notes, graver ones first; with `everything` all that was asked."""
+def findings_table(
+    rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
+) -> Table:
+    """Return objections, graver ones first; notes, or all that was asked, where wanted."""
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for status, check, message, cure in findings.told(everything):
+    for status, check, message, cure in told_of(rows, notes=notes, everything=everything):
         text = escape(message) + (f"\n[dim]{escape(cure)}[/dim]" if cure else "")
         table.add_row(status, check, text, style=_STYLES[status])
     return table
 
 
-def show(checked: Sequence[Checked], everything: bool = False) -> None:
-    """Print what the checks found on stdout, and on stderr why a file could not be read."""
+def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = False) -> None:
+    """Print what the checks found on stdout, and on stderr why a file could not be read.
+
+    Of several files the last lines count them, and name those that need a look.
+    """
     from tribolab.app import terminal
 
     for one in checked:
-        if one.findings is None:
+        if one.error:
             say(f"{one.name}: unreadable")
             say(f"tribolab: {one.error}", to_stderr=True)
             continue
-        # a run of two logs is called by the first, not by both
-        head = one.findings.summary.removeprefix(one.findings.name)
-        say(f"{one.name}{head}")
-        table = findings_table(one.findings, everything)
+        say(f"{one.name}: {one.summary}")
+        table = findings_table(one.rows, notes=notes, everything=everything)
         if table.row_count:
             terminal.console().print(table)
+    if len(checked) > 1:
+        for line in count_lines(checked):
+            say(line)
+
+
+def count_lines(checked: Sequence[Checked]) -> list[str]:
+    """Count what was checked, by status, and list what needs a look, the gravest first.
+
+    Examples
+    --------
+    >>> files = [Checked((Path(f"{n}.csv"),), status=s) for n, s in enumerate(("pass", "fail"))]
+    >>> count_lines(files)
+    ['2 checked: 1 fail, 1 pass', 'to look at: 1.csv (fail)']
+    """
+    ranked = ("error", "unreadable", "fail", "suspect", "skipped", "pass")
+    counts = Counter(one.status for one in checked)
+    parts = [f"{counts[status]} {status}" for status in ranked if counts[status]]
+    wanted = [s for s in ranked if s not in ("pass", "skipped")]
+    names = [f"{one.name} ({s})" for s in wanted for one in checked if one.status == s]
+    lines = [f"{len(checked)} checked: {', '.join(parts)}"]
+    return [*lines, f"to look at: {', '.join(names)}"] if names else lines
 
 
 def as_json(checked: Sequence[Checked], fail_on: str) -> str:
@@ -182,7 +307,7 @@ def document(checked: Sequence[Checked], fail_on: str) -> dict[str, Any]:
                 "files": [str(path) for path in c.files],
                 "status": c.status,
                 "error": c.error,
-                "findings": [] if c.findings is None else c.findings.rows,
+                "findings": list(c.rows),
             }
             for c in checked
         ],

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tribolab.app.ranges import range_of
-from tribolab.errors import ReadError, shown
+from tribolab.campaign.engine import Stage
+from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
@@ -15,7 +17,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
-from tribolab.words import Count
+from tribolab.words import Count, explain
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _LONGEST = 300  # letters of what a file says of itself
@@ -37,6 +39,50 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         described = describe(path, instrument)
         return run_lines(described) + companion_lines(describe_companion(path, instrument))
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+@dataclass(frozen=True)
+class Described:
+    """A file, what is said of it, and why it could not be read."""
+
+    file: Path
+    lines: tuple[str, ...] = ()
+    error: str = ""
+
+
+class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]):
+    """The stage of `tribolab info`: files, each as it is understood."""
+
+    name = "files"
+
+    def __init__(self, files: Sequence[Path], instrument: str | Path | None) -> None:
+        self._files = files
+        self._instrument = instrument
+
+    def plan(self) -> list[tuple[Path, str | Path | None]]:
+        """Return the files and their instrument."""
+        return [(file, self._instrument) for file in self._files]
+
+    @staticmethod
+    def work(task: tuple[Path, str | Path | None]) -> Described:
+        """Describe one file."""
+        file, instrument = task
+        try:
+            return Described(file, tuple(file_lines(file, instrument)))
+        except ReadError as error:  # the other files want to be seen too
+            return Described(file, error=error.told("terminal"))
+
+    def failed(self, task: tuple[Path, str | Path | None], error: BaseException) -> Described:
+        """Return why a file could not be described; a wrong instrument is wrong for all."""
+        if isinstance(error, TribolabError):
+            raise error
+        return Described(task[0], error=explain(error)[0])
+
+    def keep(
+        self, task: tuple[Path, str | Path | None], place: int, record: Described
+    ) -> Described:
+        """Return what is said."""
+        return record
 
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> Any:

@@ -20,6 +20,7 @@ _PLAIN = str.maketrans(
     | {"²": "2", "³": "3", "η": "eta", "σ": "sigma", "°": " deg ", "≤": "<=", "≥": ">="}
 )
 _ERRORS = "tribolab_plain"
+_UNWRITABLE = 3  # exit code, as for results that cannot be written
 
 
 def say(text: str, *, to_stderr: bool = False) -> None:
@@ -36,13 +37,15 @@ class Terminated(KeyboardInterrupt):
 
 
 class _Pipe(io.RawIOBase):
-    """A file descriptor for writing; when its reader is gone, the rest goes nowhere.
+    """A file descriptor for writing; when it takes no more, the rest goes nowhere.
 
-    So ``| head -1`` changes what is shown, not what is done nor the exit code.
+    So ``| head -1`` changes what is shown, not what is done nor the exit code. What else went
+    wrong, a full disk say, is in `failed`.
     """
 
     def __init__(self, number: int) -> None:
         self._number = number
+        self.failed: OSError | None = None
 
     def writable(self) -> bool:
         return True
@@ -57,7 +60,8 @@ class _Pipe(io.RawIOBase):
         view = memoryview(data)  # type: ignore[arg-type]
         try:
             return os.write(self._number, view)
-        except BrokenPipeError:
+        except OSError as error:
+            self.failed = None if isinstance(error, BrokenPipeError) else error
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, self._number)
             os.close(nowhere)
@@ -76,17 +80,22 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 def prepared() -> Iterator[None]:
     """Have standard output and errors take every text, and SIGTERM and SIGHUP clean up.
 
+    Standard output that could not be written, to a full disk say, is exit code 3 at the end.
     Does nothing to streams that somebody else put in place, as tests and notebooks do.
     """
     codecs.register_error(_ERRORS, _plain)
     # what arithmetic does with damaged numbers is found by checks, and told in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
+    pipes = {}
     for name, number in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)
-        if stream is getattr(sys, f"__{name}__") and stream is not None:
+        if stream is None:  # closed by the shell
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115, PTH123 - as long as we live
+        elif stream is getattr(sys, f"__{name}__"):
             stream.flush()
+            pipes[name] = _Pipe(number)
             opened = io.TextIOWrapper(
-                io.BufferedWriter(_Pipe(number)),
+                io.BufferedWriter(pipes[name]),
                 encoding=stream.encoding,
                 errors=_ERRORS,
                 line_buffering=stream.isatty() or number == 2,
@@ -104,6 +113,9 @@ def prepared() -> Iterator[None]:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
                 stream.flush()
+        if "stdout" in pipes and (error := pipes["stdout"].failed):
+            say(f"tribolab: standard output cannot be written ({error.strerror})", to_stderr=True)
+            raise SystemExit(_UNWRITABLE) from None
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:

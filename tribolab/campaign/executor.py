@@ -180,17 +180,29 @@ def _dask(scheduler: str) -> Iterator[Executor]:
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
             "its address, e.g. tcp://localhost:8786"
         ) from error
-    chatter = logging.getLogger("distributed")
-    level = chatter.level
-    chatter.setLevel(logging.CRITICAL)  # what it would say of a lost worker is said by us
     try:
-        if not client.scheduler_info()["workers"]:
-            raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
-        yield _Cluster(client)
+        with _silent("distributed"):  # what it would say of a lost worker is said by us
+            if not client.scheduler_info()["workers"]:
+                raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
+            yield _Cluster(client)
     finally:
-        with contextlib.suppress(Exception):  # a scheduler that is gone cannot be told goodbye
-            client.close(timeout=2)
-        chatter.setLevel(level)
+        with contextlib.suppress(Exception), _silent("distributed"):
+            client.close(timeout=2)  # a scheduler that is gone cannot be told goodbye
+
+
+@contextlib.contextmanager
+def _silent(package: str) -> Iterator[None]:
+    """Hear only what is critical of a package's loggers, those with a level of their own too."""
+    names = [package, *(n for n in logging.root.manager.loggerDict if n.startswith(f"{package}."))]
+    levels = {name: logging.getLogger(name).level for name in names}
+    try:
+        for name, level in levels.items():
+            if name == package or level != logging.NOTSET:
+                logging.getLogger(name).setLevel(logging.CRITICAL)
+        yield
+    finally:
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)
 
 
 class _Cluster(Executor):

@@ -86,9 +86,10 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
 def kept_surface(
     campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
 ) -> tuple[SurfaceRecord, bool]:
-    """Return the earlier record of a surface some of whose scans cannot be read now.
+    """Return the earlier record of a surface some of whose files cannot be read now.
 
-    Without such scans, or without earlier results, the record comes back as it is.
+    They are its scans and its modulus. Without such files, or without earlier results, the record
+    comes back as it is.
 
     Returns
     -------
@@ -115,11 +116,17 @@ def kept_surface(
     }
     why = sorted(f"{PurePosixPath(label).name}: {_GONE}" for label in gone)
     why += sorted(f"{PurePosixPath(label).name} cannot be read" for label in spoilt)
+    what = "scans"
+    if planned.modulus_file is not None and planned.modulus_file[1] in names:
+        lost = {"modulus"} & {*before.parts} - {*now.parts}
+        if lost and any(f.severity in ("fail", "error") for f in now.findings if not f.check):
+            what = "scans" if why else "its modulus"
+            why.append(f"{planned.modulus_file[0].name} cannot be read")
     if not now.done and now.error not in _VERDICTS:
         why.append(now.reason)
     if not why:
         return record, False
-    text = _text(store.previous / before.data_file, f"scans cannot be read now ({why[0]})")
+    text = _text(store.previous / before.data_file, f"{what} cannot be read now ({why[0]})")
     if not store.link("surface", now.name, before.data_file, planned.data_file):
         return record, False
     said = [f for f in before.findings if f.message != before.kept]
@@ -169,10 +176,10 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
 
 
 def _text(path: Path, why: str) -> str:
-    import netCDF4
+    from tribolab.io.netcdf import opened
 
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             when = str(getattr(file, "history", "")).split(" ")[0]
     except (OSError, RuntimeError):
         when = ""

@@ -35,20 +35,24 @@ class Ledger:
         The results folder.
     files
         Entries by path relative to the folder, with "/" between its parts.
+    folders
+        Folders that the run made and left empty, e.g. that of the data when every run failed.
     """
 
     folder: Path
     files: dict[str, Entry] = field(default_factory=dict)
+    folders: frozenset[str] = frozenset()
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
         """Read the marker of a folder; one that is missing or damaged lists nothing."""
         try:
-            listed = json.loads((folder / MARKER).read_text(encoding="utf-8"))["files"]
-            files = {str(name): Entry(*entry) for name, entry in listed.items()}
+            listed = json.loads((folder / MARKER).read_text(encoding="utf-8"))
+            files = {str(name): Entry(*entry) for name, entry in listed["files"].items()}
+            folders = frozenset(map(str, listed.get("folders", ())))
         except (OSError, ValueError, LookupError, TypeError, AttributeError):
-            files = {}
-        return cls(folder, files)
+            return cls(folder)
+        return cls(folder, files, folders)
 
     def is_ours(self, name: str) -> bool:
         """Whether a file is the one that was written: a copied marker makes nothing ours."""
@@ -77,7 +81,7 @@ class Ledger:
         Symbolic links are files here, wherever they lead; folders count if they are empty and the
         marker knows no file in them.
         """
-        folders = {str(Path(name).parent) for name in self.files}
+        folders = self.folders | {str(Path(name).parent) for name in self.files}
         found = []
         for name in walk(self.folder):
             path = self.folder / name
@@ -89,16 +93,19 @@ class Ledger:
 
     def write(self, folder: Path) -> None:
         """List everything in a new folder as ours; what was taken over is not read again."""
-        files = {}
+        files, folders = {}, []
         for name in walk(folder):
             path = folder / name
+            if path.is_dir() and not path.is_symlink():
+                folders.append(name)
             if path.is_symlink() or not path.is_file():
                 continue
             state, before = path.stat(), self.files.get(name)
             same = before and (before.size, before.modified) == (state.st_size, state.st_mtime_ns)
             digest = before.digest if before and same else _digest(path)
             files[name] = Entry(state.st_size, state.st_mtime_ns, digest)
-        text = json.dumps({"about": _ABOUT, "files": files}, indent=0, ensure_ascii=True)
+        listed = {"about": _ABOUT, "files": files, "folders": folders}
+        text = json.dumps(listed, indent=0, ensure_ascii=True)
         (folder / MARKER).write_text(text + "\n", encoding="utf-8")
 
 

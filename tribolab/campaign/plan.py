@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.campaign.problems import Problem, message
 from tribolab.errors import ConfigError, nearest, shown
-from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.provenance import as_text, sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign, RunEntry, Surface
@@ -254,7 +254,7 @@ def sha256_of_dialect(instrument: str) -> str:
 
 def label_of(campaign: Campaign, file: Path) -> str:
     """Return a file relative to the campaign file, as reports show it."""
-    return Path(os.path.relpath(file, campaign.file.parent)).as_posix()
+    return as_text(Path(os.path.relpath(file, campaign.file.parent)).as_posix())
 
 
 def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:

@@ -15,7 +15,7 @@ from tribolab.campaign.plan import PlannedRun
 from tribolab.campaign.store import Entry, Store
 from tribolab.campaign.zeros import attributes, zero_of
 from tribolab.errors import AnalysisError, ConfigError, OutputError, told
-from tribolab.provenance import made, sha256_of, sha256_of_file
+from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
 from tribolab.records.parts import Notice, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunRecord
 from tribolab.records.traces import PageTrace, page_trace, trace_size
@@ -246,8 +246,8 @@ def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
     names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
     known = dict(zip(names, sums, strict=False))
     return tuple(
-        (label, known[file.name], file.stat().st_size)
-        if file.name in known
+        (label, known[as_text(file.name)], file.stat().st_size)
+        if as_text(file.name) in known
         else source_of(file, label)
         for file, label in _files(run)
     )

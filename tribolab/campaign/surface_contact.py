@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import TribolabError
+from tribolab.errors import ReadError, TribolabError
 from tribolab.quantities import stamp
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.validity import together
@@ -79,6 +79,8 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
             groups.update(zip(names, compute(), strict=True))
         except Exception as error:  # recorded: the other parts have their place in the results
             severity = "suspect" if isinstance(error, TribolabError) else "error"
+            if isinstance(error, ReadError):  # a file that the campaign names
+                severity = "fail"
             findings.append(Finding(severity, f"{what}: {explain(error)[0]}"))
 
     attempt("contact", ("contact",), lambda: (_contact(grid, psd, modulus),))

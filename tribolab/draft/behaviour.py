@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 _ROWS = 20_000  # rows looked at
 _SAME = 0.9999  # correlation of one signal in two units
+_COMPARED = 1000  # columns held against one another: their pairs grow with the square
 _EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
 _SMOOTH = 1.12
 
@@ -130,13 +131,15 @@ def _run(
 
 def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
     """For each column those that are a straight line of it: the same signal in another unit."""
-    moving = [i for i in places if np.isfinite(part[:, i]).all() and np.ptp(part[:, i]) > 0]
-    if len(moving) < 2:
+    some = part[:, places[:_COMPARED]]
+    with np.errstate(invalid="ignore"):  # what is not finite does not move
+        moves = np.isfinite(some).all(axis=0) & (np.ptp(some, axis=0) > 0)
+    moving = np.asarray(places[:_COMPARED])[moves]
+    if moving.size < 2:
         return {}
     alike = np.abs(np.corrcoef(part[:, moving], rowvar=False)) > _SAME
-    return {
-        i: [k for b, k in enumerate(moving) if alike[a, b] and k != i] for a, i in enumerate(moving)
-    }
+    np.fill_diagonal(alike, False)
+    return {int(i): moving[row].tolist() for i, row in zip(moving, alike, strict=True)}
 
 
 def _runs_to_and_fro(x: np.ndarray) -> bool:

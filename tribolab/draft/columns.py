@@ -93,11 +93,10 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
         ) from error
     numbers = np.full(frame.shape, np.nan)
     text, missing = [""] * layout.width, [[] for _ in range(layout.width)]
-    for index in range(layout.width):
+    understood = np.array([dtype.kind in "fiu" for dtype in frame.dtypes], dtype=bool)
+    numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
+    for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
-        if column.dtype.kind in "fiu":  # all of it was understood
-            numbers[:, index] = column
-            continue
         values = pd.to_numeric(column, errors="coerce")
         numbers[:, index] = values.to_numpy(dtype=float)
         odd = column[values.isna() & column.notna()].astype(str).str.strip()

@@ -13,11 +13,12 @@ from tribolab.draft.header import Heading, escaped, find_heading, first_cells
 from tribolab.draft.marks import Block, without_marks
 from tribolab.draft.text import DELIMITERS, Grammar, find_encoding, find_grammar, find_line_ends
 from tribolab.errors import ReadError
-from tribolab.io.dialects.headers import split_row
+from tribolab.io.dialects.headers import line_feeds, split_row
 from tribolab.io.dialects.signature import HEAD, File
 
 _TAIL = 1 << 14
 _TRIED = 20  # patterns of a step's number
+_MOST_COLUMNS = 20_000
 
 
 class Layout(NamedTuple):
@@ -85,7 +86,7 @@ def examine(file: File) -> Layout:
     encoding, guesses = find_encoding(file.head)
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
-    lines = tuple(re.sub(r"\r+\n|\r", "\n", text).split("\n"))
+    lines = tuple(line_feeds(text).split("\n"))
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -100,6 +101,11 @@ def examine(file: File) -> Layout:
     blocks, skip_lines = without_marks(lines, _blocks(lines, grammar), grammar)
     main, others = _main(blocks)
     first = main[0]
+    if first.width > _MOST_COLUMNS:
+        raise ReadError(
+            f"{file.path}: {first.width} columns are more than an instrument writes "
+            f"({_MOST_COLUMNS}); is it the right file, and is each row on a line of its own?"
+        )
     heading = first.heading
     pattern, repeats = _pattern(lines, main, grammar) if heading else (None, False)
     if heading and pattern is None and len(main) > 1:
@@ -245,7 +251,7 @@ def _tail(file: File, encoding: str) -> list[str]:
     with file.path.open("rb") as handle:
         handle.seek(max(file.size - _TAIL, HEAD))
         text = handle.read().decode(encoding, errors="replace")
-    return re.sub(r"\r+\n|\r", "\n", text).split("\n")[1:]
+    return line_feeds(text).split("\n")[1:]
 
 
 def _end(

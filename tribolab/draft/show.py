@@ -14,6 +14,7 @@ from rich.table import Table
 
 from tribolab.draft.drafted import Drafted
 from tribolab.draft.model import DraftColumn
+from tribolab.errors import shown as cut
 from tribolab.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
@@ -112,7 +113,7 @@ def _columns_table(draft: Drafted) -> Table:
             unit = column.read_unit or ""
             table.add_row(
                 str(column.place),
-                escape(column.label),
+                escape(cut(column.label)),
                 escape(unit),
                 found,
                 escape(_remark(column)),
@@ -150,8 +151,8 @@ def _cells_table(draft: Drafted) -> Table:
     labels = [
         f"{cell} [{unit}]" if unit else cell for cell, unit in zip(cells, units, strict=False)
     ]
-    table = _table(*(escape(label) for label in labels[:width]))
+    table = _table(*(escape(cut(label)) for label in labels[:width]))
     table.show_header = heading is not None
     for row in draft.cells:
-        table.add_row(*map(escape, row[:width]))
+        table.add_row(*(escape(cut(cell)) for cell in row[:width]))
     return table

@@ -81,10 +81,16 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
 
 def find_line_ends(raw: bytes) -> str:
     """Say how lines end, the commonest first."""
-    counts = Counter(re.findall(rb"\r+\n|\r|\n", raw))
-    names = {b"\n": "LF", b"\r\n": "CR LF", b"\r": "CR", b"\r\r\n": "CR CR LF"}
-    found = [f"{names.get(end, 'CR ... LF')}" for end, _ in counts.most_common()]
-    return " and ".join(dict.fromkeys(found)) or "none"
+    twice = raw.count(b"\r\r\n")
+    both = raw.count(b"\r\n") - twice
+    counts = {
+        "LF": raw.count(b"\n") - both - twice,
+        "CR LF": both,
+        "CR": raw.count(b"\r") - both - 2 * twice,
+        "CR CR LF": twice,
+    }
+    found = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    return " and ".join(found) or "none"
 
 
 def find_grammar(lines: Sequence[str]) -> Grammar | None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -84,13 +87,53 @@ def write_netcdf(
     try:
         if mode == "a" and path.is_file():
             unseal(path)
-        encoded.to_netcdf(path, mode=mode, group=group, encoding=encoding, engine="netcdf4")
-        if group:
-            _name_groups(path)
+        with _plain_name(path) as file:
+            encoded.to_netcdf(file, mode=mode, group=group, encoding=encoding, engine="netcdf4")
+            if group:
+                _name_groups(file)
         seal(path)
     except (OSError, ValueError, TypeError) as error:
         raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
     return path
+
+
+@contextlib.contextmanager
+def _plain_name(path: Path) -> Iterator[Path]:
+    """Yield the path, or a link to it where the libraries cannot pass its bytes on."""
+    try:
+        str(path).encode(sys.getfilesystemencoding())
+    except UnicodeEncodeError:
+        with tempfile.TemporaryDirectory() as folder:
+            link = Path(folder) / "link.nc"
+            link.symlink_to(path.absolute())
+            yield link
+    else:
+        yield path
+
+
+@contextlib.contextmanager
+def opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
+    """Open a netCDF file to read it, whatever the bytes of its name are.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Yields
+    ------
+    netCDF4.Dataset
+        The open file.
+
+    Raises
+    ------
+    OSError
+        If there is no such file, or it is no netCDF.
+    """
+    import netCDF4
+
+    with _plain_name(Path(path)) as plain, netCDF4.Dataset(plain) as file:
+        yield file
 
 
 def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
@@ -157,10 +200,8 @@ def read_groups(
 def _load(
     path: Path, groups: Sequence[str | None], optional: bool = False
 ) -> dict[str | None, xr.Dataset]:
-    import netCDF4
-
     try:
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             there = list(file.groups)
             found = {}
             for name in groups:

@@ -25,7 +25,7 @@ from tribolab.io.row_counts import (
     rows_in_words,
     with_companion_rows,
 )
-from tribolab.provenance import CONVENTIONS, history_line
+from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import stamp
 from tribolab.units import to_si
 
@@ -114,7 +114,8 @@ def read(
     dialect = main[0][1]
     if pair and dialect.pair is not None:
         wanted = _companion_path(main[0][0], dialect)
-        run.attrs["companion_missing"] = wanted.name if wanted else f"*{dialect.pair.other}.*"
+        expected = as_text(wanted.name) if wanted else f"*{dialect.pair.other}.*"
+        run.attrs["companion_missing"] = expected
     return run
 
 
@@ -368,7 +369,7 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> dic
     labels = {name: label for content in contents for name, label in content.labels.items()}
     unused = dict.fromkeys(name for content in contents for name in content.not_used)
     attrs: dict[str, Any] = {
-        "source": "; ".join(content.path.name for content in contents),
+        "source": "; ".join(as_text(content.path.name) for content in contents),
         "source_sha256": "; ".join(content.sha256 for content in contents),
         "tribolab_version": __version__,
         "history": history_line(f"read as {dialect.name}"),

@@ -26,7 +26,7 @@ _NO_CRASH = 3  # exit code of a trial that ended in an error of its own
 _MEMORY = 2 << 30  # bytes of address space, for a small file
 _PATIENCE = 60.0  # s on the clock, if the computing cannot be limited
 _TRIAL = """
-import sys
+import os, sys
 path, seconds = sys.argv[1], float(sys.argv[2])
 try:
     import netCDF4
@@ -44,7 +44,8 @@ try:
             variable[...]
         for inner in group.groups.values():
             visit(inner)
-    with netCDF4.Dataset(path) as file:
+    name = os.fsencode(path).decode("latin-1")
+    with netCDF4.Dataset(name, encoding="latin-1") as file:
         visit(file)
 except BaseException as error:
     sys.stderr.write(f"{type(error).__name__}: {error}")

@@ -2,30 +2,69 @@
 
 from __future__ import annotations
 
-from tribolab.plot.contact import (
-    adhesive_area,
-    contact_area,
-    contact_separation,
-    effective_work,
-    gaps,
-    line_pressure,
-)
-from tribolab.plot.curves import half_loop, stribeck
-from tribolab.plot.film import film_profiles, lubrication_factors
-from tribolab.plot.mixed import (
-    friction_factor_effect,
-    mixed_curve,
-    shear_stress,
-    shear_stress_over_speed,
-)
-from tribolab.plot.panels import strokes
-from tribolab.plot.reduce import envelope
-from tribolab.plot.runs import trace
-from tribolab.plot.sensitivity import model_sensitivity
-from tribolab.plot.spectrogram import slip_spectrogram
-from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
-from tribolab.plot.style import figure_data, paper_style, save, svg
-from tribolab.plot.surfaces import modulus, spectra, viscoelastic
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tribolab.plot.contact import (
+        adhesive_area,
+        contact_area,
+        contact_separation,
+        effective_work,
+        gaps,
+        line_pressure,
+    )
+    from tribolab.plot.curves import half_loop, stribeck
+    from tribolab.plot.film import film_profiles, lubrication_factors
+    from tribolab.plot.mixed import (
+        friction_factor_effect,
+        mixed_curve,
+        shear_stress,
+        shear_stress_over_speed,
+    )
+    from tribolab.plot.panels import strokes
+    from tribolab.plot.reduce import envelope
+    from tribolab.plot.runs import trace
+    from tribolab.plot.sensitivity import model_sensitivity
+    from tribolab.plot.spectrogram import slip_spectrogram
+    from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
+    from tribolab.plot.style import figure_data, paper_style, save, svg
+    from tribolab.plot.surfaces import modulus, spectra, viscoelastic
+
+# Loaded when first used: whoever wants a label waits for no matplotlib.
+_HOMES = {
+    "Trace": "tribolab.plot.stick_slip",
+    "adhesive_area": "tribolab.plot.contact",
+    "contact_area": "tribolab.plot.contact",
+    "contact_separation": "tribolab.plot.contact",
+    "effective_work": "tribolab.plot.contact",
+    "envelope": "tribolab.plot.reduce",
+    "figure_data": "tribolab.plot.style",
+    "film_profiles": "tribolab.plot.film",
+    "friction_factor_effect": "tribolab.plot.mixed",
+    "gaps": "tribolab.plot.contact",
+    "half_loop": "tribolab.plot.curves",
+    "line_pressure": "tribolab.plot.contact",
+    "lubrication_factors": "tribolab.plot.film",
+    "mixed_curve": "tribolab.plot.mixed",
+    "model_sensitivity": "tribolab.plot.sensitivity",
+    "modulus": "tribolab.plot.surfaces",
+    "paper_style": "tribolab.plot.style",
+    "save": "tribolab.plot.style",
+    "shear_stress": "tribolab.plot.mixed",
+    "shear_stress_over_speed": "tribolab.plot.mixed",
+    "slip_events": "tribolab.plot.stick_slip",
+    "slip_spectra": "tribolab.plot.stick_slip",
+    "slip_spectrogram": "tribolab.plot.spectrogram",
+    "slip_traces": "tribolab.plot.stick_slip",
+    "spectra": "tribolab.plot.surfaces",
+    "stribeck": "tribolab.plot.curves",
+    "strokes": "tribolab.plot.panels",
+    "svg": "tribolab.plot.style",
+    "trace": "tribolab.plot.runs",
+    "viscoelastic": "tribolab.plot.surfaces",
+    "waveform_map": "tribolab.plot.stick_slip",
+}
 
 __all__ = [
     "Trace",
@@ -60,3 +99,15 @@ __all__ = [
     "viscoelastic",
     "waveform_map",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'tribolab.plot' has no attribute '{name}'")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

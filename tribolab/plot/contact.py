@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.plot.curves import is_dry
 from tribolab.plot.frame import (
     band,
     colours,
@@ -19,7 +18,7 @@ from tribolab.plot.frame import (
 )
 from tribolab.plot.labels import column, label
 from tribolab.plot.style import BLACK, GREY, PaperFigure, paper_style
-from tribolab.words import number
+from tribolab.words import is_dry, number
 
 Surfaces = Mapping[str, xr.Dataset]
 _SMALLEST_AREA = 1e-4

@@ -23,10 +23,9 @@ from tribolab.plot.style import (
     shade,
     surface_styles,
 )
-from tribolab.words import force_text
+from tribolab.words import force_text, is_dry
 
 _LOAD_MARKERS = "os^DvP<X"
-_DRY = {"dry", "none", "air"}
 Curves = xr.Dataset | Sequence[xr.Dataset] | None
 
 
@@ -134,17 +133,6 @@ def _load(curve: xr.Dataset) -> float:
         return float(curve.attrs.get("normal_force_N", np.nan))
     except (TypeError, ValueError):
         return float("nan")
-
-
-def is_dry(medium: str) -> bool:
-    """Whether a medium's name means that there is no fluid.
-
-    Examples
-    --------
-    >>> is_dry("Dry"), is_dry("glycerol")
-    (True, False)
-    """
-    return medium.strip().lower() in _DRY
 
 
 def _look(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -104,14 +104,7 @@ class Findings:
 
         Objections and notes; with `everything` all that was asked.
         """
-        lines = []
-        for row in self.rows:
-            note = row["status"] in ("pass", "skipped") and row["noted"]
-            if everything or note or row["status"] not in ("pass", "skipped"):
-                variable = f"{row['variable']}: " if row["variable"] else ""
-                status = "note" if note else row["status"]
-                lines.append((status, row["check"], f"{variable}{row['message']}", row["cure"]))
-        return lines
+        return told_of(self.rows, notes=True, everything=everything)
 
     def __repr__(self) -> str:
         """Return what `tribolab check` shows: a summary, and objections and notes with cures."""
@@ -140,6 +133,31 @@ class Findings:
             f"<p><b>{html.escape(self.name)}: {self.status}</b></p>{short if len(told) else ''}"
             f"<details><summary>everything that was asked: {counted}</summary>{long}</details>"
         )
+
+
+def told_of(
+    rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
+) -> list[tuple[str, str, str, str]]:
+    """Return status, check, message and cure of what is worth reading, graver ones first.
+
+    Parameters
+    ----------
+    rows
+        Of `Findings`.
+    notes
+        Whether notes on what is sound are worth it.
+    everything
+        Whether all is that was asked.
+    """
+    lines = []
+    for row in rows:
+        passed = row["status"] in ("pass", "skipped")
+        note = passed and row["noted"]
+        if everything or (note and notes) or not passed:
+            variable = f"{row['variable']}: " if row["variable"] else ""
+            status = "note" if note else row["status"]
+            lines.append((status, row["check"], f"{variable}{row['message']}", row["cure"]))
+    return lines
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:

@@ -101,7 +101,7 @@ def model_rows(
 
 def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
     """Real contact area dry over that in the medium, at the same load; None if not known."""
-    from tribolab.plot.curves import is_dry
+    from tribolab.words import is_dry
 
     if adhesion is None:
         return None

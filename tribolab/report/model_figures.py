@@ -131,7 +131,7 @@ def _title(model: ModelOutcome) -> str:
 
 def _dry(outcome: Outcome, model: ModelOutcome) -> str:
     """Return the data file of the dry curve of the same surface and load."""
-    from tribolab.plot.curves import is_dry
+    from tribolab.words import is_dry
 
     for curve in outcome.curves:
         same = (curve.surface, curve.normal_force) == (model.surface, model.normal_force)

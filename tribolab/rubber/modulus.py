@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -169,6 +170,7 @@ class _Continued:
 
 _DECADE = np.log(10.0)
 _GLASS = 3e9  # Pa, no polymer is stiffer
+_LARGEST = 32 << 20  # bytes of a table in text
 _COLUMNS = {
     "frequency": re.compile(r"f|freq(uency)?|omega|ω|w", re.IGNORECASE),
     "storage": re.compile(r"E'|E_?stor(age)?|storage[ _]modulus", re.IGNORECASE),
@@ -279,13 +281,28 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
             ) from error
         tables = list(sheets.values()) if sheet is None else [sheets]
     else:
-        tables = [pd.read_csv(path, sep=None, engine="python", dtype=str, encoding="utf-8-sig")]
+        tables = [_text_table(path)]
     for table in tables:
         table = table.rename(columns=lambda name: str(name).strip())
         if all(any(map(p.fullmatch, table.columns)) for p in _COLUMNS.values()):
             return table
-    seen = ", ".join(str(name).strip() for name in tables[0].columns)
+    names = [str(name).strip() for name in tables[0].columns]
+    # what a file that is no such table holds is not told: it may be anything
+    known = any(pattern.fullmatch(name) for name in names for pattern in _COLUMNS.values())
+    seen = shown(", ".join(names), 200) if known else "none of them"
     raise ReadError(
         f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
         f"E''; it has {seen}"
     )
+
+
+def _text_table(path: Path) -> pd.DataFrame:
+    if path.stat().st_size > _LARGEST:
+        raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
+    try:
+        return pd.read_csv(path, sep=None, engine="python", dtype=str, encoding="utf-8-sig")
+    except (ValueError, csv.Error) as error:  # not UTF-8, empty, or rows of different lengths
+        raise ReadError(
+            f"{path.name}: this is no table in text (UTF-8): one row of names, one of units, then "
+            "numbers are wanted, with as many cells in each"
+        ) from error

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
 import mmap
 import re
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
+from typing import AnyStr, NamedTuple
 
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
@@ -14,9 +15,11 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import Guarded
 from tribolab.io.dialects.signature import File, peek
 
-_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _BOM = b"\xef\xbb\xbf"
-_BLANK = re.compile(rb"(?:[ \t]*\r*\n)*")
+# one class of letters: a repeated group would take sixty bytes of memory for each line
+_BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
+_ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
+LONGEST_LINE = 4 << 20  # bytes: some 300 000 columns; what is longer is no row of a table
 
 
 class Table(NamedTuple):
@@ -52,10 +55,12 @@ def split_name(text: str) -> tuple[str, str | None]:
     >>> split_name("COF")
     ('COF', None)
     """
-    match = _BRACKETS.match(text.strip())
-    if match is None:
-        return text.strip(), None
-    return match["name"].strip(), match["unit"].strip() or None
+    text = text.strip()
+    start = max(text.rfind("["), text.rfind("("))
+    unit = text[start + 1 : -1]
+    if start < 0 or not text.endswith(("]", ")")) or "]" in unit or ")" in unit:
+        return text, None
+    return text[:start].strip(), unit.strip() or None
 
 
 def split_row(line: str, delimiter: str) -> list[str]:
@@ -64,7 +69,7 @@ def split_row(line: str, delimiter: str) -> list[str]:
     return [cell.strip().strip('"').strip() for cell in cells]
 
 
-def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
+def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = False) -> RawText:
     """Find the tables of a text file.
 
     Parameters
@@ -73,6 +78,8 @@ def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
         The file.
     dialect
         How the file is written.
+    head_only
+        Whether its first megabyte is enough, as it is to recognise a file.
 
     Raises
     ------
@@ -80,10 +87,12 @@ def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
         If there is no header where the dialect expects it, or nothing stands below it.
     """
     file = path if isinstance(path, File) else peek(path)
-    memory = _without_lines(file, _mended(file, dialect), dialect)
+    memory = _mended(file, dialect, head_only)
+    if not head_only:
+        memory = _without_lines(file, memory, dialect)
     if memory is not None:
         return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
-    if not dialect.header.repeats:
+    if head_only or not dialect.header.repeats:
         return RawText(file, None, tuple(_scan(file, file.head, file.size, dialect)))
     try:
         with file.path.open("rb") as handle, mmap.mmap(handle.fileno(), 0, prot=1) as content:
@@ -92,7 +101,7 @@ def find_tables(path: str | Path | File, dialect: Dialect) -> RawText:
         raise ReadError(f"{file.path}: the file cannot be read any more: {error}") from error
 
 
-def _mended(file: File, dialect: Dialect) -> bytes | None:
+def _mended(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
     """Whole content as UTF-8 with LF, where line ends or encoding forbid reading it as it lies."""
     head = file.head
     wide = dialect.text.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
@@ -102,18 +111,41 @@ def _mended(file: File, dialect: Dialect) -> bytes | None:
     if not (wide or odd_ends or spaced):
         return None
     try:
-        content = file.path.read_bytes()
+        content = head if head_only else file.path.read_bytes()
         if wide:
-            content = content.decode(
-                "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
-            ).encode()
+            marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
+            decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
+            content = decoder.decode(content, final=not head_only).encode()
     except (OSError, UnicodeDecodeError) as error:
         raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
-    content = re.sub(rb"\r+\n|\r", b"\n", content)
-    if spaced:
-        content = re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", content)
-        content = re.sub(rb"[ \t]+", b"\t", content)
-    return content
+    content = line_feeds(content)
+    return _tabbed(content) if spaced else content
+
+
+def line_feeds(content: AnyStr) -> AnyStr:
+    r"""Return text or bytes with LF at the end of each line, whatever stood there.
+
+    Examples
+    --------
+    >>> line_feeds("one\rtwo\r\nthree\r\r\n\nfive")
+    'one\ntwo\nthree\n\nfive'
+    """
+    cr, lf = ("\r", "\n") if isinstance(content, str) else (b"\r", b"\n")
+    for _ in range(_ODD_ENDS):
+        content = content.replace(cr + lf, lf)
+    return content.replace(cr, lf)
+
+
+def _tabbed(content: bytes) -> bytes:
+    """Put one tab between the cells of a line and none around them, whatever blanks there were.
+
+    Patterns would take a time that grows with the square of a row of blanks.
+    """
+    content = content.replace(b" ", b"\t")
+    while b"\t\t" in content:
+        content = content.replace(b"\t\t", b"\t")
+    content = content.replace(b"\n\t", b"\n").replace(b"\t\n", b"\n")
+    return content.removeprefix(b"\t").removesuffix(b"\t")
 
 
 def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
@@ -153,7 +185,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
         stop = limit
         if end is not None and (found := end.search(content, body, min(limit, len(content)))):
             stop = found.start()
-        width = len(split_row(_line(content, body, dialect)[0], text.delimiter))
+        width = len(split_row(_line(file, content, body, dialect)[0], text.delimiter))
         before = _decode(content[origin : start if start > origin else body], file, dialect)
         if header.line is None and header.pattern is None:
             before = ""
@@ -202,28 +234,39 @@ def _read_header(
     header, delimiter = dialect.header, dialect.text.delimiter
     if header.line is None and header.pattern is None:
         for _ in range(header.skip):
-            start = _line(content, start, dialect)[1]
+            start = _line(file, content, start, dialect)[1]
         return start, (), ()
-    line, here = _line(content, start, dialect)
+    line, here = _line(file, content, start, dialect)
     cells = split_row(line, delimiter)
     names, units = tuple(cells), tuple[str | None, ...](None for _ in cells)
     if header.units == "brackets":
         names, units = zip(*map(split_name, cells), strict=True)
     elif header.units == "row":
-        line, here = _line(content, here, dialect)
+        line, here = _line(file, content, here, dialect)
         row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
         units = tuple((row + [None] * len(cells))[: len(cells)])
     for _ in range(header.skip):
-        here = _line(content, here, dialect)[1]
+        here = _line(file, content, here, dialect)[1]
     return here, names, units
 
 
-def _line(content: bytes | mmap.mmap, start: int, dialect: Dialect) -> tuple[str, int]:
+def _line(file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect) -> tuple[str, int]:
     """Return the line that starts at an offset, and the offset of the next."""
-    end = content.find(b"\n", start)
-    end = len(content) if end < 0 else end
+    end = content.find(b"\n", start, start + LONGEST_LINE)
+    if end < 0:
+        end = len(content)
+    if end - start > LONGEST_LINE:
+        raise ReadError(endless(content[:start].count(b"\n") + 1), where=file.path)
     text = content[start:end].decode(_encoding(dialect), errors="replace")
     return text.rstrip("\r"), min(end + 1, len(content))
+
+
+def endless(line: int) -> str:
+    """Say that a line is longer than any row of a table."""
+    return (
+        f"line {line} is longer than {LONGEST_LINE >> 20} MB, as no row of a table is; was the "
+        "file written without line ends, or is it damaged?"
+    )
 
 
 def _encoding(dialect: Dialect) -> str:

@@ -60,7 +60,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
         if not guarded(pattern).search(text[:_PREAMBLE]):
             return f"nothing in it matches '{shown(pattern)}'"
     try:
-        raw = find_tables(file, dialect)
+        raw = find_tables(file, dialect, head_only=True)
     except ReadError as error:
         # a file that is otherwise this instrument's is recognised, so that the error is told
         return None if rules.preamble else str(error)

@@ -57,7 +57,8 @@ def peek(path: str | Path) -> File:
         raise ReadError(f"{path}: {_why_missing(path)}") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
-    if not head.strip(b"\xef\xbb\xbf \t\r\n"):
+    wide = head.startswith(_UTF16)
+    if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     return File(path, _format(path, head), size, head)
 

@@ -14,7 +14,7 @@ import pyarrow.csv as arrow_csv
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.columns import Signal
-from tribolab.io.dialects.headers import RawText, Table
+from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
 
 BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
@@ -137,6 +137,8 @@ def _pump(
             _Work(buffer, workers.submit(parser.parse, view[:cut], place, not left), hashed)
         )
         place += cut
+        if len(rest) > LONGEST_LINE:
+            raise parser.endless(place)
         if len(waiting) > _DEPTH:
             finish_one()
     while waiting:
@@ -204,6 +206,10 @@ class _Parser:
                     self.incomplete = 1
                     return table
         raise ReadError(self._diagnosis(block, place)) from error
+
+    def endless(self, place: int) -> ReadError:
+        """Return the error for a line that does not end; it starts at an offset."""
+        return ReadError(endless(self._lines_before(place) + 1), where=self._raw.file.path)
 
     def _cells(self, line: bytes) -> int:
         return line.count(self._parse["delimiter"].encode()) + 1

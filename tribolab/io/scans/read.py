@@ -16,7 +16,7 @@ from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dia
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
-from tribolab.provenance import made, sha256_of_file
+from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.quantities import stamp
 
 PathLike = str | Path
@@ -127,9 +127,9 @@ def _read(
         scan, sha256 = read_foreign(path, x_unit, height_unit), sha256_of_file(path)
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
-    x = scan.x.values
+    x, name = scan.x.values, as_text(path.name)
     return scan.assign_attrs(
-        **made(f"read {path.name}", source=path.name, source_sha256=sha256),
+        **made(f"read {name}", source=name, source_sha256=sha256),
         pitch_m=float(x[-1] - x[0]) / (x.size - 1),
         length_m=float(x[-1] - x[0]),
     )
@@ -227,7 +227,7 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
         {
             "scan": np.arange(len(scans)),
             **{dim: first[dim].values for dim in dims},
-            "file": ("scan", [file.name for file in files]),
+            "file": ("scan", [as_text(file.name) for file in files]),
         },
     )
     return stamp(data, **_common([scan.attrs for scan in scans]))
