@@ -443,7 +443,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
     return stamp_array(data, name)
 
 
-def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str):
+def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str) -> Any:
     """Return values the way an argument was given: a float, an array or a stamped DataArray."""
     if isinstance(given, xr.DataArray):
         return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)

@@ -69,7 +69,7 @@ _USUAL = {
 
 
 @functools.lru_cache(maxsize=1)
-def registry() -> pint.UnitRegistry:
+def registry() -> pint.UnitRegistry[float]:
     """Return the one pint registry, made when first asked for."""
     import pint
 

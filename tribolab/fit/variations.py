@@ -55,6 +55,12 @@ class Base(NamedTuple):
     youngs_modulus_range: tuple[float, float] | None
     inlet_length: float  # [m], infinite if nothing is stated
 
+    @property
+    def spectrum(self) -> xr.Dataset:
+        """The spectrum of a rough surface."""
+        assert self.psd is not None  # what is `OF_ROUGHNESS` is varied of rough surfaces alone
+        return self.psd
+
 
 class Variation(NamedTuple):
     """One unknown, the ends of its range, and what each end changes in `stribeck_curve`."""
@@ -74,7 +80,7 @@ class Skipped(NamedTuple):
 
 def spectrum_band(base: Base) -> Variation | Skipped:
     """Move the measured part to the ends of its band, what is extrapolated along with it."""
-    psd = base.psd
+    psd = base.spectrum
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")
     q, c = spectrum_arrays(psd)
@@ -102,7 +108,7 @@ def spectrum_band(base: Base) -> Variation | Skipped:
 
 def long_waves(base: Base) -> Variation | Skipped:
     """Leave out what was extrapolated to small wavenumbers, or take more of it."""
-    psd, name = base.psd, "spectrum at long waves"
+    psd, name = base.spectrum, "spectrum at long waves"
     q, c = spectrum_arrays(psd)
     guessed = _origin(psd) == TO_SMALL
     if not guessed.any() or guessed.all():
@@ -128,13 +134,14 @@ def long_waves(base: Base) -> Variation | Skipped:
 
 def hurst_exponent(base: Base) -> Variation | Skipped:
     """Tilt what was extrapolated to large wavenumbers about the last measured one."""
-    q, c = spectrum_arrays(base.psd)
+    psd = base.spectrum
+    q, c = spectrum_arrays(psd)
     last = _measured_to(base)
     if last is None:
         return Skipped("Hurst exponent", _NO_TAIL)
-    fitted = float(base.psd.attrs.get("hurst_exponent_standard_error", 0.0))
+    fitted = float(psd.attrs.get("hurst_exponent_standard_error", 0.0))
     error = max(_HURST, _NORMAL * fitted)
-    hurst = base.psd.attrs.get("hurst_exponent", _local_exponent(q, c))
+    hurst = psd.attrs.get("hurst_exponent", _local_exponent(q, c))
     tilt = np.maximum(q / last, 1.0)
     low, high = ({"psd": _spectrum(q, c * tilt ** (-2 * d))} for d in (-error, error))
     return Variation(
@@ -148,8 +155,8 @@ def hurst_exponent(base: Base) -> Variation | Skipped:
 
 def short_waves(base: Base) -> Variation | Skipped:
     """End the spectrum at longer waves, or carry it on to the size of an atom."""
-    name = "spectrum at short waves"
-    q, c = spectrum_arrays(base.psd)
+    psd, name = base.spectrum, "spectrum at short waves"
+    q, c = spectrum_arrays(psd)
     last = _measured_to(base)
     if last is None:
         return Skipped(name, _NO_TAIL)
@@ -160,7 +167,7 @@ def short_waves(base: Base) -> Variation | Skipped:
         beyond = np.geomspace(q[-1], atom, 11)[1:]
         tail = c[-1] * (beyond / q[-1]) ** (-2 * (1 + _local_exponent(q, c)))
         longer = {"psd": _spectrum(np.append(q, beyond), np.append(c, tail))}
-    shorter = {"psd": band(base.psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
+    shorter = {"psd": band(psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
     return Variation(
         name,
         "where the shortest waves that matter are is a convention: ten times longer, and an atom",
@@ -249,7 +256,10 @@ def youngs_modulus(base: Base) -> Variation | Skipped:
         "Young's modulus",
         "as stated; that of an elastomer hangs on batch, cure, age and frequency",
         (f"{low / 1e6:.3g} MPa", f"{high / 1e6:.3g} MPa"),
-        tuple({"contact": replace(base.contact, youngs_modulus=end)} for end in (low, high)),
+        (
+            {"contact": replace(base.contact, youngs_modulus=low)},
+            {"contact": replace(base.contact, youngs_modulus=high)},
+        ),
     )
 
 
@@ -309,7 +319,7 @@ def held_fixed(base: Base) -> list[Skipped]:
 
 def _factors(base: Base, **changed: float) -> dict[str, Any]:
     given = {"percolation": PERCOLATION, "gamma": base.gamma, **changed}
-    return {"factors": flow_factors(base.psd, base.rough_body, **given)}
+    return {"factors": flow_factors(base.spectrum, base.rough_body, **given)}
 
 
 def _origin(psd: xr.Dataset) -> np.ndarray:
@@ -320,7 +330,7 @@ def _origin(psd: xr.Dataset) -> np.ndarray:
 
 def _measured_to(base: Base) -> float | None:
     """Largest wavenumber that was measured, if there is more of the spectrum beyond it."""
-    q, _ = spectrum_arrays(base.psd)
+    q, _ = spectrum_arrays(base.spectrum)
     if base.measured_to is not None:
         if not q[0] < base.measured_to < q[-1]:
             raise AnalysisError(
@@ -329,7 +339,7 @@ def _measured_to(base: Base) -> float | None:
                 function="measured_to",
             )
         return base.measured_to
-    guessed = _origin(base.psd) == TO_LARGE
+    guessed = _origin(base.spectrum) == TO_LARGE
     return float(q[~guessed][-1]) if guessed.any() and not guessed.all() else None
 
 

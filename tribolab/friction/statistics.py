@@ -27,7 +27,7 @@ References
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from scipy import special
@@ -49,6 +49,9 @@ NARROWING, FEWER = 0.2, 11.0
 STUDENT = 8.0  # effective samples below which the error is at least as wide as Student's t asks
 
 
+_Samples = TypeVar("_Samples", float, np.ndarray)
+
+
 class Estimate(NamedTuple):
     """What a record says of its mean and trend."""
 
@@ -63,7 +66,17 @@ class Estimate(NamedTuple):
     trend_p_value: float
 
 
-NOTHING = Estimate(*[np.nan] * 3, 0, *[np.nan] * 5)
+NOTHING = Estimate(
+    mean=np.nan,
+    std=np.nan,
+    sem=np.nan,
+    samples=0,
+    effective_samples=np.nan,
+    autocorrelation_time=np.nan,
+    trend=np.nan,
+    trend_change=np.nan,
+    trend_p_value=np.nan,
+)
 
 
 def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
@@ -303,7 +316,7 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plain, plain * student * beside * _widening(effective, n)
 
 
-def _widening(effective: np.ndarray | float, n: int) -> np.ndarray | float:
+def _widening(effective: _Samples, n: int) -> _Samples:
     """Return the factor by which a spectrum known from few effective samples widens an error."""
     share = effective / min(n / BLOCKS, 1)
     wide = 1 + WIDENING / (1 + (share / FEW) ** 2)

@@ -24,8 +24,10 @@ CHUNK = 65_536  # samples; a default chunk would be the whole array
 _COMPRESSION = 2
 _MARK, _TUPLE = "json:", "json-tuple:"
 # What netCDF4 and xarray raise on a file that is damaged.
-_DAMAGE = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError)
-_DAMAGE += (MemoryError, OverflowError)
+_DAMAGE = (
+    *(OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError),
+    *(MemoryError, OverflowError),
+)
 
 
 def write_netcdf(

@@ -270,8 +270,10 @@ def _run(logs: Logs) -> xr.Dataset:
     contents = [read_content(path, dialect) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
-    if all(content.pieces[0].started for content in contents):
-        contents.sort(key=lambda content: content.pieces[0].started)
+    starts = [content.pieces[0].started for content in contents]
+    dated = [(start, content) for start, content in zip(starts, contents, strict=True) if start]
+    if len(dated) == len(contents):
+        contents = [content for _, content in sorted(dated, key=lambda pair: pair[0])]
     joined = join_clocks(contents, dialect)
     columns = _columns(contents, dialect)
     if "part" in joined and "step" not in columns:
@@ -292,7 +294,7 @@ def _run(logs: Logs) -> xr.Dataset:
     attrs |= _attributes(contents, dialect, origin)
     attrs |= row_attributes(len(time), contents, mended, dialect)
     if "joined" in joined:
-        attrs["clock_joined"] = joined["joined"]
+        attrs["clock_joined"] = str(joined["joined"])
     data = xr.Dataset(
         {name: ("time", values) for name, values in columns.items()},
         coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import PchipInterpolator, PPoly
 from scipy.special import erfinv
 
 from tribolab.contact.gap import COMPLETE, gap_distributions
@@ -286,6 +286,8 @@ class FactorTable:
     origin: float
     coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
     limit: np.ndarray  # at infinity (factor)
+    _curve: PchipInterpolator = field(init=False, repr=False)
+    _slope: PPoly = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Fit the curve once."""

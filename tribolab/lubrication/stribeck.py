@@ -184,7 +184,7 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
     added = {
         name: curve[name] + solid for name in ("friction_coefficient", "friction_without_factors")
     }
-    curve = curve.assign(friction_coefficient_solid=solid, **added)
+    curve = curve.assign({"friction_coefficient_solid": solid, **added})
     return stamp(curve, shear_stress_Pa=shear_stress)
 
 

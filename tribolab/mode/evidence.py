@@ -203,11 +203,12 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
     """Say what friction a uniform slip at the rough surfaces' shear stress would need."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
-    if not uniform > BELOW * seen > 0:  # nothing to explain
+    stress = known.rough_shear_stress
+    if stress is None or not uniform > BELOW * seen > 0:  # nothing to explain
         return None
     text = (
         f"uniform slip at the rough surfaces' shear stress "
-        f"({1e-6 * known.rough_shear_stress:.2g} MPa) over A/A0 = {known.area_ratio:.2g} would "
+        f"({1e-6 * stress:.2g} MPa) over A/A0 = {known.area_ratio:.2g} would "
         f"need µ = {uniform:.2g}; µ = {friction_text(seen)} is measured"
     )
     if known.youngs_modulus:

@@ -252,9 +252,8 @@ def _numbers(
         off = curve["friction_coefficient_model"].values - mu
         if np.isfinite(off).any():
             numbers["model_misfit"] = float(np.sqrt(np.nanmean(off**2)) / np.nanmax(mu))
-    given = (known.rough_shear_stress, known.area_ratio, known.pressure)
-    if all(x is not None for x in given):
-        stress, area, pressure = given
+    stress, area, pressure = known.rough_shear_stress, known.area_ratio, known.pressure
+    if stress is not None and area is not None and pressure is not None:
         numbers["uniform_stress_Pa"] = stress * area
         numbers["uniform_friction"] = stress * area / pressure
     return numbers

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import (
     band,
@@ -22,8 +24,8 @@ from tribolab.words import is_dry, number
 
 Surfaces = Mapping[str, xr.Dataset]
 _SMALLEST_AREA = 1e-4
-_WET_STYLES = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
-_DRY_STYLES = ("--", (0, (2, 1)))
+_WET_STYLES: tuple[LineStyleType, ...] = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
+_DRY_STYLES: tuple[LineStyleType, ...] = ("--", (0, (2, 1)))
 
 
 def contact_area(
@@ -298,9 +300,9 @@ def line_pressure(
     return figure
 
 
-def _media(adhesions: Surfaces) -> dict[str, object]:
+def _media(adhesions: Surfaces) -> dict[str, LineStyleType]:
     """Give every medium a line style: dashed where it is dry."""
-    names = dict.fromkeys(m for found in adhesions.values() for m in found.medium.values.tolist())
+    names = dict.fromkeys(m for data in adhesions.values() for m in data.medium.values.tolist())
     dry = [name for name in names if is_dry(name)]
     wet = [name for name in names if not is_dry(name)]
     return {
@@ -310,7 +312,7 @@ def _media(adhesions: Surfaces) -> dict[str, object]:
     }
 
 
-def _mark(figure: PaperFigure, axes, loads: xr.Dataset | None) -> None:
+def _mark(figure: PaperFigure, axes: Axes, loads: xr.Dataset | None) -> None:
     if loads is None:
         return
     pressure, force = loads.pressure.values, loads.normal_force.values
@@ -321,7 +323,7 @@ def _mark(figure: PaperFigure, axes, loads: xr.Dataset | None) -> None:
     figure.keep("Hertz pressure", "loads", normal_force_N=force, pressure_Pa=pressure)
 
 
-def _area_axes(axes) -> None:
+def _area_axes(axes: Axes) -> None:
     logarithmic(axes, "x", "y")
     axes.set_xlim(axes.dataLim.x0, axes.dataLim.x1)
     axes.set_ylim(max(axes.dataLim.y0 / 1.3, _SMALLEST_AREA), 1.3)

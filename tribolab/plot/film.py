@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
+from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
@@ -29,11 +30,11 @@ _PANELS = (
     ("contact_pressure", 1e-6, r"contact pressure $p_{\mathrm{cont}}$ (MPa)"),
     ("fluid_pressure", 1e-6, r"fluid pressure $p_{\mathrm{fluid}}$ (MPa)"),
 )
-_FLOW = (
+_FLOW: tuple[tuple[str, LineStyleType, str], ...] = (
     ("pressure_flow_factor", "-", r"$\phi_{\mathrm{p}}$"),
     ("shear_flow_factor", "--", r"$\phi_{\mathrm{s}}$"),
 )
-_FRICTION = (
+_FRICTION: tuple[tuple[str, LineStyleType, str], ...] = (
     ("shear_stress_factor", "-", r"$\phi_{\mathrm{f}}$"),
     ("shear_stress_correction", "--", r"$\phi_{\mathrm{fs}}$"),
     ("pressure_stress_factor", ":", r"$\phi_{\mathrm{fp}}$"),

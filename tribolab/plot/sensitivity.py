@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from tribolab.plot.frame import band, logarithmic
 from tribolab.plot.labels import label, plain
@@ -76,7 +77,7 @@ def model_sensitivity(
     return figure
 
 
-def _bars(figure: PaperFigure, axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
+def _bars(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
     names = uncertainty["variation"].values
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     known = np.isfinite(change).any(axis=-1)

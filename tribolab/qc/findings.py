@@ -125,7 +125,10 @@ class Findings:
         told = told[objections | noted]
         look = {"text-align": "left", "vertical-align": "top"}
         short, long = (
-            rows.style.hide().format(na_rep="", escape="html").set_properties(**look).to_html()
+            rows.style.hide()
+            .format(na_rep="", escape="html")
+            .set_properties(subset=None, **look)
+            .to_html()
             for rows in (told, self.table.drop(columns="name"))
         )
         counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)

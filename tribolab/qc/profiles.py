@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 
@@ -66,7 +67,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     middles = np.array([np.nanmedian(b) if np.isfinite(b).any() else 0.0 for b in blocks])
     spread = np.array([_spread(b, m) for b, m in zip(blocks, middles, strict=True)])
     least = np.quantile(spread, 0.25)
-    digit = signals.quantisation_step(height)
+    digit = quantisation_step(height)
     for start, block, middle, scale in zip(
         np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
     ):  # a loop over blocks, not over points

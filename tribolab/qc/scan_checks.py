@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
@@ -155,18 +156,17 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         results.append(Result("skipped", "tilt", text))
     else:
         tilts = np.abs([float(profile.form_tilt) for profile in flat])
-        row, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
+        steepest, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
         status = "fail" if angle > limits["fail"] else "pass"
         status = "suspect" if limits["tilt"] < angle <= limits["fail"] else status
-        text = (
-            f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.profile_names[row]}"
-        )
+        where = subject.profile_names[steepest]
+        text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {where}"
         results.append(Result(status, "tilt", text, angle, "rad"))
     share, digits = [], []
     for row, profile in zip(subject.filled, flat, strict=True):
         whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
         share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
-        step = signals.quantisation_step(row.height.values)
+        step = quantisation_step(row.height.values)
         digits.append(float(profile.height.std()) / step if step > 0 else np.inf)
     fewest = min(digits)
     status = "suspect" if fewest < limits["digits"] else "pass"

@@ -297,9 +297,10 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     if slip.empty:
         raise ConfigError("fault 'slow_logger' needs a speed at which there is strong stick-slip")
     interval = _interval(run)
-    period = slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]
+    period = (slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]).to_numpy(dtype=float)
     per_period = [
-        float(p / np.median(interval[_rows(run, stroke)])) for stroke, p in period.items()
+        float(p / np.median(interval[_rows(run, stroke)]))
+        for stroke, p in zip(slip.index.to_numpy(dtype=int), period, strict=True)
     ]
     wanted = float(rng.uniform(3.0, 5.0))  # samples in the fastest period
     every = max(2, round(min(per_period) / wanted))
@@ -335,8 +336,9 @@ def ramps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     low = float(rng.uniform(0.1, 0.3))
     motion, shift = run.motion_log, float(run.facts["clock_shift_s"])
     time, velocity = motion.time.values + shift, motion.sliding_velocity.values.copy()
-    for row in run.segments.itertuples():
-        inside = (time >= row.start_s) & (time <= row.stop_s)
-        share = (time[inside] - row.start_s) / (row.stop_s - row.start_s)
+    segments = run.segments[["start_s", "stop_s"]].to_numpy(dtype=float)
+    for start, stop in segments:
+        inside = (time >= start) & (time <= stop)
+        share = (time[inside] - start) / (stop - start)
         velocity[inside] *= low + 2 * (1 - low) * share
     return run.force_log, motion.assign(sliding_velocity=("time", velocity)), {"lowest": low}

@@ -273,13 +273,14 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
         raise ReadError(f"{path}: there is no such file")
     if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
         try:
-            sheets = pd.read_excel(path, sheet_name=sheet, dtype=object, engine="calamine")
+            wanted = None if sheet is None else [sheet]
+            sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
         except ImportError as error:
             raise ReadError(
                 f"{path.name}: spreadsheets need the package python-calamine; install it, or "
                 "save the table as .csv"
             ) from error
-        tables = list(sheets.values()) if sheet is None else [sheets]
+        tables = list(sheets.values())
     else:
         tables = [_text_table(path)]
     for table in tables:

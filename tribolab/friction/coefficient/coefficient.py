@@ -171,8 +171,8 @@ def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.n
     return np.array(means, dtype=float)
 
 
-def _column(found: list[Estimate], name: str) -> np.ndarray:
-    return np.array([getattr(one, name) for one in found], dtype=float)
+def _column(estimates: list[Estimate], name: str) -> np.ndarray:
+    return np.array([getattr(estimate, name) for estimate in estimates], dtype=float)
 
 
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
@@ -207,12 +207,12 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         "pair": pair,
     }
     if not loads:
-        empty = [one.samples == 0 for one in forces]
-        few = np.array([student_remark(one.effective_samples) for one in forces], dtype=object)
-        remarks = np.where(empty, "no samples that are numbers", few).astype(object)
+        empty = [force.samples == 0 for force in forces]
+        few = np.array([student_remark(force.effective_samples) for force in forces], dtype=object)
+        told = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
-        return _table(data, remarks, zero)
+        return _table(data, told, zero)
 
     ratios, remarks = [], []
     for i, s in enumerate(parts):

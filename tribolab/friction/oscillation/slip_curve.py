@@ -141,7 +141,7 @@ def _regularity(slip: xr.Dataset) -> np.ndarray:
 
 def _row(
     group: np.ndarray, kind: np.ndarray, regular: np.ndarray, columns: dict[str, np.ndarray]
-) -> dict:
+) -> dict[str, float | str]:
     moving = group[oscillating(kind[group])]
     waveform, regularity, count = STEADY, "", moving.size
     decided = int((kind[group] != UNDECIDED).sum())

@@ -177,8 +177,8 @@ def _averaged(record: Record, window: int) -> tuple[np.ndarray, np.ndarray, np.n
         power *= scale**2 * 2 * record.spacing / (shape @ shape) / count
     else:
         for first in range(0, count * window, window):
-            part = slice(first, first + window)
-            stretch = Record(record.time[part], record.values[part], record.spacing, False)
+            own = slice(first, first + window)
+            stretch = Record(record.time[own], record.values[own], record.spacing, False)
             f, p, _, _ = _transform(stretch._replace(spacing=_own_spacing(stretch)))
             power += np.interp(frequency, f, p) / count
     width = np.full(frequency.size, frequency[1])

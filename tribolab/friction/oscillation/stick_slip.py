@@ -222,8 +222,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
     elif "friction_coefficient" in run:
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
-        first = [ratio[s][:_SOME] for s in parts]
-        signed = any(np.nanmean(x) < 0 for x in first if np.isfinite(x).any())
+        begins = [ratio[s][:_SOME] for s in parts]
+        signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in zip(parts, direction, strict=True):
             raw = ratio[part]
             yield Signal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)

@@ -264,4 +264,4 @@ def _goes_on(
     about = float(((inside - level) ** 2).sum()) / (count - 1)
     left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
     # the longer the way on which a plateau is left, the more it has to prove that it is one
-    return left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about
+    return bool(left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about)

@@ -110,11 +110,7 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
     """
-    if not isinstance(trim, Real) or not 0 <= trim < 0.5:
-        raise AnalysisError(
-            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
-            f"{shown(repr(trim))}"
-        )
+    _refuse_trim(trim)
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")
@@ -168,6 +164,14 @@ def why_no_segment(segments: xr.Dataset) -> str:
     ]
     detail = f" ({', '.join(shares)} of the time)" if shares else ""
     return f"no segment: the run never slides at constant speed{detail}"
+
+
+def _refuse_trim(trim: object) -> None:
+    if not isinstance(trim, Real) or not 0 <= float(trim) < 0.5:
+        raise AnalysisError(
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
+            f"{shown(repr(trim))}"
+        )
 
 
 def _dataset(

@@ -179,8 +179,8 @@ def _one_way(trace: Trace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    touched = [_touches(trace, i) for i in range(len(trace.parts) - 1)]
-    touched = [one for one in touched if one is not None]
+    stops = (_touches(trace, i) for i in range(len(trace.parts) - 1))
+    touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
     if dips >= MOST:
         why = (

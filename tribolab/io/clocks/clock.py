@@ -119,11 +119,12 @@ def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
     stamps = [piece.started for piece in pieces]
     times = [piece.columns["time"] for piece in pieces]
     ends = zip(times, times[1:], strict=False)
-    if None in stamps and all(later[0] > earlier[-1] for earlier, later in ends):
+    dated = None not in stamps
+    if not dated and all(later[0] > earlier[-1] for earlier, later in ends):
         return  # the clock went on
     first, end = stamps[0], None
     for time, stamp in zip(times, stamps, strict=True):
-        if first is not None and None not in stamps:
+        if dated and first is not None and stamp is not None:
             time += (stamp - first).total_seconds()
             if end is not None and 0 <= end - time[0] <= _resolution(stamp, dialect):
                 time += end - time[0] + _interval(time)

@@ -77,8 +77,6 @@ class Estimate(NamedTuple):
     refused: str = ""
 
 
-# on matrices this small two threads of BLAS wait for each other: ten times as long
-@threadpool_limits.wrap(limits=1, user_api="blas")
 def estimate_clock_shift(
     force_time: Array,
     force: Array,
@@ -112,6 +110,19 @@ def estimate_clock_shift(
     much the ways differ: friction that rises before the sample slides, or only after slack is
     taken up, moves the shift by what that lasts.
     """
+    # on matrices this small two threads of BLAS wait for each other: ten times as long
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _estimated(force_time, force, motion_time, velocity, expected, dated)
+
+
+def _estimated(
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    expected: float,
+    dated: bool,
+) -> Estimate | None:
     good = np.abs(force) < _POSSIBLE
     force_time, force = force_time[good], force[good]
     velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)

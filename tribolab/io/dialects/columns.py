@@ -13,7 +13,7 @@ from tribolab.quantities import quantity, unit_conversion
 class Signal(NamedTuple):
     """A column that is read: its place (from 0), quantity, unit; ``si = scale * x + offset``."""
 
-    index: int
+    place: int
     quantity: str
     label: str
     unit: str
@@ -57,7 +57,7 @@ def resolve(
         index = _index(where, column, names, width, dialect)
         if index is not None:
             signals.append(_signal(where, column, index, names, units, dialect))
-    used = {signal.index for signal in signals}
+    used = {signal.place for signal in signals}
     unused = [
         f"{name} [{unit}]" if unit else name
         for index, (name, unit) in enumerate(zip(names, units, strict=True))
@@ -132,7 +132,7 @@ def _signal(
         ) from error
     # sign * (scale * x + offset), then the unit
     return Signal(
-        index=index,
+        place=index,
         quantity=column.quantity,
         label=label,
         unit=unit or "1",

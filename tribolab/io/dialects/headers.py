@@ -181,7 +181,8 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
     for number, start in enumerate(starts):
         limit = starts[number + 1] if number + 1 < len(starts) else size
         here, names, units = _read_header(file, content, start, dialect)
-        body = _BLANK.match(content, here).end()
+        blank = _BLANK.match(content, here)
+        body = blank.end() if blank else here
         stop = limit
         if end is not None and (found := end.search(content, body, min(limit, len(content)))):
             stop = found.start()

@@ -41,7 +41,7 @@ class Broken(NamedTuple):
     constraint: str
     limit: Any
     rows: np.ndarray
-    values: Sequence[Any]
+    values: Sequence[Any] | np.ndarray
 
 
 class Violations(NamedTuple):
