@@ -15,7 +15,7 @@ from tribolab.quantities import stamp
 from tribolab.units import to_si
 
 
-class Range(NamedTuple):
+class BoundedValue(NamedTuple):
     """A value and the bounds between which it is reported."""
 
     value: float
@@ -23,7 +23,7 @@ class Range(NamedTuple):
     high: float
 
 
-Stated = str | float | tuple[str | float, str | float, str | float] | Range
+Stated = str | float | tuple[str | float, str | float, str | float] | BoundedValue
 Works = TypeVar("Works", float, np.ndarray)
 
 
@@ -157,7 +157,7 @@ class SurfaceEnergies:
                 raise AnalysisError(
                     f"{field.name}: a value or (value, lowest, highest) is wanted; got {stated}"
                 )
-            given = Range(*(read(part, field.name) for part in parts))
+            given = BoundedValue(*(read(part, field.name) for part in parts))
             if not given.low <= given.value <= given.high:
                 raise AnalysisError(
                     f"{field.name}: the value {given.value:g} must lie between its bounds "
@@ -242,7 +242,7 @@ def work_of_adhesion_spread(
     )
 
 
-def _ranges(energies: SurfaceEnergies) -> list[Range]:
+def _ranges(energies: SurfaceEnergies) -> list[BoundedValue]:
     return [getattr(energies, field.name) for field in fields(energies)]
 
 

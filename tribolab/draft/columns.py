@@ -35,7 +35,7 @@ def understand(layout: Layout) -> Understood:
     Parameters
     ----------
     layout
-        From `tribolab.draft.layout.examine`.
+        From `tribolab.draft.layout.find_layout`.
     """
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)

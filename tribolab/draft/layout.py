@@ -71,7 +71,7 @@ class Layout(NamedTuple):
         return [mark.join(row[p] if p < len(row) else "" for p in places) for row in rows]
 
 
-def examine(file: File) -> Layout:
+def find_layout(file: File) -> Layout:
     """Find out how a text file is written.
 
     Parameters

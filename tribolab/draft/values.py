@@ -38,7 +38,7 @@ def find_values(layout: Layout) -> list[DraftValue]:
     Parameters
     ----------
     layout
-        From `tribolab.draft.layout.examine`.
+        From `tribolab.draft.layout.find_layout`.
 
     Returns
     -------

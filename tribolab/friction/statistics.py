@@ -79,7 +79,7 @@ NOTHING = Estimate(
 )
 
 
-def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
+def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     """Mean with its standard error, memory and trend of one record.
 
     Parameters
@@ -104,7 +104,7 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
     Examples
     --------
     >>> rng = np.random.default_rng(0)
-    >>> found = describe(np.arange(1000.0), 0.3 + 0.01 * rng.standard_normal(1000))
+    >>> found = estimate_of(np.arange(1000.0), 0.3 + 0.01 * rng.standard_normal(1000))
     >>> abs(found.mean - 0.3) < 3 * found.sem, 0.0002 < found.sem < 0.0005
     (True, True)
     """
@@ -148,7 +148,7 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
 
 def _oscillates(record: np.ndarray) -> bool:
     """Whether most of a record goes to and fro: its periods cancel, and no wander is left."""
-    power, _ = spectrum((record - record.mean())[None, :])
+    power, _ = model_spectra((record - record.mean())[None, :])
     cycles = np.arange(power.shape[1]) * record.size / GRID
     return bool(power[0, cycles > 2.5].max(initial=0.0) > HUMP * power[0, 0])
 
@@ -259,7 +259,7 @@ def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndar
     return np.stack(models)[best, rows], sigma, best
 
 
-def spectrum(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def model_spectra(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Model spectra of records on `GRID` / 2 + 1 frequencies, corrected near zero.
 
     Returns
@@ -306,7 +306,7 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     n = records.shape[1]
     centred = records - records.mean(axis=1, keepdims=True)
-    power, floor = spectrum(centred)
+    power, floor = model_spectra(centred)
     plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
     effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
     student = special.stdtrit(n - 1, 0.995) / special.ndtri(0.995)
@@ -336,7 +336,7 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     rest = record - record.mean() - slope * place
     if not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()):
         return slope, 0.0 if slope else 1.0
-    power, _ = spectrum(rest[None, :])
+    power, _ = model_spectra(rest[None, :])
     error = float(np.sqrt(variance_of_sum(power, weights)[0]))
     plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
     effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)

@@ -80,7 +80,7 @@ def _apart(row: xr.Dataset) -> str:
     return text
 
 
-def adhesion(known: Mode) -> Evidence | None:
+def macroscopic_adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
@@ -99,7 +99,7 @@ def adhesion(known: Mode) -> Evidence | None:
     return Evidence(AGAINST, text, "adhesion")
 
 
-def doubt(known: Mode) -> Evidence | None:
+def vanishing_adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion may vanish within its bounds."""
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:

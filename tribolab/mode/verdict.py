@@ -129,8 +129,8 @@ def sliding_mode(
         one
         for one in (
             evidence.traces(slip),
-            evidence.adhesion(known),
-            evidence.doubt(known),
+            evidence.macroscopic_adhesion(known),
+            evidence.vanishing_adhesion(known),
             evidence.strength(slip),
             evidence.scaling(slip),
             evidence.weakening(curve, slip),
@@ -155,7 +155,7 @@ def sliding_mode(
     )
 
 
-def oscillating(slip: xr.Dataset | None) -> np.ndarray:
+def oscillating_speeds(slip: xr.Dataset | None) -> np.ndarray:
     """Speeds at which stick-slip is claimed [m/s]."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
@@ -165,7 +165,7 @@ def oscillating(slip: xr.Dataset | None) -> np.ndarray:
 def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
     if slip is None or slip.sizes.get("sliding_speed", 0) == 0:
         return UNKNOWN
-    if not oscillating(slip).size:
+    if not oscillating_speeds(slip).size:
         undecided = slip["waveform"].values == UNDECIDED
         return UNKNOWN if undecided.mean() > 0.5 else NO_STICK_SLIP
     if known.work_of_adhesion is None or slip.attrs.get("scaling") == FIXED_FREQUENCY:

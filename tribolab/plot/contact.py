@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import (
-    band,
     colours,
     legend_above,
     logarithmic,
     name_style,
     name_surfaces,
+    shaded_band,
     single_axes,
 )
 from tribolab.plot.labels import column, label
@@ -74,7 +74,7 @@ def contact_area(
             columns = {column("pressure"): p, "contact_area_ratio": area}
             if "contact_area_ratio_low" in contact:
                 low, high = (contact[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
-                band(axes, p, low, high, chosen[name])
+                shaded_band(axes, p, low, high, chosen[name])
                 columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
             axes.plot(p, area, color=chosen[name], linewidth=1.1)
             figure.keep("contact area", name, **columns)
@@ -141,7 +141,7 @@ def adhesive_area(
                 columns = {column("pressure"): p, "contact_area_ratio": area}
                 if "contact_area_ratio_low" in one:
                     low, high = (one[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
-                    band(axes, p, low, high, chosen[name])
+                    shaded_band(axes, p, low, high, chosen[name])
                     columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
                 axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
                 figure.keep("contact area", f"{name}, {medium}", **columns)

@@ -85,7 +85,7 @@ def legend_above(figure: PaperFigure, axes: Axes, title: str = "", left: float =
         figure.text(left / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
 
 
-def band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
+def shaded_band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
     """Shade between two bounds, where both are known."""
     fine = np.isfinite(low) & np.isfinite(high)
     axes.fill_between(x[fine], low[fine], high[fine], color=colour, alpha=0.2, linewidth=0)

@@ -11,7 +11,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.frame import band, colours, few_ticks, legend_above, logarithmic, single_axes
+from tribolab.plot.frame import (
+    colours,
+    few_ticks,
+    legend_above,
+    logarithmic,
+    shaded_band,
+    single_axes,
+)
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     BLACK,
@@ -125,7 +132,7 @@ def _model(
 def _band(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, colour: str) -> None:
     v = uncertainty["sliding_speed"].values
     low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
-    band(axes, v, low, high, colour)
+    shaded_band(axes, v, low, high, colour)
     axes.fill_between([], [], [], color=colour, alpha=0.2, linewidth=0, label="its band")
     numbers = {column("sliding_speed"): v, "friction_coefficient_low": low}
     figure.keep("friction", "band", **numbers, friction_coefficient_high=high)

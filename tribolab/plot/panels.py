@@ -16,8 +16,7 @@ from matplotlib.transforms import Bbox, TransformedBbox
 from tribolab.errors import AnalysisError
 from tribolab.plot.labels import column, plain
 from tribolab.plot.reduce import envelope
-from tribolab.plot.signals import Signal, Stroke, main_signal
-from tribolab.plot.signals import strokes as find_strokes
+from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
     BACKWARD,
     DOUBLE_MM,
@@ -85,7 +84,7 @@ def strokes(
     ['100 µm/s', '1 mm/s']
     """
     signal = main_signal(run, friction)
-    parts = find_strokes(run, segments)
+    parts = strokes_of(run, segments)
     if not parts:
         raise AnalysisError("the run has no segment, so there are no strokes to draw")
     groups = _by_speed(parts)

@@ -13,7 +13,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.reduce import envelope
-from tribolab.plot.signals import Signal, Stroke, main_signal, strokes
+from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
     BACKWARD,
     DOUBLE_MM,
@@ -81,7 +81,7 @@ def trace(
     ['time', 'motion', 'distance']
     """
     signal = main_signal(run, friction)
-    parts = strokes(run, segments)
+    parts = strokes_of(run, segments)
     time = np.asarray(run["time"], float)
     motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
     known = bool(parts) and bool(np.isfinite([part.speed for part in parts]).all())

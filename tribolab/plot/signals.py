@@ -82,7 +82,7 @@ class Stroke(NamedTuple):
     direction: int
 
 
-def strokes(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
+def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
     """Return the samples of each segment with the distance slid since its start [m].
 
     The distance comes from the position, else the speed, else (both unknown) it is the time

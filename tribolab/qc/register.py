@@ -113,7 +113,7 @@ def resolve_limits(
     return resolved
 
 
-def examine(
+def results_of_checks(
     checks: Mapping[str, Check],
     subject: Any,
     limits: Mapping[str, Mapping[str, float]],

@@ -13,7 +13,7 @@ from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
 from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
-from tribolab.qc.register import Check, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
@@ -103,7 +103,7 @@ def check_run(
         if contact_width is None
         else to_si(contact_width, "m", name="contact_width"),
     )
-    found = _examined(examine(checks, subject, resolved, tuple(skip)))
+    found = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
     results = tuple((checks[name], result) for name, rows in found.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()}
     flagged = run

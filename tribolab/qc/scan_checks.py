@@ -12,7 +12,7 @@ from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
-from tribolab.qc.register import Check, Limit, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Limit, Result, resolve_limits, results_of_checks
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
 from tribolab.surface.level import level_map
@@ -76,7 +76,7 @@ def check_scans(
     resolved = resolve_limits(SCAN_CHECKS, limits or {})
     given = [results] if isinstance(results, xr.Dataset) else list(results or ())
     subject = ScanSubject(scans, given)
-    found = examine(SCAN_CHECKS, subject, resolved, tuple(skip))
+    found = results_of_checks(SCAN_CHECKS, subject, resolved, tuple(skip))
     listed = tuple((SCAN_CHECKS[name], result) for name, rows in found.items() for result in rows)
     flags = {
         check.name: subject.to_shape(result.flags)

@@ -87,7 +87,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _retimed(run, time, {"row": row})
 
 
-def gaps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Drop three stretches of the force log."""
     time = run.force_log.time.values
     starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
@@ -135,7 +135,7 @@ def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _force(run, values, {"row": row, "samples": length})
 
 
-def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def saturate(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Cut the friction force off at both ends of a range."""
     highest = float(np.abs(run.noise_free.friction_force.values).max())
     limit = float(rng.uniform(0.6, 0.8)) * highest
@@ -143,14 +143,14 @@ def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _force(run, values, {"limit_N": limit})
 
 
-def coarse(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def coarse_digits(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Round the friction force to 9 bits of the range."""
     step = 1000 / 2**9
     values = np.round(run.force_log.friction_force.values / step) * step
     return _force(run, values, {"step_N": step})
 
 
-def spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Add single samples that stand far out."""
     values = run.force_log.friction_force.values.copy()
     rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))

@@ -194,7 +194,7 @@ def _balanced(
     return c * np.exp(brentq(excess, -most, most, xtol=1e-12 * most, rtol=1e-12) * error**2)
 
 
-def spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
+def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
     """Put the annuli on nodes, with their band.
 
     What the power laws between the nodes hold more or less than the annuli, at most some per

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.coefficient.steadiness import judged
-from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
+from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
@@ -178,12 +178,12 @@ def _column(estimates: list[Estimate], name: str) -> np.ndarray:
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
-    forces = [describe(time[s], force[s]) for s in parts]
+    forces = [estimate_of(time[s], force[s]) for s in parts]
     means = _column(forces, "mean")
     loads, load = [], np.nan
     if "normal_force" in run:
         normal = run["normal_force"].values
-        loads = [describe(time[s], normal[s]) for s in parts]
+        loads = [estimate_of(time[s], normal[s]) for s in parts]
         pressed = _column(loads, "mean")
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
@@ -262,7 +262,7 @@ def _ratio(
     lost = 1 - np.count_nonzero(pressed) / normal.size
     if lost > LOST:
         return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
-    found = describe(time[pressed], force[pressed] / normal[pressed])
+    found = estimate_of(time[pressed], force[pressed] / normal[pressed])
     if found.samples == 0:
         return found, "friction force is not a number"
     left = normal.size - int(np.count_nonzero(pressed))
@@ -274,7 +274,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    found = [describe(time[s], ratio[s]) for s in parts]
+    found = [estimate_of(time[s], ratio[s]) for s in parts]
     means, own = _column(found, "mean"), _column(found, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(

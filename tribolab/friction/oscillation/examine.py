@@ -12,9 +12,9 @@ from tribolab.friction.oscillation.few_periods import slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
-from tribolab.friction.oscillation.periods import ALIKE, Verdict, at_odds, verdict
+from tribolab.friction.oscillation.periods import ALIKE, PeriodVerdict, at_odds, verdict
 from tribolab.friction.oscillation.regularity import KINDS, Regularity, regularity, scatter
-from tribolab.friction.oscillation.spectra import Record, coarse, make_record
+from tribolab.friction.oscillation.spectra import Record, coarsened, make_record
 from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
 from tribolab.friction.oscillation.waveform import (
     Waveform,
@@ -57,7 +57,7 @@ class Examined(NamedTuple):
     waveform: Waveform
     regularity: Regularity
     probability: np.ndarray
-    verdict: Verdict
+    verdict: PeriodVerdict
     lines: tuple[Component, ...]
     hysteresis: float
     sample_noise: float
@@ -75,7 +75,7 @@ class View(NamedTuple):
     regularity: Regularity
 
 
-def examine(
+def examine_record(
     time: np.ndarray, values: np.ndarray, limits: Limits = DEFAULT, *, force: bool = False
 ) -> Examined | str:
     """Look at one record; text where there is nothing to see, saying why.
@@ -186,7 +186,7 @@ def _view(
     wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     first = slice(MOST * size)
-    part = coarse(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = coarsened(Record(record.time[first], record.values[first], *record[2:]), size)
     part = _without_drift(part, found.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
@@ -220,7 +220,7 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
         last = int(view.record.values.size * round(view.record.spacing / record.spacing))
         part = Record(record.time[:last], record.values[:last], *record[2:])
-        drop = means(coarse(part, finer), events) if means else np.nan
+        drop = means(coarsened(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off

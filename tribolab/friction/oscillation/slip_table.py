@@ -235,7 +235,7 @@ def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
 _LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_probability")
 
 
-def spectra(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+def spectra_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     """All spectra on one logarithmic grid of frequency, and of inverse wavelength."""
     names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
     seen = [None if isinstance(e, str) else e.oscillation for e in found]

@@ -70,7 +70,7 @@ def block_means(values: np.ndarray, size: int) -> np.ndarray:
     return np.add.reduceat(values[: count * size], np.arange(0, count * size, size)) / size
 
 
-def coarse(record: Record, size: int) -> Record:
+def coarsened(record: Record, size: int) -> Record:
     """Return the record averaged over blocks of `size` samples."""
     if size <= 1:
         return record
@@ -105,7 +105,7 @@ def spectrum(record: Record) -> Spectrum:
     """
     method = "periodogram" if record.even else "Lomb-Scargle"
     size = int(np.ceil(record.values.size / SHORT))
-    low = _transform(coarse(record, size))
+    low = _transform(coarsened(record, size))
     if size == 1:
         return Spectrum(*low, method)
     window = max(WINDOW, 1 << int(np.ceil(np.log2(64 * size))))

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
-from tribolab.friction.oscillation.examine import Examined, Limits, examine
+from tribolab.friction.oscillation.examine import Examined, Limits, examine_record
 from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.slip_table import (
     class_of,
@@ -20,7 +20,7 @@ from tribolab.friction.oscillation.slip_table import (
     oscillates,
     ranked,
     ringing,
-    spectra,
+    spectra_table,
     table,
 )
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
@@ -57,7 +57,7 @@ REVERSED = (
 )
 
 
-class Signal(NamedTuple):
+class SegmentSignal(NamedTuple):
     """Friction of one segment, positive as resistance, and what the sensor gave."""
 
     time: np.ndarray
@@ -160,7 +160,7 @@ def stick_slip(
     force = "friction_force" in run and "normal_force" not in run
     found, loads, remarks = [], [], []
     for one, v in zip(_signals(run, segments), speed, strict=True):
-        seen = examine(one.time, one.values, limits, force=force)
+        seen = examine_record(one.time, one.values, limits, force=force)
         found.append(seen)
         loads.append(one.load)
         remarks.append(_remark(seen, _cut_off(one.raw), v))
@@ -174,7 +174,7 @@ def stick_slip(
     result = result.assign_coords(
         segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
     )
-    result = result.merge(spectra(found, speed)).merge(event_list(found))
+    result = result.merge(spectra_table(found, speed)).merge(event_list(found))
     result = result.merge(line_table(found, speed))
     if force:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
@@ -182,7 +182,7 @@ def stick_slip(
     return stamp(result, **run.attrs)
 
 
-def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
+def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
     """Friction of each segment, one at a time: a long run is never held twice."""
     time, parts = run["time"].values, trimmed_slices(run, segments)
     direction = segments["direction"].values.astype(float)
@@ -206,7 +206,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
         for part, sign in zip(parts, direction, strict=True):
             raw = force[part]
             if normal is None:
-                yield Signal(time[part], _signed(raw, sign), raw, np.nan)
+                yield SegmentSignal(time[part], _signed(raw, sign), raw, np.nan)
                 continue
             pressed = normal[part] - zero
             load = float(np.mean(pressed)) if pressed.size else np.nan
@@ -216,9 +216,9 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
             if np.isfinite(load):
                 with np.errstate(divide="ignore", invalid="ignore"):
                     ratio = np.divide(_signed(raw, sign), pressed, out=pressed)
-                yield Signal(time[part], ratio, raw, load)
+                yield SegmentSignal(time[part], ratio, raw, load)
             else:
-                yield Signal(time[part], np.full(raw.size, np.nan), raw, load)
+                yield SegmentSignal(time[part], np.full(raw.size, np.nan), raw, load)
     elif "friction_coefficient" in run:
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
@@ -226,7 +226,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in zip(parts, direction, strict=True):
             raw = ratio[part]
-            yield Signal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
+            yield SegmentSignal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
     else:
         raise AnalysisError(
             f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"

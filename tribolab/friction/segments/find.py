@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.segments.loaded import loaded
-from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
 from tribolab.friction.segments.stretches import (
     Stretch,
@@ -116,7 +116,7 @@ def find_segments(
     shortest = to_si(min_duration, "s", name="min_duration")
     gap = None if max_gap is None else to_si(max_gap, "s", name="max_gap")
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
-    limits = Limits(resolution, drift, min_samples, slow)
+    limits = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source = velocity_source(run)
     if source == "recorded":

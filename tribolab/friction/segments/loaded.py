@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
 
 NO_LOAD = "no load"
@@ -17,7 +17,7 @@ BINS = 200  # in a stretch
 MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
 
 
-def loaded(run: xr.Dataset, stretches: list[Stretch], limits: Limits) -> list[Stretch]:
+def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -> list[Stretch]:
     """Take out of the constant stretches what slides without load.
 
     Parameters

@@ -96,7 +96,7 @@ def middles(
     return Middles(member, share, when, value, slope, ends, part)
 
 
-class Rows(NamedTuple):
+class StrokeSums(NamedTuple):
     """Each force without its zero as a sum over strokes: which, and how much (segment, term)."""
 
     stroke: np.ndarray
@@ -105,7 +105,7 @@ class Rows(NamedTuple):
 
 def interpolated(
     found: Middles, pair: np.ndarray, time: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, Rows]:
+) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
     """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
 
     Returns
@@ -141,10 +141,12 @@ def interpolated(
     own = np.arange(count)[:, None]
     stroke = np.concatenate([own, found.member[loop].reshape(count, 6)], axis=1)
     of_loops = -(weight[:, :, None] * found.share[loop]).reshape(count, 6)
-    return value, slope, Rows(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
+    return value, slope, StrokeSums(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
 
 
-def error_of_rows(rows: Rows, found: Middles, own: np.ndarray, time: np.ndarray) -> np.ndarray:
+def error_of_rows(
+    rows: StrokeSums, found: Middles, own: np.ndarray, time: np.ndarray
+) -> np.ndarray:
     """Return the standard error of each segment's force without its zero.
 
     Parameters

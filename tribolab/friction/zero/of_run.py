@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.parts import Known, Reference, Strokes
-from tribolab.friction.zero.rectified import SIGNED, Fold, Trace, folded
+from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, folded
 from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
 from tribolab.friction.zero.unequal import TOO_FAR
@@ -185,4 +185,4 @@ def _fold(
         usual = np.nanmedian(np.concatenate([normal[part] for part in parts]))
         loaded = normal > max(0.5, UNLOADED) * usual
     rest = float(np.median(rests.value)) if rests is not None else float("nan")
-    return folded(Trace(run[name].values, loaded, parts, mean, error, direction, rest))
+    return folded(ForceTrace(run[name].values, loaded, parts, mean, error, direction, rest))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.statistics import describe
+from tribolab.friction.statistics import estimate_of
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
@@ -109,10 +109,10 @@ def unloaded_rests(
             continue
         before = float(np.mean(normal[level]))
         when = float(time[level].mean())
-        found = describe(time[level], normal[level])
+        found = estimate_of(time[level], normal[level])
         zeros["normal"].append((when, found.mean, found.sem))
         if friction is not None:
-            found = describe(time[level], friction[level])
+            found = estimate_of(time[level], friction[level])
             if found.samples >= FEWEST:
                 zeros["friction"].append((when, found.mean, found.sem))
     return _zeros(zeros["friction"]), _zeros(zeros["normal"])

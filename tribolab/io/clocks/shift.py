@@ -60,7 +60,7 @@ class Told(NamedTuple):
     uncertainty: float
 
 
-class Estimate(NamedTuple):
+class ShiftEstimate(NamedTuple):
     """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
 
     Away from the middle, `rate` times the time since then on the motion clock is added.
@@ -84,8 +84,8 @@ def estimate_clock_shift(
     velocity: Array,
     expected: float = 0.0,
     dated: bool = False,
-) -> Estimate | None:
-    """Estimate the shift between the clocks of a force log and a motion log.
+) -> ShiftEstimate | None:
+    """ShiftEstimate the shift between the clocks of a force log and a motion log.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def estimate_clock_shift(
 
     Returns
     -------
-    Estimate or None
+    ShiftEstimate or None
         None if the force does not vary with the motion. An estimate with `refused` is a guess.
 
     Notes
@@ -122,7 +122,7 @@ def _estimated(
     velocity: Array,
     expected: float,
     dated: bool,
-) -> Estimate | None:
+) -> ShiftEstimate | None:
     good = np.abs(force) < _POSSIBLE
     force_time, force = force_time[good], force[good]
     velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
@@ -173,13 +173,13 @@ def _estimated(
         return abs(at - shift) <= reach and 1.0 - fit.ratio(at) < unexplained
 
     told = shift_from_starts(logs, shift, span, allowed)
-    found = Estimate(shift, uncertainty, ratio)
+    found = ShiftEstimate(shift, uncertainty, ratio)
     if told is not None:
-        found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+        found = ShiftEstimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
     if found.rate == 0.0:
         found = _sharpened(found, force_time, force, motion_time, motion.velocity, fit)
     if found.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
-        anew = Estimate(shift, uncertainty, ratio)
+        anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
         found = anew if anew.uncertainty < found.uncertainty else found
     if found.shift != shift:
@@ -253,7 +253,7 @@ def _combined(first: Told, second: Told) -> Told:
 
 
 def _doubt(
-    found: Estimate,
+    found: ShiftEstimate,
     fit: Classes,
     half: float,
     stroke: float,
@@ -280,13 +280,13 @@ def _doubt(
 
 
 def _sharpened(
-    found: Estimate,
+    found: ShiftEstimate,
     force_time: Array,
     force: Array,
     motion_time: Array,
     velocity: Array,
     fit: Classes,
-) -> Estimate:
+) -> ShiftEstimate:
     """Sharpen an estimate by the fast strokes' beginnings taken together."""
     onsets = refine_by_onsets(force_time, force, motion_time, velocity, found.shift, fit.period)
     if onsets is None:
@@ -297,4 +297,4 @@ def _sharpened(
     error = float(np.hypot(onsets.uncertainty, QUARTZ * (onsets.time - middle)))
     if apart > 3.0 * found.uncertainty:  # the two ways disagree, and neither can be trusted more
         error = max(error, apart)
-    return Estimate(onsets.shift, error, fit.ratio(onsets.shift))
+    return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))

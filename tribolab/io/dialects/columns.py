@@ -10,7 +10,7 @@ from tribolab.io.dialects.model import Column, Dialect
 from tribolab.quantities import quantity, unit_conversion
 
 
-class Signal(NamedTuple):
+class ReadColumn(NamedTuple):
     """A column that is read: its place (from 0), quantity, unit; ``si = scale * x + offset``."""
 
     place: int
@@ -28,7 +28,7 @@ def resolve(
     units: Sequence[str | None],
     width: int,
     dialect: Dialect,
-) -> tuple[list[Signal], list[str]]:
+) -> tuple[list[ReadColumn], list[str]]:
     """Find the columns that a dialect asks for.
 
     Parameters
@@ -114,7 +114,7 @@ def _signal(
     names: Sequence[str],
     units: Sequence[str | None],
     dialect: Dialect,
-) -> Signal:
+) -> ReadColumn:
     wanted = quantity(column.quantity).unit
     label = names[index] if names else f"column {index + 1}"
     unit = column.unit if column.unit is not None else (units[index] if units else None)
@@ -131,7 +131,7 @@ def _signal(
             f"given in the dialect '{dialect.name}'"
         ) from error
     # sign * (scale * x + offset), then the unit
-    return Signal(
+    return ReadColumn(
         place=index,
         quantity=column.quantity,
         label=label,

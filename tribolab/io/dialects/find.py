@@ -113,7 +113,7 @@ def unknown(file: File, table: str) -> ReadError:
         folder = "describe it as raw_data_schema/README.md says"
         cure = cures.name_instrument(table, say=f"{folder}, and name that with")
         return ReadError(what, where=file.path, cure=cure)
-    return ReadError(what, where=file.path, cure=cures.draft_dialect(file.path, table))
+    return ReadError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
 
 
 def is_scan(dialect: Dialect) -> bool:

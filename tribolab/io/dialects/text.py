@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.dialects.columns import Signal
+from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
 
@@ -52,7 +52,7 @@ class _Work(NamedTuple):
 def read_table(
     raw: RawText,
     table: Table,
-    signals: list[Signal],
+    signals: list[ReadColumn],
     dialect: Dialect,
     hasher: Hasher | None = None,
 ) -> tuple[dict[str, np.ndarray], int]:
@@ -148,7 +148,7 @@ def _pump(
 class _Parser:
     """Turns blocks of lines into arrow tables, and arrow's complaints into ours."""
 
-    def __init__(self, raw: RawText, table: Table, signals: list[Signal], dialect: Dialect):
+    def __init__(self, raw: RawText, table: Table, signals: list[ReadColumn], dialect: Dialect):
         self._raw, self._table, self._signals, self._dialect = raw, table, signals, dialect
         names = [str(index) for index in range(table.width)]
         self._wanted = [names[signal.place] for signal in signals]
@@ -270,7 +270,7 @@ def _is_number(cell: str, decimal: str) -> bool:
 class _Columns:
     """Arrays that grow as blocks come in; each number is brought to SI as it is stored."""
 
-    def __init__(self, signals: list[Signal], size: int):
+    def __init__(self, signals: list[ReadColumn], size: int):
         self._signals, self._size = signals, size
         self._arrays: list[np.ndarray] = []
         self._used = 0

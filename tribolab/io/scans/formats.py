@@ -138,7 +138,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
         raise ReadError(
             f"neither a known dialect nor a format that SurfaceTopography reads{told}",
             where=path,
-            cure=cures.draft_dialect(path, cures.SURFACE),
+            cure=cures.unknown_instrument(path, cures.SURFACE),
         )
     with reader:
         yield reader
