@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.proof import is_proven
 from tribolab.friction.segments.constancy import MeanVelocities, held_part, is_constant
 from tribolab.friction.segments.plateaus import (
     Noise,
