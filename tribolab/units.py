@@ -161,13 +161,13 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     try:
         source, target = _units(unit), _units(si_unit)
         zero = ureg.Quantity(0.0, source.units).to(target.units).magnitude
-        one = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
+        size = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
     except Exception as error:  # pint raises many kinds on text that is no unit
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
-    scale = float(one - zero)
+    scale = float(size - zero)
     # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
 

@@ -131,14 +131,14 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
         numbers = numbers[~np.isnan(numbers)]
         if not numbers.size or not (largest := float(numbers.max())) > limit.suspect:
             continue
-        found = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
+        compared = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
         if largest > limit.refuse:
             raise AnalysisError(
-                f"{found}, far above {limit.suspect:g}: {limit.because}",
+                f"{compared}, far above {limit.suspect:g}: {limit.because}",
                 function=who,
                 cure=limit.cure,
             )
-        reasons.append(f"{found}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
+        reasons.append(f"{compared}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
     return {
         "validity": SUSPECT if reasons else PASS,
         "validity_reasons": " | ".join(reasons),
@@ -154,7 +154,7 @@ def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     >>> together([one, one, {"validity": "pass", "validity_reasons": ""}, {}])
     {'validity': 'suspect', 'validity_reasons': 'too steep'}
     """
-    reasons = [reason for one in attrs for reason in reasons_of(one)]
+    reasons = [reason for result in attrs for reason in reasons_of(result)]
     unique = list(dict.fromkeys(reasons))
     return {"validity": SUSPECT if unique else PASS, "validity_reasons": " | ".join(unique)}
 

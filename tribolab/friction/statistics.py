@@ -127,7 +127,7 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    plain, sem = (float(one[0]) for one in error_of_mean(blocks[None, :]))
+    plain, sem = (float(width[0]) for width in error_of_mean(blocks[None, :]))
     effective = float(np.clip((std / plain) ** 2, 1.0, n))
     slow = 0.0 if _oscillates(blocks) else error_with_memory(blocks)
     error = max(sem, plain * student_widening(effective), slow)

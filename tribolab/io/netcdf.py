@@ -205,17 +205,17 @@ def _load(
     try:
         with opened(path) as file:
             there = list(file.groups)
-            found = {}
+            datasets = {}
             for name in groups:
                 group = ("run" if "run" in there else None) if name == "run?" else name
                 if group is None or group in there:
-                    found[name] = _group(file, group)
+                    datasets[name] = _group(file, group)
                 elif not optional:
                     raise ReadError(
                         f"{path}: there is no group '{shown(group)}'; there are "
                         f"{', '.join(there) or 'none'}"
                     )
-        return found
+        return datasets
     except _DAMAGE as error:
         raise ReadError(
             f"{path}: this is not a netCDF file that can be read: {brief(error)}"

@@ -83,8 +83,8 @@ class FlowFactors:
         """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
         u = np.asarray(separation, dtype=float)
         if self.flow is None or self.friction is None:
-            one, zero = np.ones_like(u), np.zeros_like(u)
-            return Factors(one, zero, one, zero, one)
+            ones, zero = np.ones_like(u), np.zeros_like(u)
+            return Factors(ones, zero, ones, zero, ones)
         phi_p, open_flow = self.flow(u)[0]
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)

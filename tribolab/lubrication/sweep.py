@@ -188,7 +188,7 @@ def _march(
             aim = aims[-1]
             number = couette_number(problem, viscosity, float(np.exp(aim)))
             try:
-                found = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
+                solution = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
             except NotConvergedError as error:
                 budget -= 1
                 closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
@@ -197,9 +197,9 @@ def _march(
                     return solved, error
                 aims.append(closer)
                 continue
-            known = [*known[-2:], (aim, found.state)]
+            known = [*known[-2:], (aim, solution.state)]
             aims.pop()
-        solved.append(found)
+        solved.append(solution)
     return solved, None
 
 

@@ -125,9 +125,9 @@ def sliding_mode(
     known = known or Mode()
     curve = _curve(measured, model, slip, known.fluid)
     numbers = _numbers(measured, model, curve, known) | _in_band(measured, band)
-    found = tuple(
-        one
-        for one in (
+    weighed = tuple(
+        told
+        for told in (
             evidence.traces(slip),
             evidence.macroscopic_adhesion(known),
             evidence.vanishing_adhesion(known),
@@ -138,7 +138,7 @@ def sliding_mode(
             evidence.misfit(numbers),
             evidence.uniform_slip(numbers, known),
         )
-        if one is not None
+        if told is not None
     )
     verdict = _verdict(slip, known)
     numbers |= evidence.forced_wetting(curve, slip, known) if verdict == SUSPECTED else {}
@@ -147,9 +147,9 @@ def sliding_mode(
     return SlidingMode(
         verdict,
         text,
-        found,
+        weighed,
         decide,
-        paragraph(name, text, found, decide, numbers),
+        paragraph(name, text, weighed, decide, numbers),
         curve,
         numbers,
     )

@@ -74,16 +74,16 @@ class Findings:
     @property
     def status(self) -> str:
         """The gravest status; "pass" if at least one check passed and none objected."""
-        found = {result.status for _, result in self.results}
+        statuses = {result.status for _, result in self.results}
         for status in reversed(STATUSES):
-            if status in found and status != "skipped":
+            if status in statuses and status != "skipped":
                 return status
         return "skipped"
 
     def count(self) -> Mapping[str, int]:
         """Return how many results there are of each status."""
-        found = [result.status for _, result in self.results]
-        return {status: found.count(status) for status in STATUSES}
+        statuses = [result.status for _, result in self.results]
+        return {status: statuses.count(status) for status in STATUSES}
 
     @property
     def summary(self) -> str:
@@ -91,8 +91,8 @@ class Findings:
         by_check: dict[str, set[str]] = {}
         for check, result in self.results:
             by_check.setdefault(check.name, set()).add(result.status)
-        objecting = {n for n, found in by_check.items() if found & {"suspect", "fail", "error"}}
-        passed = {n for n, found in by_check.items() if "pass" in found} - objecting
+        objecting = {n for n, told in by_check.items() if told & {"suspect", "fail", "error"}}
+        passed = {n for n, told in by_check.items() if "pass" in told} - objecting
         skipped = len(by_check) - len(objecting) - len(passed)
         parts = [f"{Count(len(passed)):check|checks} passed"]
         parts += [f"{len(objecting)} objected"] if objecting else []

@@ -76,8 +76,8 @@ def check_scans(
     resolved = resolve_limits(SCAN_CHECKS, limits or {})
     given = [results] if isinstance(results, xr.Dataset) else list(results or ())
     subject = ScanSubject(scans, given)
-    found = results_of_checks(SCAN_CHECKS, subject, resolved, tuple(skip))
-    listed = tuple((SCAN_CHECKS[name], result) for name, rows in found.items() for result in rows)
+    answers = results_of_checks(SCAN_CHECKS, subject, resolved, tuple(skip))
+    listed = tuple((SCAN_CHECKS[name], result) for name, rows in answers.items() for result in rows)
     flags = {
         check.name: subject.to_shape(result.flags)
         for check, result in listed
@@ -229,7 +229,7 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     spectra = subject.spectra
     if subject.is_map or len(subject.rows) < 2 or len(spectra) < 2:
         return [Result("skipped", "height", "one scan: nothing to compare it with")]
-    every = np.stack([np.log(one.psd_1d.values) for one in spectra])
+    every = np.stack([np.log(spectrum.psd_1d.values) for spectrum in spectra])
     counts = spectra[0].independent_values.values
     logs, weights = profiles.pooled(every, counts, limits["values"])
     if not weights.size:

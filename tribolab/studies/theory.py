@@ -130,8 +130,8 @@ class Theory:
     def macroscopic_work(self, surface: str, medium: str) -> float:
         """gamma_eff(1) [J/m2] as the load vanishes."""
         work = self._published_work(medium)
-        found = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
-        return float(found.macroscopic_work_of_adhesion)
+        macroscopic = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
+        return float(macroscopic.macroscopic_work_of_adhesion)
 
     def viscoelastic_friction(self) -> dict[str, float]:
         """Largest mu_visc of each surface at the speeds of the paper; Smooth in full contact."""
@@ -139,11 +139,11 @@ class Theory:
         largest = {}
         for name in xu2026.surfaces:
             full = name == "Smooth"  # adhesion nearly completes that contact (Sec. 6)
-            found = viscoelastic_friction(
+            friction = viscoelastic_friction(
                 speeds, self._pressures[0], xu2026.psd(name), PDMS_STAND_IN, complete_contact=full
             )
             label = f"{name} (complete contact)" if full else name
-            largest[label] = float(found.friction_coefficient.max())
+            largest[label] = float(friction.friction_coefficient.max())
         return largest
 
     def line(self, row: Published) -> tuple[float, float]:
@@ -157,14 +157,14 @@ class Theory:
 
     def flow_stops(self, level: float) -> list[float]:
         """Mean separation over h_rms of each surface where phi_p falls below a level."""
-        found = []
+        stops = []
         for name in xu2026.surfaces:
             factors = flow_factors(xu2026.psd(name))
             closed, height = factors.percolation_separation, factors.rms_roughness
             u = closed + height * np.geomspace(1e-4, 1.0, 2000)
             above = u[factors.at(u).phi_p > level]
-            found.append(float(above[0] if level > 0 else closed) / height)
-        return found
+            stops.append(float(above[0] if level > 0 else closed) / height)
+        return stops
 
     def boundary_onset(self, row: Published, share: float) -> float:
         """Speed [m/s] at which friction has fallen to a share of that of the dry contact."""

@@ -211,9 +211,9 @@ def psd_2d(
     bins, behind, relative = bins_of(profile, fitted)
     annuli, error = join(abel.invert(bins), abel.invert(behind), relative)
     inherited = _inherited(scans, "2D power spectrum by the inverse Abel transform")
-    found = annular_spectrum(annuli, error, fitted)
+    result = annular_spectrum(annuli, error, fitted)
     return stamp(
-        found.assign_attrs({**inherited, **found.attrs, "convention": "<h^2> = 2 pi int q C dq"})
+        result.assign_attrs({**inherited, **result.attrs, "convention": "<h^2> = 2 pi int q C dq"})
     )
 
 

@@ -262,20 +262,20 @@ def _ratio(
     lost = 1 - np.count_nonzero(pressed) / normal.size
     if lost > LOST:
         return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
-    found = estimate_of(time[pressed], force[pressed] / normal[pressed])
-    if found.samples == 0:
-        return found, "friction force is not a number"
+    estimate = estimate_of(time[pressed], force[pressed] / normal[pressed])
+    if estimate.samples == 0:
+        return estimate, "friction force is not a number"
     left = normal.size - int(np.count_nonzero(pressed))
     said = [f"{left} samples without contact left out"] if left else []
-    return found, "; ".join([*said, *filter(None, [student_remark(found.effective_samples)])])
+    return estimate, "; ".join([*said, *filter(None, [student_remark(estimate.effective_samples)])])
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    found = [estimate_of(time[s], ratio[s]) for s in parts]
-    means, own = _column(found, "mean"), _column(found, "sem")
+    estimates = [estimate_of(time[s], ratio[s]) for s in parts]
+    means, own = _column(estimates, "mean"), _column(estimates, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(
         run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
@@ -283,22 +283,22 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     turn = signs.sign * signs.unfold
     data = {
         "friction_coefficient": turn * means - signs.sign * zero.value,
-        "friction_coefficient_std": _column(found, "std"),
+        "friction_coefficient_std": _column(estimates, "std"),
         "friction_coefficient_sem": zero.error(own),
         "friction_coefficient_offset": zero.value,
         "pair": pair,
-        **_memory(found),
-        "trend": turn * _column(found, "trend"),
-        "trend_change": turn * _column(found, "trend_change"),
+        **_memory(estimates),
+        "trend": turn * _column(estimates, "trend"),
+        "trend_change": turn * _column(estimates, "trend_change"),
     }
-    few = np.array([student_remark(one.effective_samples) for one in found], dtype=object)
-    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", few)
+    few = np.array([student_remark(e.effective_samples) for e in estimates], dtype=object)
+    remarks = np.where(_column(estimates, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), zero)
 
 
-def _memory(found: list[Estimate]) -> dict[str, np.ndarray]:
+def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
     names = ("effective_samples", "autocorrelation_time", "trend_p_value")
-    return {name: _column(found, name) for name in names}
+    return {name: _column(estimates, name) for name in names}
 
 
 def _table(data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference) -> xr.Dataset:

@@ -65,7 +65,7 @@ def at_odds(found: Oscillation, seen: Regularity) -> bool:
     return bool(abs(np.log(frequency * periods.mean())) > max(reach, _ERRORS * error))
 
 
-def verdict(
+def period_verdict(
     probability: np.ndarray,
     found: Oscillation,
     seen: Regularity,

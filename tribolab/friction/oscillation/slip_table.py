@@ -186,7 +186,7 @@ def _count(seen: Examined | str) -> int:
     return seen.waveform.events if oscillates(seen) else 0
 
 
-def table(
+def slip_columns(
     found: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Columns (segment): numbers, and the class and method as text."""

@@ -156,11 +156,11 @@ def why_no_segment(segments: xr.Dataset) -> str:
     start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
     reason = segments["omitted_reason"].values.astype(str)
     whole = float((stop - start).sum())
-    lasted = {one: float((stop - start)[reason == one].sum()) for one in dict.fromkeys(reason)}
+    lasted = {why: float((stop - start)[reason == why].sum()) for why in dict.fromkeys(reason)}
     shares = [
-        f"{one} {lasted[one] / whole:.0%}".replace("%", " %")
-        for one in sorted(lasted, key=lambda one: -lasted[one])
-        if whole > 0 and lasted[one] >= 0.005 * whole
+        f"{why} {lasted[why] / whole:.0%}".replace("%", " %")
+        for why in sorted(lasted, key=lambda why: -lasted[why])
+        if whole > 0 and lasted[why] >= 0.005 * whole
     ]
     detail = f" ({', '.join(shares)} of the time)" if shares else ""
     return f"no segment: the run never slides at constant speed{detail}"

@@ -222,17 +222,17 @@ def _locate(
     if size == 1:
         v = _despiked(v, noise)
     breaks = find_breaks(v, noise, limits.resolution, rest_speed)
-    found = straight_pieces(t, v, noise, breaks, limits.resolution)
+    straight = straight_pieces(t, v, noise, breaks, limits.resolution)
 
     pieces: list[VelocityPiece] = []
     pending = 0  # first sample that no kept piece has taken yet
-    edges = np.append(found.first * size, time.size)
+    edges = np.append(straight.first * size, time.size)
     fewest = limits.min_samples if size == 1 else 4 * size
-    for i in range(found.first.size):
+    for i in range(straight.first.size):
         first, last = int(edges[i]), int(edges[i + 1])
-        mean, change = float(found.mean[i]), float(found.change[i])
+        mean, change = float(straight.mean[i]), float(straight.change[i])
         kind = _kind(
-            mean, change, found.mean_error[i], found.change_error[i], rest_speed, limits.drift
+            mean, change, straight.mean_error[i], straight.change_error[i], rest_speed, limits.drift
         )
         if last - first < fewest and kind != "ramp":
             kind = "too short"
@@ -241,7 +241,7 @@ def _locate(
                 continue
             pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
             pending = last
-        pieces.append(VelocityPiece(first, last, kind, mean, change, float(found.mean_error[i])))
+        pieces.append(VelocityPiece(first, last, kind, mean, change, float(straight.mean_error[i])))
     if size > 1:
         pieces += _leftover(time, velocity, limits, single, rest_speed, pending, time.size)
     return pieces

@@ -213,11 +213,11 @@ def _gaps(
         usual = float(np.median(spans)) / step
         longest = max(20 * usual, share * float(inside[-1] - inside[0]))
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
-    found = []
+    parts = []
     for block in wide:
         part = inside[block * step : (block + 1) * step + 1]
-        found.append(block * step + np.flatnonzero(np.diff(part) > longest))
-    return piece.first + np.concatenate(found) if found else np.zeros(0, dtype=int)
+        parts.append(block * step + np.flatnonzero(np.diff(part) > longest))
+    return piece.first + np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
 def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:

@@ -184,11 +184,11 @@ def error_of_rows(
     return np.sqrt(np.minimum(*moved))
 
 
-def _movements(found: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
+def _movements(middles: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
     """Return how the zero moves from loop to loop: all in all, and beyond a common drift."""
-    order = np.flatnonzero(np.isfinite(found.value))
-    order = order[np.argsort(found.time[order], kind="stable")]
-    value, error, time = found.value[order], error[order], found.time[order]
+    order = np.flatnonzero(np.isfinite(middles.value))
+    order = order[np.argsort(middles.time[order], kind="stable")]
+    value, error, time = middles.value[order], error[order], middles.time[order]
     plain = wander(value, error, time)
     if order.size < 3:
         return plain, plain

@@ -80,7 +80,7 @@ def folded(trace: ForceTrace) -> Fold:
     >>> def told(force):
     ...     mean = np.array([force[part].mean() for part in parts])
     ...     sign, error = np.array([1, -1, 1, -1]), np.full(4, 0.01)
-    ...     return folded(Trace(force, force == force, parts, mean, error, sign, np.nan)).kind
+    ...     return folded(ForceTrace(force, force == force, parts, mean, error, sign, np.nan)).kind
     >>> told(force), told(np.abs(force)), told(force + 20)
     ('signed', 'rectified', 'signed')
     """

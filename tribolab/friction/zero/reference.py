@@ -233,8 +233,8 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     else:
         text += "is larger than friction; what part of it is an asymmetry is not known; "
     text += "their mean does not change"
-    found = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
-    return replace(loop, doubts=(*loop.doubts, found | {"noted": ASYMMETRY < share < 1}))
+    remark = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
+    return replace(loop, doubts=(*loop.doubts, remark | {"noted": ASYMMETRY < share < 1}))
 
 
 def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:

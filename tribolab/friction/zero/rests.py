@@ -109,12 +109,12 @@ def unloaded_rests(
             continue
         before = float(np.mean(normal[level]))
         when = float(time[level].mean())
-        found = estimate_of(time[level], normal[level])
-        zeros["normal"].append((when, found.mean, found.sem))
+        level_estimate = estimate_of(time[level], normal[level])
+        zeros["normal"].append((when, level_estimate.mean, level_estimate.sem))
         if friction is not None:
-            found = estimate_of(time[level], friction[level])
-            if found.samples >= FEWEST:
-                zeros["friction"].append((when, found.mean, found.sem))
+            level_estimate = estimate_of(time[level], friction[level])
+            if level_estimate.samples >= FEWEST:
+                zeros["friction"].append((when, level_estimate.mean, level_estimate.sem))
     return _zeros(zeros["friction"]), _zeros(zeros["normal"])
 
 
@@ -128,5 +128,5 @@ def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray
     return light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
 
 
-def _zeros(found: list[tuple[float, float, float]]) -> Zeros | None:
-    return Zeros(*np.array(found).T) if found else None
+def _zeros(rests: list[tuple[float, float, float]]) -> Zeros | None:
+    return Zeros(*np.array(rests).T) if rests else None

@@ -80,5 +80,5 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[dict[str, Any], ...]
         "State `rectified = true` if the record holds no sign, `rectified = false` if its offset "
         "is real: in the [[run]], or of the column in the dialect."
     )
-    found = doubt(f"{fold.why}; {done}", cure, np.arange(size))
-    return (found | {"check": "rectified"},)
+    remark = doubt(f"{fold.why}; {done}", cure, np.arange(size))
+    return (remark | {"check": "rectified"},)

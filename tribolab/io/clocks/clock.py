@@ -40,13 +40,13 @@ def set_time(content: Content, dialect: Dialect) -> None:
         return
     step = 1.0
     if dialect.time.rate_pattern:
-        found = last_match(dialect.time.rate_pattern, content.pieces[0].before)
-        if found is None:
+        rate = last_match(dialect.time.rate_pattern, content.pieces[0].before)
+        if rate is None:
             raise ReadError(
                 f"{content.path}: no sample rate matches '{shown(dialect.time.rate_pattern)}' "
                 f"(instrument '{dialect.name}', time.rate_pattern)"
             )
-        step = 1.0 / to_si(f"{found} {dialect.time.rate_unit}", "Hz", str(content.path))
+        step = 1.0 / to_si(f"{rate} {dialect.time.rate_unit}", "Hz", str(content.path))
     elif dialect.time.rate:
         step = 1.0 / to_si(dialect.time.rate, "Hz", "time.rate")
     start = 0

@@ -282,8 +282,8 @@ def joint_fit(
     for name, table, (at, error) in models:
         prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(_SLACKS))
         fit = _Fit(force_time[used], force[used], basis.time, table)
-        found = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
-        answers.append(Answer(name, at, error, *found[1:], prior))
+        profile = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
+        answers.append(Answer(name, at, error, *profile[1:], prior))
     return answers
 
 

@@ -147,7 +147,7 @@ def shift_from_starts(
 
     Returns
     -------
-    Told or None
+    ToldByStarts or None
         None where no start tells.
     """
     for width in (span, 0.5 * span):  # what is around a start depends on the shift
@@ -166,10 +166,10 @@ def shift_from_starts(
         step = half / 20.0
         offsets = half * np.linspace(-1.0, 1.0, 41)
         for k, start in enumerate(starts):
-            found, error = _one(logs, start, centre[k] + offsets)
+            moments, error = _one(logs, start, centre[k] + offsets)
             # 0.58 of the half width where it tells nothing; at an end, it is cut off
-            if error < 0.4 * half and abs(found - centre[k]) < 0.7 * half:
-                seen[:, k] = found, error
+            if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
+                seen[:, k] = moments, error
         told = np.isfinite(seen[1])
         if not told.any():
             return None

@@ -99,7 +99,7 @@ def _index(
             f"{column.occurrence} times, it stands {len(places)} times"
         )
     hint = nearest(column.name or "", [name for name in names if name])
-    if "did you mean" not in hint and not any(one.name in names for one in dialect.column):
+    if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
         hint = ""  # no column of this instrument is there: what the file holds is not told
     raise ReadError(
         f"{where}: column '{shown(column.name)}' ({column.quantity}) is missing (instrument "

@@ -162,7 +162,7 @@ def _parse(path: Path) -> Dialect:
     try:
         return Dialect.model_validate(content)
     except ValidationError as error:
-        said = [_explain(one) for one in error.errors()]
+        said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
 

@@ -101,12 +101,12 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
         raise ReadError("no file is given", function="read_scans")
     files: list[Path] = []
     for path in given:
-        found = [str(path)]
+        names = [str(path)]
         if glob.has_magic(str(path)) and not Path(path).exists():
-            found = sorted(glob.glob(str(path)))  # noqa: PTH207 - Path.glob wants no absolute one
-            if not found:
+            names = sorted(glob.glob(str(path)))  # noqa: PTH207 - Path.glob wants no absolute one
+            if not names:
                 raise ReadError(f"{path}: no file has such a name")
-        files.extend(map(Path, found))
+        files.extend(map(Path, names))
     return files
 
 
@@ -213,8 +213,8 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
             if scan.sizes[dim] == points and drift <= 0.5 * length / max(points - 1, 1):
                 continue
             found, usual = (
-                1e6 * float(np.ptp(one[dim].values)) / max(one.sizes[dim] - 1, 1)
-                for one in (scan, first)
+                1e6 * float(np.ptp(pitch_of[dim].values)) / max(pitch_of.sizes[dim] - 1, 1)
+                for pitch_of in (scan, first)
             )
             raise ReadError(
                 f"{scan.sizes[dim]} points of {found:.6g} um, but {files[0].name} has {points} "
