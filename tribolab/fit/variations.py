@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import xarray as xr
@@ -13,7 +13,7 @@ from tribolab.contact.geometry import LineContact
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import SHORTEST, half_width
-from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
+from tribolab.lubrication.factors import CUTOFF, PERCOLATION, FlowFactors, RoughBody, flow_factors
 from tribolab.surface.extrapolation import MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
@@ -62,13 +62,26 @@ class Base(NamedTuple):
         return self.psd
 
 
+class Changed(TypedDict, total=False):
+    """Arguments of `stribeck_curve` that one end of a range changes."""
+
+    psd: xr.Dataset
+    factors: FlowFactors
+    gamma: float
+    rough_body: RoughBody
+    friction_factors: bool
+    viscosity: float
+    contact: LineContact
+    inlet_length: float
+
+
 class Variation(NamedTuple):
     """One unknown, the ends of its range, and what each end changes in `stribeck_curve`."""
 
     name: str
     reason: str
     texts: tuple[str, str]  # of the low and the high end; empty where there is only one
-    ends: tuple[dict[str, Any] | None, dict[str, Any] | None]
+    ends: tuple[Changed | None, Changed | None]
 
 
 class Skipped(NamedTuple):
@@ -87,7 +100,8 @@ def spectrum_band(base: Base) -> Variation | Skipped:
     seen = np.flatnonzero((_origin(psd) == MEASURED) & (c > 0))
     if seen.size == 0:
         return Skipped("spectrum band", "no part of the spectrum is marked as measured")
-    ends, spread = [], []
+    ends: list[Changed] = []
+    spread = []
     for name in ("psd_2d_low", "psd_2d_high"):
         ratio = psd[name].values[seen] / c[seen]
         if not np.all(np.isfinite(ratio) & (ratio > 0)):
@@ -143,13 +157,13 @@ def hurst_exponent(base: Base) -> Variation | Skipped:
     error = max(_HURST, _NORMAL * fitted)
     hurst = psd.attrs.get("hurst_exponent", _local_exponent(q, c))
     tilt = np.maximum(q / last, 1.0)
-    low, high = ({"psd": _spectrum(q, c * tilt ** (-2 * d))} for d in (-error, error))
+    low, high = (_spectrum(q, c * tilt ** (-2 * d)) for d in (-error, error))
     return Variation(
         "Hurst exponent",
         f"of the part above {last:.3g} 1/m; at least {_HURST:g}, as a spectrum need not be one "
         "power law over the decades that were not measured, or 1.96 standard errors of the fit",
         (f"H = {hurst - error:.3g}", f"H = {hurst + error:.3g}"),
-        (low, high),
+        ({"psd": low}, {"psd": high}),
     )
 
 
@@ -162,12 +176,12 @@ def short_waves(base: Base) -> Variation | Skipped:
         return Skipped(name, _NO_TAIL)
     cut = max(last, q[-1] / _COARSER)
     atom = np.pi / _ATOM
-    longer = None
+    longer: Changed | None = None
     if q[-1] < atom and np.all(c[-2:] > 0):
         beyond = np.geomspace(q[-1], atom, 11)[1:]
         tail = c[-1] * (beyond / q[-1]) ** (-2 * (1 + _local_exponent(q, c)))
         longer = {"psd": _spectrum(np.append(q, beyond), np.append(c, tail))}
-    shorter = {"psd": band(psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
+    shorter: Changed | None = {"psd": band(psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
     return Variation(
         name,
         "where the shortest waves that matter are is a convention: ten times longer, and an atom",
@@ -213,7 +227,7 @@ def energy_factor(base: Base) -> Variation | Skipped:
 
 def rough_body(base: Base) -> Variation:
     """Take the other body as the rough one: phi_s changes sign."""
-    other = "moving" if base.rough_body == "stationary" else "stationary"
+    other: RoughBody = "moving" if base.rough_body == "stationary" else "stationary"
     return Variation(
         "rough body",
         "which of the two is rough sets the sign of phi_s, and papers differ",
@@ -317,7 +331,7 @@ def held_fixed(base: Base) -> list[Skipped]:
     return [Skipped(name, reason) for name, reason in fixed]
 
 
-def _factors(base: Base, **changed: float) -> dict[str, Any]:
+def _factors(base: Base, **changed: float) -> Changed:
     given = {"percolation": PERCOLATION, "gamma": base.gamma, **changed}
     return {"factors": flow_factors(base.spectrum, base.rough_body, **given)}
 

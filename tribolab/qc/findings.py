@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
@@ -17,6 +17,24 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FAIL_ON = ("suspect", "fail", "never")
+
+
+class FindingRow(TypedDict):
+    """One result as a row; `value` is None where there is no number, limits are in SI."""
+
+    name: str
+    check: str
+    status: str
+    noted: bool
+    variable: str
+    message: str
+    where: str
+    count: int
+    value: float | None
+    unit: str
+    limits: dict[str, float]
+    question: str
+    cure: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,9 +59,9 @@ class Findings:
     limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
 
     @property
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[FindingRow]:
         """One dict for each result, graver ones first; numbers that are unknown are None."""
-        rows = [
+        rows: list[FindingRow] = [
             {
                 "name": self.name,
                 "check": check.name,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -18,9 +18,9 @@ class Violation(NamedTuple):
 
     row: int | None
     column: str
-    value: Any
+    value: object
     constraint: str
-    limit: Any
+    limit: object
 
     def __str__(self) -> str:
         """Say what is wrong, in one line."""
@@ -39,9 +39,9 @@ class Broken(NamedTuple):
 
     column: str
     constraint: str
-    limit: Any
+    limit: object
     rows: np.ndarray
-    values: Sequence[Any] | np.ndarray
+    values: Sequence[object] | np.ndarray
 
 
 class Violations(NamedTuple):
@@ -80,7 +80,7 @@ class Violations(NamedTuple):
                     "column": broken.column,
                     "value": list(broken.values) if len(broken.values) else [None],
                     "constraint": broken.constraint,
-                    "limit": broken.limit if np.ndim(broken.limit) == 0 else str(broken.limit),
+                    "limit": str(broken.limit) if _is_many(broken.limit) else broken.limit,
                 },
                 dtype=object,
             )
@@ -98,7 +98,11 @@ class Violations(NamedTuple):
         return "\n".join(lines) or "as the schema says"
 
 
-def _short(value: Any) -> str:
+def _is_many(limit: object) -> bool:
+    return isinstance(limit, list | tuple | np.ndarray)
+
+
+def _short(value: object) -> str:
     if isinstance(value, float | np.floating):
         return f"{value:.6g}"
     return "no value" if value is None else str(value)
