@@ -81,7 +81,8 @@ _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- 
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
 
 
-def _clean(unit: str) -> str:
+def as_pint_writes(unit: str) -> str:
+    """Return a unit, typeset or from netCDF, in the spelling that pint reads."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
@@ -97,7 +98,7 @@ class _Units(NamedTuple):
 def _units(text: str) -> _Units:
     """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
     ureg = registry()
-    factor, powers = parse_unit(_clean(text))
+    factor, powers = parse_unit(as_pint_writes(text))
     product = ureg.Unit("")
     for name, power in powers.items():
         product = product * ureg.Unit(name) ** power

@@ -3,7 +3,7 @@
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.faults import FAULTS, Fault, inject
 from tribolab.rig.files import write_run, write_scans
-from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip_law
+from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
 from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
@@ -35,7 +35,7 @@ __all__ = [
     "simulate_campaign",
     "simulate_run",
     "simulate_trace",
-    "stick_slip_law",
+    "stick_slip",
     "write_run",
     "write_scans",
 ]

@@ -167,7 +167,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     return StribeckLaw(boundary, transition_speed=3e-5, exponent=1.5, drag=drag)
 
 
-def stick_slip_law(surface: str, medium: str) -> StickSlip:
+def stick_slip(surface: str, medium: str) -> StickSlip:
     """Stick-slip as Sec. 6 to 8 describe it: on Smooth only.
 
     Dry it is a sawtooth, alike at 1 and 3 um/s; in glycerol rounder and longer, much weaker and
@@ -181,7 +181,7 @@ def stick_slip_law(surface: str, medium: str) -> StickSlip:
 
     Examples
     --------
-    >>> stick_slip_law("Smooth", "dry").form, stick_slip_law("Sb-R", "dry").form
+    >>> stick_slip("Smooth", "dry").form, stick_slip("Sb-R", "dry").form
     ('sawtooth', 'none')
     """
     if xu2026.surface(surface).name != "Smooth":

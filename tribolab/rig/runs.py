@@ -11,7 +11,7 @@ import xarray as xr
 
 from tribolab.quantities import stamp
 from tribolab.rig.faults import inject
-from tribolab.rig.laws import StickSlip, friction_law, stick_slip_law
+from tribolab.rig.laws import StickSlip, friction_law, stick_slip
 from tribolab.rig.parameters import Rig
 from tribolab.rig.schedule import make_schedule
 from tribolab.rig.sensors import (
@@ -96,7 +96,7 @@ def simulate_run(
     force = to_si(normal_force, "N", name="normal_force")
     surface = xu2026.surface(surface).name
     law = law or friction_law(surface, medium, force)
-    slip = slip or stick_slip_law(surface, medium)
+    slip = slip or stick_slip(surface, medium)
     rng = np.random.default_rng(seed)
 
     factor = float(1 + rig.scatter.repeat * rng.standard_normal())
