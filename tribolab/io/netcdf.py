@@ -24,8 +24,10 @@ CHUNK = 65_536  # samples; a default chunk would be the whole array
 _COMPRESSION = 2
 _MARK, _TUPLE = "json:", "json-tuple:"
 # What netCDF4 and xarray raise on a file that is damaged.
-_DAMAGE = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError)
-_DAMAGE += (MemoryError, OverflowError)
+_DAMAGE = (
+    *(OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError),
+    *(MemoryError, OverflowError),
+)
 
 
 def write_netcdf(
@@ -203,17 +205,17 @@ def _load(
     try:
         with opened(path) as file:
             there = list(file.groups)
-            found = {}
+            datasets = {}
             for name in groups:
                 group = ("run" if "run" in there else None) if name == "run?" else name
                 if group is None or group in there:
-                    found[name] = _group(file, group)
+                    datasets[name] = _group(file, group)
                 elif not optional:
                     raise ReadError(
                         f"{path}: there is no group '{shown(group)}'; there are "
                         f"{', '.join(there) or 'none'}"
                     )
-        return found
+        return datasets
     except _DAMAGE as error:
         raise ReadError(
             f"{path}: this is not a netCDF file that can be read: {brief(error)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -60,7 +61,7 @@ def name_surfaces(axes: Axes, chosen: dict[str, str]) -> None:
             axes.plot([], [], color=colour, linewidth=1.4, label=plain(name))
 
 
-def name_style(axes: Axes, text: str, **look: object) -> None:
+def name_style(axes: Axes, text: str, **look: Any) -> None:
     """Put a line style that holds for all surfaces into the legend, in grey."""
     axes.plot([], [], **{"color": GREY, "linewidth": 1.1, **look}, label=plain(text))
 
@@ -84,7 +85,7 @@ def legend_above(figure: PaperFigure, axes: Axes, title: str = "", left: float =
         figure.text(left / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
 
 
-def band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
+def shaded_band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
     """Shade between two bounds, where both are known."""
     fine = np.isfinite(low) & np.isfinite(high)
     axes.fill_between(x[fine], low[fine], high[fine], color=colour, alpha=0.2, linewidth=0)

@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -15,6 +15,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType  # newer than the oldest matplotlib that will do
 
 SINGLE_MM = 86.0
 DOUBLE_MM = 178.0
@@ -27,7 +30,7 @@ BLUE, VERMILLION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#6B6B6B"
 FORWARD, BACKWARD, NEUTRAL = "#3A3A3A", ORANGE, GREY
 MEAN = "#C00000"
 
-_RC = {
+_RC: dict[RcKeyType, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so every machine draws the same
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
@@ -101,7 +104,7 @@ class PaperFigure(Figure):
     Made without pyplot, so no global state is touched and nothing has to be closed.
     """
 
-    def __init__(self, *args, **kwargs) -> None:
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._numbers: list[dict[str, object]] = []
 

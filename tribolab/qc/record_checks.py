@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.errors import shown
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT
 from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
@@ -153,7 +154,7 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in subject.force_signals.items():
-        step, noise = signals.quantisation_step(values), subject.noise(name)
+        step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:
             text = "values do not repeat: no step to be seen"
             results.append(Result("pass", name, text, 0.0))

@@ -13,7 +13,7 @@ from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
 from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
-from tribolab.qc.register import Check, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
@@ -103,8 +103,8 @@ def check_run(
         if contact_width is None
         else to_si(contact_width, "m", name="contact_width"),
     )
-    found = _examined(examine(checks, subject, resolved, tuple(skip)))
-    results = tuple((checks[name], result) for name, rows in found.items() for result in rows)
+    answers = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
+    results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()}
     flagged = run
     for variable in subject.signals:
@@ -122,13 +122,13 @@ def check_run(
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
-def _examined(found: dict[str, list[Result]]) -> dict[str, list[Result]]:
+def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
     """Object where every other check was skipped: that segments were found says nothing."""
-    others = [result for name, rows in found.items() if name != SEGMENTS for result in rows]
-    own = found.get(SEGMENTS, [])
+    others = [result for name, rows in results.items() if name != SEGMENTS for result in rows]
+    own = results.get(SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
-        return found
-    return found | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
+        return results
+    return results | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
 
 
 def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:

@@ -39,19 +39,19 @@ def ranges() -> Mapping[str, Range]:
     >>> ranges()["temperature"].low
     70.0
     """
-    found = {}
+    limits = {}
     for field in load_schema("run")["fields"]:
         if "reason" not in field:  # time and the numbers of steps have checks of their own
             continue
         believed, possible = field["constraints"], field.get("possible", {})
-        found[field["name"]] = Range(
+        limits[field["name"]] = Range(
             float(believed["minimum"]),
             float(believed["maximum"]),
             float(possible.get("minimum", "-inf")),
             float(possible.get("maximum", "inf")),
             field["reason"],
         )
-    return found
+    return limits
 
 
 def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
@@ -72,13 +72,13 @@ def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
 
 def wrong_units(run: xr.Dataset) -> dict[str, str]:
     """Variables whose unit is not the one of the dictionary of quantities, and that unit."""
-    found = {}
+    wrong = {}
     for name, variable in run.variables.items():
         known = QUANTITIES.get(str(name))
         unit = variable.attrs.get("units")
         if known is not None and unit is not None and unit != known.unit:
-            found[str(name)] = str(unit)
-    return found
+            wrong[str(name)] = str(unit)
+    return wrong
 
 
 def lacks(run: xr.Dataset) -> list[tuple[str, str]]:

@@ -108,8 +108,8 @@ class RunSubject:
     @property
     def sliding(self) -> bool:
         """Whether there is any segment."""
-        found = self._found_segments
-        return not isinstance(found, Skip) and found.sizes["segment"] > 0
+        segments = self._found_segments
+        return not isinstance(segments, Skip) and segments.sizes["segment"] > 0
 
     @cached_property
     def slices(self) -> list[slice]:
@@ -252,13 +252,13 @@ class RunSubject:
         if self.friction_signal is None:
             raise Skip("no friction was recorded")
         values = self.signals[self.friction_signal]
-        found = [
+        significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
             for number, part in enumerate(self.slices)
         ]
-        if all(lines is None for lines in found):
+        if all(lines is None for lines in significant):
             raise Skip("sampled too slowly or too shortly for a spectrum")
-        return [line for lines in found for line in lines or []]
+        return [line for lines in significant for line in lines or []]
 
     def unit(self, name: str) -> str:
         """Return the unit of a variable as text, empty for pure numbers."""
