@@ -5,6 +5,8 @@ import re
 import shutil
 from pathlib import Path
 
+from tribolab.campaign.store import Store
+from tribolab.campaign.surfaces import Surfaces, SurfaceTask, process_surface
 from tribolab.rig import simulate_campaign
 
 RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")
@@ -24,6 +26,24 @@ def simulated(folder: Path, repeats: int = 2, scans: bool = False, models: bool 
     setting = 'uncertainty = "none"' if models else "compute = false"
     file.write_text(f"{text}\n[model]\n{setting}\n", "utf-8")
     return file
+
+
+def made_and_taken_over(folder: Path, surface, change=None):
+    """Process a surface, and look for it in its catalogue: both records, None if it is not known.
+
+    `change` may spoil the results or the scans; it gives the surface that is looked for.
+    """
+    (folder / "data").mkdir(exist_ok=True)
+    store, task = Store(folder), SurfaceTask(surface, folder)
+    first = Surfaces(None, (), store).keep(task, 0, process_surface(task))
+    store.close()
+    later = folder / "later"
+    later.mkdir(exist_ok=True)
+    asked = surface if change is None else change()
+    store = Store(later, folder)
+    again = Surfaces(None, (), store).known(SurfaceTask(asked, later), 0)
+    store.close()
+    return first, again
 
 
 def copied(campaign: Path, folder: Path) -> Path:

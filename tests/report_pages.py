@@ -3,7 +3,7 @@
 from html.parser import HTMLParser
 
 import numpy as np
-from reporting import made_outcome, made_run, write_groups
+from reporting import made_outcome, made_run, with_run
 
 from tribolab.qc.flags import attach
 from tribolab.report.results import write_report
@@ -43,9 +43,7 @@ def made(folder):
                     }
                 ],
             }
-        file = outcome.folder / outcome.runs[index].data_file
-        file.unlink()
-        write_groups(file, run, segments, friction)
+        outcome = with_run(outcome, index, (run, segments, friction))
     write_report(outcome)
     return outcome.folder
 

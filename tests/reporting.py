@@ -1,16 +1,25 @@
 """Made-up results for the tests of figures and report, as the analysis builds them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from tribolab.campaign.config import Campaign
+from tribolab.campaign.data_files import write_data
 from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.store import Store
+from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.io.netcdf import write_netcdf
 from tribolab.quantities import stamp
+from tribolab.records.frames import curve_table, stick_slip_table
+from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome
+from tribolab.records.run_facts import facts_of, notices_of
+from tribolab.records.run_record import RunRecord
+from tribolab.records.traces import page_trace, trace_size
+from tribolab.records.wording import plain_value
 
 SPEEDS = (1e-6, 4.64e-5, 1e-2)
 
@@ -106,12 +115,43 @@ def made_run(speeds=SPEEDS, load=31.0, mu=0.8, seed=0, samples=400, stroke=2e-3,
     return run, segments, stamp(friction, offset="half loop")
 
 
-def write_groups(path, run, segments, friction):
-    """Write the data file of a run, with the stick-slip that is in it."""
+def record_run(store, place, outcome, run, segments, friction):
+    """Write the data file of a run, and all that a worker records of it."""
     slip = stick_slip(run, segments)
     groups = {"run": run, "segments": segments, "friction": friction, "stick_slip": slip}
-    for group, data in groups.items():
-        write_netcdf(data, path, group=group)
+    write_data(groups, store.folder / outcome.data_file)
+    record = RunRecord(
+        outcome,
+        (("raw/made.csv", "ab" * 32, 9),),
+        facts=facts_of(run, segments, friction, slip),
+        notices=tuple(notices_of(outcome.name, run, segments, friction)),
+        slip=tuple(plain_value(stick_slip_table(slip).to_dict("records"))),
+    )
+    trace = page_trace(run, segments, friction, *trace_size(5))
+    store.put("run", outcome.name, place, "", record, trace)
+    return slip
+
+
+def with_run(outcome, index, parts, **changes):
+    """Return an outcome in which a run has other signals and results, and `changes` in its own."""
+    run = replace(outcome.runs[index], **changes)
+    record_run(outcome.store, index, run, *parts)
+    runs = [run if place == index else other for place, other in enumerate(outcome.runs)]
+    return replace(outcome, runs=tuple(runs))
+
+
+def without_curves(outcome):
+    """Return an outcome without measured curves."""
+    outcome.store.order("curve", [])
+    return replace(outcome, curves=())
+
+
+def record_curve(store, place, outcome, curve, slips):
+    """Write the data file of a measured curve, and all that a worker records of it."""
+    groups = {None: curve, "stick_slip": stick_slip_curve(slips)}
+    write_data(groups, store.folder / outcome.data_file)
+    points = plain_value(curve_table(curve).to_dict("records"))
+    store.put("curve", outcome.name, place, "", CurveRecord(outcome, tuple(points)))
 
 
 def made_curve(speeds=SPEEDS, mu=0.8, surface="Sb-R", medium="glycerol", load=31.0):
@@ -144,7 +184,7 @@ files = "*.csv"
 def made_outcome(
     folder, runs, name="A made campaign", failed=(), speeds=SPEEDS, samples=400, note=None
 ):
-    """Write data files of made runs and return their outcome.
+    """Write data files and records of made runs and return their outcome.
 
     `runs` has (name, surface, medium, load, mu) of each run, `failed` (name, reason).
     """
@@ -154,45 +194,45 @@ def made_outcome(
     campaign_file.write_text(CAMPAIGN.format(name=json.dumps(name)), encoding="utf-8")
     results = folder / "results"
     (results / "data").mkdir(parents=True)
+    store = Store(results)
     outcomes, groups = [], {}
     for number, (run_name, surface, medium, load, mu) in enumerate(runs):
-        data_file = f"data/run{number}.nc"
         parts = made_run(speeds, load or 31.0, mu, seed=number, samples=samples)
-        write_groups(results / data_file, *parts)
-        count = parts[1].sizes["segment"]
-        outcomes.append(
-            RunOutcome(
-                run_name,
-                ("raw/made.csv",),
-                surface,
-                medium,
-                load,
-                "done",
-                "",
-                "",
-                data_file,
-                False,
-                0.5,
-                count,
-            )  # fmt: skip
+        outcome = RunOutcome(
+            name=run_name,
+            files=("raw/made.csv",),
+            surface=surface,
+            medium=medium,
+            normal_force=load,
+            status="done",
+            data_file=f"data/run{number}.nc",
+            seconds=0.5,
+            segments=parts[1].sizes["segment"],
         )
-        groups.setdefault((surface, medium, load), []).append((run_name, mu))
+        slip = record_run(store, number, outcome, *parts)
+        outcomes.append(outcome)
+        groups.setdefault((surface, medium, load), []).append((run_name, mu, slip))
     for run_name, reason in failed:
-        outcomes.append(
-            RunOutcome(run_name, ("raw/bad.csv",), "", "", None, "failed", reason, "ReadError")
+        outcome = RunOutcome(
+            run_name, ("raw/bad.csv",), "", "", None, "failed", reason, "ReadError"
         )
+        store.put("run", run_name, len(outcomes), "", RunRecord(outcome, (("raw/bad.csv", "", 0),)))
+        outcomes.append(outcome)
     curves = []
     for number, ((surface, medium, load), members) in enumerate(groups.items()):
-        data_file = f"data/curve{number}.nc"
+        names = tuple(member for member, _, _ in members)
+        outcome = CurveOutcome(
+            f"curve{number}", surface, medium, load, f"data/curve{number}.nc", names
+        )
         curve = made_curve(speeds, members[0][1], surface, medium, load or float("nan"))
-        write_netcdf(curve, results / data_file)
-        names = tuple(member for member, _ in members)
-        curves.append(CurveOutcome(f"curve{number}", surface, medium, load, data_file, names))
+        record_curve(store, number, outcome, curve, [slip for _, _, slip in members])
+        curves.append(outcome)
     campaign = Campaign(campaign={"name": name, "note": note}, run=[{"files": "*.csv"}])
     campaign.lies_at(campaign_file)
     return Outcome(
         campaign=campaign,
         folder=results,
+        store=store,
         runs=tuple(outcomes),
         curves=tuple(curves),
         sources=(("raw/made.csv", "ab" * 32, 9), ("raw/bad.csv", "", 0)),

@@ -17,14 +17,18 @@ from tribolab.app.run import run_campaign
 from tribolab.campaign.kept import kept_model
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.store import Store
 from tribolab.cli import app
 from tribolab.errors import ConfigError
+from tribolab.records.model_rows import ModelRows
+from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 
 
 RUNS = (RUNS[0], RUNS[2])  # of a campaign without repeats
+ROWS = ModelRows(None, ({"sliding_speed_m_s": 1e-3, "friction_coefficient": 0.5},))
 
 
 @pytest.fixture(scope="module")
@@ -145,16 +149,24 @@ def test_rubber_friction_is_kept_when_its_modulus_cannot_be_read(tmp_path):
 
 
 def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
-    (tmp_path / "old/data").mkdir(parents=True)
-    (tmp_path / "new/data").mkdir(parents=True)
+    for name in ("old", "new"):
+        (tmp_path / name / "data").mkdir(parents=True)
     (tmp_path / "old/data/model_a.nc").write_bytes(b"")
     done = ModelOutcome("model_a", "a", "s", "m", 31.0, "done", data_file="data/model_a.nc")
+    earlier = Store(tmp_path / "old")
+    earlier.put("model", "model_a", 0, "made so", ModelRecord(done, ROWS))
+    earlier.close()
+    store = Store(tmp_path / "new", tmp_path / "old")
     died = replace(done, status="failed", error="WorkerDied", reason="out of memory", data_file="")
-    kept = kept_model(died, done, tmp_path / "old", tmp_path / "new")
-    assert kept.done and "out of memory" in kept.kept
+    kept, is_kept = kept_model(store, ModelRecord(died))
+    assert is_kept and kept.outcome.done and "out of memory" in kept.outcome.kept
+    assert kept.rows == ROWS
     assert (tmp_path / "new/data/model_a.nc").exists()
-    wrong = replace(died, error="AnalysisError")  # an answer about the data stands
-    assert kept_model(wrong, done, tmp_path / "old", tmp_path / "new") is wrong
+    wrong = ModelRecord(replace(died, error="AnalysisError"))  # an answer about the data stands
+    assert kept_model(store, wrong) == (wrong, False)
+    (tmp_path / "old/data/model_a.nc").write_bytes(b"other")  # not what the record is of
+    assert kept_model(store, ModelRecord(died)) == (ModelRecord(died), False)
+    store.close()
 
 
 def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from tribolab.campaign.model_work import _beside
 
 import tribolab
 from tribolab.app.demo import DemoComparison
@@ -19,16 +18,18 @@ from tribolab.app.terminal import truth_lines
 from tribolab.app.truth import Comparison
 from tribolab.app.truth_shear_stress import compare_shear_stress
 from tribolab.campaign.load import load_campaign
+from tribolab.campaign.model_analysis import _beside
 from tribolab.campaign.pipeline import process
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.friction.coefficient.repeatability import repeatability
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.records.model_rows import ModelRows, model_rows
 from tribolab.records.model_words import is_described, judgement, stress_interval
+from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
 from tribolab.report.model_figures import draw_model, plan_model_figures
+from tribolab.report.model_records import ModelRow
 from tribolab.report.page import note_of
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
@@ -63,10 +64,14 @@ def outcome(campaign):
 def test_the_readme_names_every_table_and_folder_that_a_run_leaves(outcome):
     readme = (SCHEMA.parents[1] / "README.md").read_text("utf-8")
     listed = readme.partition("What the demo leaves behind")[2].partition("\n## ")[0]
-    tables = [path.name for path in (outcome.folder / "tables").iterdir()]
+    tables = [path.name for path in (outcome.folder / "tables").glob("*.csv")]
+    beside = [path.name for path in (outcome.folder / "tables").glob("*.parquet")]
+    assert sorted(beside) == sorted(name.replace(".csv", ".parquet") for name in tables)
+    files = [path.name for path in outcome.folder.iterdir() if path.is_file()]
     folders = [f"{path.name}/" for path in outcome.folder.iterdir() if path.is_dir()]
     assert {"stick_slip.csv", "shear_stress.csv"} <= set(tables)
-    assert [name for name in tables + folders if name not in listed] == []
+    assert [name for name in tables + folders + files if name not in listed] == []
+    assert "Parquet" in listed
 
 
 def changed(campaign, extra, name):
@@ -188,7 +193,8 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     file.write_text(text + '\n[model]\npoints = 9\ninlet_length = "40 mm"\n', "utf-8")
     folder.mkdir()
     made = process(load_campaign(file), folder, previous=outcome.folder)
-    rows = [model_rows(one, one.models[0]) for one in (outcome, made)]
+    name = made.models[0].name
+    rows = [one.store.get("model", name, ModelRecord).record.rows for one in (outcome, made)]
     before, after = ({row["variation"]: row for row in one.sensitivity} for one in rows)
     assert set(after) - set(before) == {"viscosity", "Young's modulus"}
     assert set(before) - set(after) == {"inlet length"}  # it is stated
@@ -333,7 +339,6 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     drawn = tribolab.plot.figure_data(figure)
     assert drawn.series.unique().tolist() == ["viscous", "measured", "measured less viscous part"]
 
-    (tmp_path / "figures").mkdir()
     write_netcdf(fit, tmp_path / "m.nc", group="fit")
     write_netcdf(curve, tmp_path / "m.nc", group="curve")
     labels = {"surface": "Sb-S", "medium": "glycerol", "status": "done", "data_file": "m.nc"}
@@ -342,15 +347,15 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
         ModelOutcome(name=f"m{load:g}", curve="c", normal_force=load, parts=parts, **labels)
         for load in (31.0, 91.0)
     ]
-    rows = [ModelRows(model, {"shear_stress_Pa": -1.0}, None) for model in models]
+    rows = [ModelRow(one, {"shear_stress_Pa": -1.0}, (), (), "", None, "") for one in models]
     outcome = SimpleNamespace(curves=(), folder=tmp_path)
-    planned = {task.name: draw_model(task) for task in plan_model_figures(outcome, rows)}
+    planned = {one.name: draw_model(one, tmp_path) for one in plan_model_figures(outcome, rows)}
     assert set(planned) == {"m31", "m91", "model_surface_1"}  # and no figure of shear stresses
-    assert "31 N: no shear stress describes this curve" in planned["m31"]["caption"]
-    assert "dotted: the model's viscous part" in planned["m31"]["caption"]
-    assert "full:" not in planned["m31"]["caption"]
-    assert "no model at 31 N and 91 N" in planned["model_surface_1"]["caption"]
-    loads = pd.read_csv(tmp_path / planned["model_surface_1"]["data"])
+    assert "31 N: no shear stress describes this curve" in planned["m31"].caption
+    assert "dotted: the model's viscous part" in planned["m31"].caption
+    assert "full:" not in planned["m31"].caption
+    assert "no model at 31 N and 91 N" in planned["model_surface_1"].caption
+    loads = tribolab.plot.figure_data(planned["model_surface_1"].figure)
     assert not loads.series.str.startswith("model").any()
 
 

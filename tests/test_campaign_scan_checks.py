@@ -2,18 +2,19 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
-from campaigns import copied, simulated
+from campaigns import copied, made_and_taken_over, simulated
 from typer.testing import CliRunner
 
 from tribolab import rig
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.plan import scan_files
 from tribolab.campaign.surface_plan import PlannedSurface
-from tribolab.campaign.surfaces import SurfaceTask, known_surface, process_surface, sources_of
+from tribolab.campaign.surfaces import SurfaceTask, process_surface
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
@@ -117,11 +118,9 @@ def test_flags_travel_with_the_heights_and_what_was_found_is_known_the_next_time
     raw = read_netcdf(tmp_path / outcome.data_file, group="scans")
     bit = 1 << SCAN_CHECKS["steps"].bit
     assert np.argwhere(raw.height_qc_tests.values & bit).tolist() == [[0, 5000]]
-    sources, known = known_surface(tmp_path / outcome.data_file, surface)
-    assert sources == sources_of(surface)
-    assert (known.quality, known.checks, known.findings) == (
-        *(outcome.quality, outcome.checks, outcome.findings),
-    )
+    first, again = made_and_taken_over(tmp_path, surface)
+    assert first.outcome.quality == "suspect" and first.outcome.checks and first.sources
+    assert again == replace(first, outcome=replace(first.outcome, reused=True))
 
 
 def test_where_no_scan_passes_all_are_used_and_marked(tmp_path, files, scans):

@@ -10,7 +10,7 @@ import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
-from campaigns import copied, simulated
+from campaigns import copied, made_and_taken_over, simulated
 from typer.testing import CliRunner
 
 import tribolab
@@ -18,8 +18,9 @@ from tribolab import rig
 from tribolab.app.run import run_campaign
 from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.load import load_campaign
+from tribolab.campaign.store import CATALOGUE, Store
 from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
-from tribolab.campaign.surfaces import SurfaceTask, known_surface, process_surface, sources_of
+from tribolab.campaign.surfaces import Surfaces, SurfaceTask, process_surface
 from tribolab.cli import app
 from tribolab.contact.adhesion import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width
@@ -27,8 +28,8 @@ from tribolab.contact.persson import contact_area_ratio
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.parts import RunOutcome
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS, surface_rows
-from tribolab.report.page import render
+from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.report.page import write_page
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, rms_slope
@@ -84,9 +85,12 @@ def planned(files, **changes):
 
 
 def processed(folder, files, **changes):
+    return recorded(folder, files, **changes).outcome
+
+
+def recorded(folder, files, **changes):
     (folder / "data").mkdir(exist_ok=True)
-    record = process_surface(SurfaceTask(planned(files, **changes), folder))
-    return record.outcome
+    return process_surface(SurfaceTask(planned(files, **changes), folder))
 
 
 def said(outcome, severity):
@@ -174,7 +178,7 @@ def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_pat
     np.testing.assert_allclose(found.contact_width[0], widths, rtol=1e-9)
 
 
-def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome):
+def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome, tmp_path):
     report = json.loads((outcome.folder / "report.json").read_text())
     jsonschema.validate(report, json.loads(SCHEMA.read_text()))
     assert [surface["name"] for surface in report["surfaces"]] == ["Sb-R"]
@@ -192,8 +196,10 @@ def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome):
     assert all((outcome.folder / f["file"]).is_file() for f in report["surface_figures"])
     page = (outcome.folder / "report.html").read_text()
     assert 'id="surfaces"' in page and "Contact with adhesion" in page
+    (tmp_path / "figures").symlink_to(outcome.folder / "figures")
     bare = report | {"surfaces": [], "surface_figures": []}
-    assert "names no <code>[[surface]]</code>" in render(bare, outcome.folder)
+    page = write_page(bare, tmp_path, lambda: iter(report["runs"]), outcome.store).read_text()
+    assert "names no <code>[[surface]]</code>" in page
 
 
 def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_path):
@@ -202,13 +208,13 @@ def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_pa
     assert again.surfaces[0].reused and again.surfaces[0].parts == outcome.surfaces[0].parts
     assert again.sources == outcome.sources
 
-    loaded = load_campaign(mine)
-    data = outcome.folder / "data/surface_Sb-R.nc"
-
     def known():
-        [surface] = plan_surfaces(load_campaign(mine), outcome.runs)
-        found = known_surface(data, surface)
-        return found is not None and found[0] == sources_of(surface)
+        store = Store(tmp_path, again.folder)
+        stage = Surfaces(load_campaign(mine), again.runs, store)
+        [task] = stage.plan()
+        found = stage.known(task, 0)
+        store.close()
+        return found is not None
 
     assert known()
     text = mine.read_text()
@@ -216,7 +222,7 @@ def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_pa
     assert not known()
     mine.write_text(text)
     assert known()
-    [scan] = loaded.raw.glob("profiles/*.csv")
+    [scan] = load_campaign(mine).raw.glob("profiles/*.csv")
     scan.write_text(scan.read_text().replace(",0.", ",0.1", 1))
     assert not known()
 
@@ -292,21 +298,21 @@ def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):
 
 
 def test_without_contact_there_is_a_spectrum_only(tmp_path, profiles):
-    surface = processed(tmp_path, profiles[:1], contact=NOTHING_KNOWN, lowest_force=None)
+    record = recorded(tmp_path, profiles[:1], contact=NOTHING_KNOWN, lowest_force=None)
+    surface, rows = record.outcome, record.rows
     assert surface.parts == ("scans", "psd_1d", "psd", "roughness")
     assert any("youngs_modulus" in message for message in said(surface, "note"))
     assert any("begins where the scans do" in message for message in said(surface, "note"))
-    rows = surface_rows(surface, tmp_path)
-    assert rows.contact == rows.adhesion == [] and rows.roughness["rms_slope"] > 0.5
+    assert rows.contact == rows.adhesion == () and rows.roughness["rms_slope"] > 0.5
 
 
 def test_without_loads_contact_is_known_over_pressure_only(tmp_path, profiles):
     medium = PlannedMedium("dry", 0.064, 0.064, 0.064)
-    surface = processed(tmp_path, profiles[:1], forces=(), lowest_force=None, media=(medium,))
+    record = recorded(tmp_path, profiles[:1], forces=(), lowest_force=None, media=(medium,))
+    surface, rows = record.outcome, record.rows
     assert set(surface.parts) == {
         *("scans", "psd_1d", "psd", "roughness", "contact", "adhesion", "adhesion_loads")
     }
-    rows = surface_rows(surface, tmp_path)
     assert len(rows.contact) == 31 and rows.contact[0]["normal_force_N"] is None
     [row] = rows.adhesion
     assert row["pull_off"] == 0 and row["contact_area_ratio"] is None
@@ -349,14 +355,22 @@ def test_bounds_that_do_not_decide_the_pull_off_are_told(tmp_path, profiles):
 
 
 def test_damaged_results_are_not_taken_over(tmp_path, profiles):
-    surface = processed(tmp_path, profiles[:1], contact=NOTHING_KNOWN)
-    plan = planned(profiles[:1], contact=NOTHING_KNOWN)
+    surface = planned(profiles[:1], contact=NOTHING_KNOWN)
     file = tmp_path / surface.data_file
-    assert known_surface(file, plan)[1] == replace(surface, reused=True, seconds=0.0)
-    assert known_surface(file, replace(plan, config_sha256="another")) is None
-    file.write_bytes(file.read_bytes()[:500])
-    assert known_surface(file, plan) is None
-    assert known_surface(tmp_path / "nowhere.nc", plan) is None
+
+    def torn():
+        file.write_bytes(file.read_bytes()[:500])
+        return surface
+
+    def looked_for(change=None):
+        return made_and_taken_over(tmp_path, surface, change)
+
+    first, again = looked_for()
+    assert again == replace(first, outcome=replace(first.outcome, reused=True))
+    assert looked_for(lambda: replace(surface, config_sha256="another"))[1] is None
+    assert looked_for(torn)[1] is None
+    assert looked_for(lambda: file.unlink() or surface)[1] is None
+    assert looked_for(lambda: (tmp_path / CATALOGUE).write_bytes(b"torn") and surface)[1] is None
 
 
 # the campaign file

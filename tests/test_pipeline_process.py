@@ -17,14 +17,14 @@ from campaigns import RUNS, copied, fingerprint, simulated
 
 import tribolab
 import tribolab as tl
-from tribolab.app.run import FINGERPRINT, _is_complete
-from tribolab.campaign import pipeline, work
+from tribolab.campaign import runs
 from tribolab.campaign.executor import WorkerDied, workers
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
-from tribolab.campaign.staging import staged
+from tribolab.campaign.plan import planned_runs
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.records.traces import trace_size
 from tribolab.rig import read_truth
 
 
@@ -149,11 +149,11 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     def broken(run):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr(work, "_analyse", broken)
+    monkeypatch.setattr(runs, "_analyse", broken)
     outcome = process(load_campaign(campaign), tmp_path)
     assert outcome.curves == ()
     assert outcome.runs[0].error == "ZeroDivisionError"
-    assert outcome.runs[0].reason.startswith("crashed with ZeroDivisionError at work.py:")
+    assert outcome.runs[0].reason.startswith("crashed with ZeroDivisionError at runs.py:")
 
 
 def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
@@ -169,17 +169,6 @@ def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
     ]
     assert outcome.curves == done.curves
     assert outcome.sources == done.sources
-
-
-def test_results_that_lack_a_curve_made_now_are_not_complete(done, tmp_path):
-    assert done.curves and all(curve.done for curve in done.curves)
-    for names in ([], [curve.data_file for curve in done.curves]):
-        with staged(tmp_path / "results") as folder:
-            (folder / FINGERPRINT).write_text("the same")
-            for name in names:
-                (folder / name).parent.mkdir(exist_ok=True)
-                (folder / name).write_text("a curve")
-        assert _is_complete(tmp_path / "results", "the same", done) == bool(names)
 
 
 @pytest.mark.slow
@@ -345,10 +334,10 @@ def test_a_script_without_its_guard_is_told_so_and_harms_nothing(campaign, tmp_p
 
 def test_a_worker_hands_back_a_record_not_signals(original, tmp_path):
     (tmp_path / "data").mkdir()
-    run = pipeline.plan(load_campaign(original)).runs[0]
-    record = work.process_run(work.RunTask(run, tmp_path))
-    assert (tmp_path / record.outcome.data_file).stat().st_size > 50_000
-    assert len(pickle.dumps(record)) < 2_000
+    run = planned_runs(load_campaign(original))[0]
+    answer = runs.process_run(runs.RunTask(run, tmp_path, *trace_size(10_000)))
+    assert (tmp_path / answer.record.outcome.data_file).stat().st_size > 50_000
+    assert len(pickle.dumps(answer)) < 50_000
 
 
 def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, monkeypatch):

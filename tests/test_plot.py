@@ -16,10 +16,11 @@ from reporting import SPEEDS, made_curve, made_run
 import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
+from tribolab.io.netcdf import write_netcdf
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import DOUBLE_MM, SINGLE_MM, surface_styles
 from tribolab.quantities import stamp
-from tribolab.report.sliding_figures import _marked
+from tribolab.report.sliding_figures import Shown, SlipFigure, draw_sliding
 
 
 @pytest.fixture(scope="module")
@@ -332,12 +333,20 @@ def test_long_names_beside_stick_slip_stay_on_the_paper():
             assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
 
 
-def test_the_caption_of_spectra_names_only_what_is_marked():
+def test_the_caption_of_spectra_names_only_what_is_marked(tmp_path):
     run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     slip = tl.stick_slip(run, tl.find_segments(run))
     calm = slip.assign(dominant_frequency=slip.dominant_frequency * np.nan)
-    assert "Blue: the strongest oscillation." in _marked([("dry", slip, 0)])
-    assert "Blue" not in _marked([("dry", calm, 0)]) and "mains" not in _marked([("dry", calm, 0)])
+
+    def caption(slip, name):
+        write_netcdf(slip, tmp_path / name, group="stick_slip")
+        shown = (Shown("dry", name, 0),)
+        return draw_sliding(
+            SlipFigure("spectra", "s", "Spectra", "Of", (), shown), tmp_path
+        ).caption
+
+    assert "Blue: the strongest oscillation." in caption(slip, "sawn.nc")
+    assert "Blue" not in caption(calm, "calm.nc") and "mains" not in caption(calm, "quiet.nc")
 
 
 @pytest.mark.parametrize("ending", ["pdf", "ps"])

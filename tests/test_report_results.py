@@ -14,17 +14,18 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from reporting import made_curve, made_outcome, made_run, write_groups
+from reporting import made_curve, made_outcome, made_run, with_run, without_curves
 
 import tribolab
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.records.packed import clock_of, packed_points
-from tribolab.records.run_facts import RunTask, stick_slip_of, summarise_run
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.run_facts import Waveform, stick_slip_of
+from tribolab.records.run_record import RunRecord
 from tribolab.records.traces import as_text, finer_trace, flagged_spans, trace
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.results import write_report
-from tribolab.report.tables import checks_table
 
 SCHEMA = json.loads(
     (Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json").read_text()
@@ -161,8 +162,8 @@ def test_highlights_are_means_over_the_strokes_at_a_speed(outcome, report):
 
 
 def test_every_figure_named_is_there_and_described_with_numbers(outcome, report):
-    figures = report["figures"] + [f for run in report["runs"] for f in run["figures"]]
-    assert len(figures) == 2 * 5 + 3 + 1  # per run, per surface, Sb-R with Sb-S at 31 N
+    figures = report["figures"]
+    assert len(figures) == 3 + 1  # per surface, Sb-R with Sb-S at 31 N
     on_disk = {f"figures/{path.name}" for path in (outcome.folder / "figures").iterdir()}
     every = figures + report["sliding_figures"]
     assert {figure[kind] for figure in every for kind in ("file", "data")} == on_disk
@@ -178,7 +179,7 @@ def test_report_is_the_same_in_processes_threads_and_here(tmp_path):
     def written(executor=None):
         calls = []
         write_report(made, executor=executor, progress=lambda *call: calls.append(call))
-        assert calls[-1] == ("page", 1, 1) and ("figures", 2, 2) in calls
+        assert calls[-1] == ("page", 1, 1) and calls[-2] == ("figures", 5, 5)
         lines = (made.folder / "report.json").read_text().splitlines()
         figures = {p.name: p.read_bytes() for p in (made.folder / "figures").iterdir()}
         return [line for line in lines if "made_at" not in line], figures
@@ -222,11 +223,7 @@ def test_empty_campaign_still_has_a_report(tmp_path):
 
 def _one(tmp_path, change):
     made = made_outcome(tmp_path / "one", [("only", "Sb-R", "glycerol", 31.0, 0.8)])
-    path = made.folder / made.runs[0].data_file
-    parts = change(*made_run())
-    path.unlink()
-    write_groups(path, *parts)
-    return made
+    return with_run(made, 0, change(*made_run()))
 
 
 def test_run_without_segments_is_suspect_and_has_a_trace(tmp_path):
@@ -239,7 +236,7 @@ def test_run_without_segments_is_suspect_and_has_a_trace(tmp_path):
     report = json.loads((made.folder / "report.json").read_text())
     valid(report)
     assert report["findings"][0]["severity"] == "suspect"
-    assert [figure["kind"] for figure in report["runs"][0]["figures"]] == ["trace"]
+    assert '<figure class="chart" data-key="run0">' in (made.folder / "report.html").read_text()
     assert report["runs"][0]["sliding_speed_min_m_s"] is None
 
 
@@ -250,7 +247,7 @@ def test_the_table_of_runs_says_which_stick_slip_at_how_many_speeds(tmp_path, re
         run["friction_force"] += (saw * np.sign(run["sliding_velocity"])).where(inside, 0.0)
         return run, segments, friction
 
-    made = replace(_one(tmp_path, sawing), curves=())
+    made = without_curves(_one(tmp_path, sawing))
     write_report(made)
     sawn = json.loads((made.folder / "report.json").read_text())
     valid(sawn)
@@ -270,7 +267,7 @@ def test_the_part_of_the_track_that_counts_is_told(tmp_path):
         segments.attrs |= {"position_low_m": 0.005, "position_high_m": 0.032}
         return run, segments, friction
 
-    made = replace(_one(tmp_path, part), curves=())
+    made = without_curves(_one(tmp_path, part))
     write_report(made)
     report = json.loads((made.folder / "report.json").read_text())
     valid(report)
@@ -279,31 +276,40 @@ def test_the_part_of_the_track_that_counts_is_told(tmp_path):
     assert "5 to 32 mm; the rest of each stroke" in (made.folder / "report.html").read_text()
 
 
-def test_every_check_of_every_run_stands_in_a_table():
+def test_every_check_of_every_run_stands_in_a_table(tmp_path, outcome):
     rows = [
         {"check": "spikes", "variable": "friction_force", "status": "pass", "value": 0.0,
-         "unit": "1", "message": "none"},
+         "unit": "1", "message": "none", "cure": ""},
         {"check": "load", "variable": "", "status": "skipped", "value": None, "unit": "",
-         "message": "no set-point"},
+         "message": "no set-point", "cure": ""},
     ]  # fmt: skip
-    table = checks_table({"one": rows, "two": rows[:1]})
-    assert table["run"].tolist() == ["one", "one", "two"]
-    assert table["status"].tolist() == ["pass", "skipped", "pass"]
-    assert list(checks_table({}).columns)[:3] == ["run", "check", "variable"]
+    runs = [("one", "", "dry", 31.0, 0.8), ("two", "", "dry", 31.0, 0.8)]
+    made = made_outcome(tmp_path, runs, speeds=[1e-2], samples=50)
+    for index, findings in ((0, rows), (1, rows[:1])):
+        run, segments, friction = made_run([1e-2], samples=50)
+        run.attrs["findings"] = findings
+        made = with_run(made, index, (run, segments, friction))
+    write_report(made, figures="none")
+    checks = table(made, "checks")
+    assert checks["run"].tolist() == ["one", "one", "two"]
+    assert checks["status"].tolist() == ["pass", "skipped", "pass"]
+    names = ["run", "check", "variable", "status", "value", "unit", "message"]
+    for one in (checks, table(outcome, "checks")):  # also where no check said anything
+        assert list(one.columns) == names
 
 
 def test_a_run_without_speeds_counts_segments_and_one_too_short_is_not_evaluated():
     saw = "sawtooth stick-slip"
     slip = made_slip(["smooth sliding", saw, saw, "not evaluated"], [np.nan] * 4)
-    assert stick_slip_of(slip) == {"class": saw, "detail": "in 2 of 3 segments"}
+    assert stick_slip_of(slip) == Waveform(saw, "in 2 of 3 segments")
     still = made_slip(["smooth sliding"] * 3, [np.nan] * 3)
-    assert stick_slip_of(still)["detail"] == "if it slides: speed not known"
+    assert stick_slip_of(still).detail == "if it slides: speed not known"
     slip = made_slip([saw] * 3, [1e-6, 2e-6, 4e-6])
-    assert stick_slip_of(slip) == {"class": saw, "detail": "at 3 of 3 speeds"}
+    assert stick_slip_of(slip) == Waveform(saw, "at 3 of 3 speeds")
     slip = made_slip(["not decided"] * 2 + ["smooth sliding"], [1e-6, 2e-6, 4e-6])
-    assert stick_slip_of(slip) == {"class": "not decided", "detail": "at 2 of 3 speeds"}
+    assert stick_slip_of(slip) == Waveform("not decided", "at 2 of 3 speeds")
     slip = made_slip(["not evaluated"], [1e-6])
-    assert stick_slip_of(slip) == {"class": "not evaluated", "detail": ""}
+    assert stick_slip_of(slip) == Waveform("not evaluated", "")
 
 
 def made_slip(kinds, speeds):
@@ -319,7 +325,7 @@ def test_run_without_load_is_told_by_its_half_loops(tmp_path):
         gone = [name for name in friction.data_vars if "coefficient" in name]
         return run.drop_vars("normal_force"), segments, friction.drop_vars([*gone, "normal_force"])
 
-    made = replace(_one(tmp_path, no_load), curves=())
+    made = without_curves(_one(tmp_path, no_load))
     write_report(made)
     report = json.loads((made.folder / "report.json").read_text())
     valid(report)
@@ -327,7 +333,8 @@ def test_run_without_load_is_told_by_its_half_loops(tmp_path):
     assert run["quantity"] == "half_loop"
     assert run["value_min"] == pytest.approx(0.8 * 31, rel=0.02)
     assert "half loop from 24" in report["verdict"]["text"]
-    assert {figure["kind"] for figure in run["figures"]} == {"trace", "strokes", "half_loop"}
+    [shown] = json.loads(made.store.trace("run", "only").coarse)["signals"][:1]
+    assert (shown["name"], shown["unit"]) == ("friction_force", "N")
 
 
 def test_unknown_speeds_are_null_and_averaged_over_all(tmp_path):
@@ -337,12 +344,8 @@ def test_unknown_speeds_are_null_and_averaged_over_all(tmp_path):
         return run, segments.assign(sliding_speed=nan), friction.assign(sliding_speed=nan)
 
     made = _one(tmp_path, speedless)
-    task = RunTask(made.runs[0], made.folder)
-    (made.folder / "figures").mkdir()
-    facts = summarise_run(task).facts
-    assert [mark["where"] for mark in facts["highlights"]] == ["all"]
-    assert facts["highlights"][0]["sliding_speed_m_s"] is None
-    assert facts["highlights"][0]["segments"] == 6
+    [mark] = made.store.get("run", "only", RunRecord).record.facts.highlights
+    assert (mark.where, mark.sliding_speed_m_s, mark.segments) == ("all", None, 6)
 
 
 def test_drifting_and_backward_friction_is_said(tmp_path):
@@ -394,17 +397,21 @@ def test_a_broken_data_file_costs_only_its_own_place(tmp_path):
         [("good", "Sb-R", "glycerol", 31.0, 0.8), ("torn", "Sb-R", "glycerol", 31.0, 0.8)],
         samples=60,
     )
-    (made.folder / made.runs[1].data_file).write_bytes(b"CDF torn")
+    (made.folder / made.curves[0].data_file).write_bytes(b"CDF torn")
     write_report(made)
     report = json.loads((made.folder / "report.json").read_text())
     valid(report)
-    assert report["findings"][0]["severity"] == "error" and report["findings"][0]["run"] == "torn"
-    assert [len(run["segments"]) for run in report["runs"]] == [6, 0]
+    torn = [one for one in report["findings"] if one["severity"] == "error"]
+    assert [one["where"].split()[0] for one in torn] == ["stick-slip", "figure"]
+    # what is recorded is shown all the same
+    assert [len(run["segments"]) for run in report["runs"]] == [6, 6]
+    assert len(report["curves"]) == 1 and report["sliding_figures"]
 
 
 def test_a_curve_that_failed_is_a_finding(tmp_path):
     made = made_outcome(tmp_path / "c", [("one", "Sb-R", "glycerol", 31.0, 0.8)])
     failed = replace(made.curves[0], status="failed", data_file="", reason="no speed is known")
+    made.store.put("curve", failed.name, 0, "", CurveRecord(failed))
     write_report(replace(made, curves=(failed,)))
     findings = table(made, "findings")
     assert findings.message.iloc[0] == "no measured curve: no speed is known"
@@ -415,15 +422,14 @@ def test_curves_beyond_nine_go_to_further_figures(tmp_path):
     from tribolab.records.parts import CurveOutcome
     from tribolab.report.curve_figures import draw_curves, plan_figures
 
-    (tmp_path / "figures").mkdir()
     curves = []
     for number in range(11):
         file, load = f"{number}.nc", 1.0 + number
         write_netcdf(made_curve(load=load), tmp_path / file)
         curves.append(CurveOutcome(f"c{number}", "Sb-R", "dry", load, file, ("r",)))
-    planned = plan_figures(curves, tmp_path)
+    planned = plan_figures(curves)
     assert [len(figure.curves) for figure in planned] == [9, 2]
-    assert "9 measured curves" in draw_curves(planned[0])["alt"]
+    assert "9 measured curves" in draw_curves(planned[0], tmp_path).alt
     assert len({figure.file for figure in planned}) == 2
 
 
@@ -500,7 +506,7 @@ def test_flagged_spans_say_where_why_and_how_gravely():
     flags[100:103], flags[400] = 3, 4
     run = attach(run, "friction_force", {"spikes": flags}, {"spikes": 14})
     spans = flagged_spans(run)
-    kinds = [(s["severity"], s["checks"]) for s in spans]
-    assert kinds == [("suspect", ["spikes"]), ("fail", ["spikes"])]
-    assert spans[0]["start_s"] == pytest.approx(float(run.time[100]))
-    assert spans[0]["stop_s"] == pytest.approx(float(run.time[102]))
+    kinds = [(span.severity, span.checks) for span in spans]
+    assert kinds == [("suspect", ("spikes",)), ("fail", ("spikes",))]
+    assert spans[0].start_s == pytest.approx(float(run.time[100]))
+    assert spans[0].stop_s == pytest.approx(float(run.time[102]))

@@ -84,7 +84,7 @@ def run_demo(
 def _write(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
     """Compare, and write ``truth*.csv`` and ``paper.csv``."""
     runs, surfaces = write_truth(outcome, folder), write_truth_surfaces(outcome, folder)
-    tables.write(paper, _paper_file(outcome), digits=6)
+    tables.write_csv(paper, _paper_file(outcome), digits=6)
     stresses = write_truth_shear_stress(outcome, folder)
     return DemoComparison(folder, runs, surfaces, stresses, paper)
 

@@ -87,6 +87,7 @@ def process(
         part.unlink()
     sources = [source for run in came for source in run.sources]
     sources += [source for surface in surfaces for source in surface.sources]
+    store.save()
     return Outcome(
         campaign=campaign,
         folder=staging,

@@ -35,7 +35,7 @@ CREATE TABLE part (
   kind TEXT, name TEXT, place INTEGER, fingerprint TEXT, outcome TEXT, record BLOB,
   coarse TEXT, fine TEXT, size INTEGER, modified INTEGER, PRIMARY KEY (kind, name)
 );
-CREATE TABLE file (path TEXT PRIMARY KEY, size INTEGER, modified INTEGER, inode INTEGER,
+CREATE TABLE file (path BLOB PRIMARY KEY, size INTEGER, modified INTEGER, inode INTEGER,
   sha256 TEXT);
 CREATE TABLE fact (name TEXT PRIMARY KEY, value TEXT);
 """
@@ -102,7 +102,7 @@ class Catalogue:
     def files(self) -> dict[str, Identity]:
         """Return the identity of every file that was read."""
         rows = self._rows("SELECT path, size, modified, inode, sha256 FROM file", ())
-        return {path: Identity(*facts) for path, *facts in rows}
+        return {os.fsdecode(path): Identity(*facts) for path, *facts in rows}
 
     def fact(self, name: str) -> str:
         """Return a fact about the results as a whole; "" if it is not known."""
@@ -259,11 +259,18 @@ class Store(Catalogue):
         """Write down a fact about the results as a whole."""
         self._new.execute("INSERT OR REPLACE INTO fact VALUES (?,?)", (name, value))
 
-    def close(self) -> None:
-        """Write everything to the disk."""
-        rows = [(path, *identity) for path, identity in self._seen.items()]
+    def save(self) -> None:
+        """Write everything to the disk, so that others may read it; more may be written then."""
+        # a name may have any bytes, which a text of SQLite may not
+        rows = [(os.fsencode(path), *identity) for path, identity in self._seen.items()]
         self._new.executemany("INSERT OR REPLACE INTO file VALUES (?,?,?,?,?)", rows)
         self.say("format", _FORMAT)
+        self._new.execute("COMMIT")
+        self._new.execute("BEGIN")
+
+    def close(self) -> None:
+        """Write everything to the disk, and nothing more."""
+        self.save()
         self._new.execute("COMMIT")
         super().close()
         self.before.close()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import Drawn
+from tribolab.report.figure_files import Drawn as Picture
 from tribolab.report.figure_files import save_figure
 
 COMPUTED, SIMULATED = "computed here", "simulated"
@@ -267,7 +268,9 @@ def draw(task: DrawTask) -> dict[str, Any]:
         figure, said = known.draw(task.data)
         alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
         caption = f"{known.caption} {said}" if known.told else known.caption
-        record = save_figure(figure, task.data.folder, known.file, caption, alt)
+        drawn = Picture(figure, caption, alt, known.section)
+        record = asdict(save_figure(drawn, task.data.folder, known.file))
+    del record["kind"]  # it stands in a section
     return record | {
         "name": known.name,
         "section": known.section,

@@ -124,6 +124,7 @@ def write_report(
     }
     write_json(document, _documents(outcome), folder / "report.json")
     write_page(document | {"runs": briefs}, folder, lambda: _documents(outcome), store)
+    store.save()
     tell("page", 1, 1)
 
 
