@@ -100,7 +100,9 @@ def write_csv(path: Path, rows: int) -> None:
     begins = np.r_[0.0, ends[:-1]]
     places = np.r_[0.0, np.cumsum(speed * (ends - begins))]
     with path.open("wb") as file:
-        file.write(b"# Linear slider at 10 kHz\nTime [s],Fx [N],Fz [N],Position [mm],Velocity [mm/s]\n")
+        file.write(
+            b"# Linear slider at 10 kHz\nTime [s],Fx [N],Fz [N],Position [mm],Velocity [mm/s]\n"
+        )
         for start in range(0, rows, _BLOCK):
             time = np.arange(start, min(start + _BLOCK, rows)) / _RATE
             piece = np.minimum(np.searchsorted(ends, time, side="right"), ends.size - 1)

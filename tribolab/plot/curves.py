@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.frame import few_ticks, legend_above
+from tribolab.plot.decades import few_ticks
+from tribolab.plot.frame import legend_above
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     GREY,

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from tribolab.plot.decades import few_ticks
 from tribolab.plot.labels import plain
 from tribolab.plot.style import (
     GREY,
@@ -19,8 +18,6 @@ from tribolab.plot.style import (
     new_figure,
     surface_styles,
 )
-
-_MANY = 1e4
 
 
 def single_axes() -> tuple[PaperFigure, Axes]:
@@ -34,18 +31,6 @@ def logarithmic(axes: Axes, *names: str) -> None:
     for name in names:
         getattr(axes, f"set_{name}scale")("log")
         few_ticks(getattr(axes, f"{name}axis"), *getattr(axes.dataLim, f"interval{name}"))
-
-
-def few_ticks(axis: Axis, low: float, high: float, decades: int = 8) -> None:
-    """Give a logarithmic axis at most so many decades with a number, and ticks between them.
-
-    Over many decades the ticks at 2 to 9 would be a black bar, and slow to draw: then there is one
-    per decade.
-    """
-    axis.set_major_locator(LogLocator(numticks=decades))
-    subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
-    axis.set_minor_locator(LogLocator(subs=subs, numticks=90))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str]:

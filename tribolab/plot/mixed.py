@@ -11,9 +11,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from tribolab.plot.decades import few_ticks
 from tribolab.plot.frame import (
     colours,
-    few_ticks,
     legend_above,
     logarithmic,
     shaded_band,

@@ -1,0 +1,95 @@
+"""How long each kind of publication figure takes to draw and to save as SVG.
+
+Usage: python tests/benchmarks/bench_figures.py [CAMPAIGN.toml] [repeats] [FOLDER]
+
+Makes the report of a campaign in this process and draws each of its figures so often (default 3);
+what was analysed before is taken from the results that lie beside the campaign file. Without a
+campaign, a small one is simulated and analysed first (a minute). Prints CPU milliseconds, the least
+of the repeats, of the slowest figure of each kind. With FOLDER, the figures are kept there as PNG,
+to be looked at.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tribolab import plot, rig
+from tribolab.app.run import FINGERPRINT, run_campaign
+
+_NO_FIGURES = {"Trace", "envelope", "figure_data", "paper_style", "save", "svg"}
+_OF_RUNS = {"strokes", "trace"}
+
+
+class Stopwatch:
+    """Stands before the functions of `tribolab.plot` and takes their times."""
+
+    def __init__(self, repeats: int, pictures: Path | None) -> None:
+        self.repeats, self.pictures = repeats, pictures
+        self.times: dict[str, list[tuple[float, float]]] = {}
+        self.drawn: tuple[str, Callable[[], Any]] | None = None
+        self.save = plot.save
+
+    def stand_before(self, name: str) -> None:
+        """Remember each call of a function, to draw the figure again."""
+        draw = getattr(plot, name)
+
+        def drawn(*args: Any, **more: Any) -> Any:
+            self.drawn = name, lambda: draw(*args, **more)
+            return draw(*args, **more)
+
+        setattr(plot, name, drawn)
+
+    def saved(self, figure: Any, path: str | Path) -> Path:
+        """Draw and save the figure that was drawn last, several times."""
+        if self.drawn is None or self.drawn[0] in _OF_RUNS:
+            return self.save(figure, path)
+        name, draw = self.drawn
+        spent = []
+        for _ in range(self.repeats):
+            begin = time.process_time()
+            figure = draw()
+            between = time.process_time()
+            self.save(figure, path)
+            spent.append((between - begin, time.process_time() - between))
+        self.times.setdefault(name, []).append(min(spent, key=sum))
+        if self.pictures:
+            self.save(figure, self.pictures / f"{Path(path).stem}.png")
+        return Path(path)
+
+
+def main() -> None:
+    """Print the table."""
+    given = Path(sys.argv[1]) if len(sys.argv) > 1 else None
+    repeats = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    pictures = Path(sys.argv[3]) if len(sys.argv) > 3 else None
+    if pictures:
+        pictures.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        campaign = given or rig.simulate_campaign(scratch / "small", small=True)
+        known, results = campaign.parent / "results", scratch / "results"
+        if known.is_dir():
+            shutil.copytree(known, results)
+            (results / FINGERPRINT).unlink(missing_ok=True)
+        watch = Stopwatch(repeats, pictures)
+        for name in set(plot.__all__) - _NO_FIGURES:
+            watch.stand_before(name)
+        plot.save = watch.saved
+        run_campaign(campaign, output=results, jobs=1)
+    print(f"{'kind':26s} figures   draw   save    both  [ms of CPU]")
+    for name, spent in sorted(watch.times.items(), key=lambda item: -max(map(sum, item[1]))):
+        draw, save = max(spent, key=sum)
+        print(f"{name:26s} {len(spent):7d} {1e3 * draw:6.0f} {1e3 * save:6.0f} "
+              f"{1e3 * (draw + save):7.0f}")  # fmt: skip
+    every = [sum(one) for spent in watch.times.values() for one in spent]
+    print(f"{'all':26s} {len(every):7d} mean {1e3 * sum(every) / len(every):21.0f}")
+
+
+if __name__ == "__main__":
+    main()
