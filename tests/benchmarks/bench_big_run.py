@@ -11,6 +11,7 @@ file beside that of the csv.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -25,6 +26,7 @@ _STROKE = 0.02  # m
 _REST = 0.02  # of a stroke's duration, at each end
 _STEP = 0.0153  # N, of the converter
 _BLOCK = 1_000_000
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # as in a worker
 _DIALECT = """
 name = "bench"
 title = "Linear slider at 10 kHz"
@@ -133,8 +135,9 @@ def main() -> None:
         if not raw.exists():
             write_csv(raw, rows)
         print(f"{rows:.0e} rows, csv {raw.stat().st_size / 1e6:.0f} MB", flush=True)
+        environment = os.environ | _ONE_THREAD
         code = _WORKER.format(folder=str(folder), root=str(Path(__file__).parents[2]))
-        subprocess.run([sys.executable, "-W", "ignore", "-c", code], check=True)
+        subprocess.run([sys.executable, "-W", "ignore", "-c", code], check=True, env=environment)
         print(f"data file {(folder / 'data' / 'big.nc').stat().st_size / 1e6:.0f} MB")
 
 

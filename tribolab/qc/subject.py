@@ -196,7 +196,8 @@ class RunSubject:
             raise Skip(f"{name} was not recorded")
         if "normal_force" not in self.signals:
             raise Skip("no normal force was recorded that would show a rest without load")
-        low = np.abs(self.signals["normal_force"]) < 0.10 * self.typical_normal_force
+        force, light = self.signals["normal_force"], 0.10 * self.typical_normal_force
+        low = (force < light) & (force > -light)
         low &= ~self.in_segments
         edges = np.flatnonzero(np.diff(low.astype(np.int8), prepend=0, append=0))
         parts = [self.signals[name][a:b] for a, b in edges.reshape(-1, 2) if b - a >= 20]

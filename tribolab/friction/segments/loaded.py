@@ -50,7 +50,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     result: list[Stretch] = []
     for stretch in stretches:
         if stretch.kind == "constant":
-            result += _cut(time, force - zero, stretch, least, limits.min_samples)
+            result += _cut(time, force, zero, stretch, least, limits.min_samples)
         else:
             result.append(stretch)
     return result
@@ -69,7 +69,12 @@ def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind:
 
 
 def _cut(
-    time: np.ndarray, force: np.ndarray, stretch: Stretch, least: float, min_samples: int
+    time: np.ndarray,
+    force: np.ndarray,
+    zero: float,
+    stretch: Stretch,
+    least: float,
+    min_samples: int,
 ) -> list[Stretch]:
     """One stretch, cut where its load comes or goes."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
@@ -77,7 +82,8 @@ def _cut(
     if count < 1:
         return [stretch]
     at = first + (last - first) * np.arange(count + 1) // count
-    mean = np.add.reduceat(np.nan_to_num(force[first:last]), at[:-1] - first) / np.diff(at)
+    part = np.nan_to_num(force[first:last] - zero)
+    mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     bare = mean < least
     if not bare.mean() > LOST:
         return [stretch]
