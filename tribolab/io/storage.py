@@ -23,6 +23,8 @@ _LONG = 1024  # values; what is shorter is stored as it is
 _COMPRESSION = 1  # noise does not become smaller by trying harder
 _WORTH = 0.95  # of the bytes; what stays longer is not worth the time that reading it back takes
 _BLOCKS, _BLOCK = 4, 2048  # samples that are tried: how many pieces, how long
+_PIECE = 16 * CHUNK  # samples that are handed to the library at once: it copies them
+_CACHE = 1 << 20  # bytes that the library keeps for a variable; whole chunks need no more
 # What xarray understands as an order rather than as a note.
 _ORDERS = {"_FillValue", "missing_value", "scale_factor", "add_offset", "coordinates", "dtype"}
 _ORDERS |= {"_Unsigned", "_Encoding"}
@@ -53,7 +55,11 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
             left[name] = data
     for target, values in waiting:
         target.set_auto_maskandscale(False)
-        target[...] = values
+        if values.ndim == 1:
+            for start in range(0, values.size, _PIECE):
+                target[start : start + _PIECE] = values[start : start + _PIECE]
+        else:
+            target[...] = values
     for name, data in left.items():
         _by_xarray(file, name, data)
 
@@ -69,7 +75,9 @@ def _define(target: netCDF4.Dataset, data: xr.Dataset) -> list[tuple[netCDF4.Var
         if values.dtype.kind in "UO":
             values = values.astype(object)
         kind = str if values.dtype.kind == "O" else values.dtype.newbyteorder("=")
-        stored = target.createVariable(name, kind, variable.dims, **storage(values))
+        stored = target.createVariable(
+            name, kind, variable.dims, chunk_cache=_CACHE, **storage(values)
+        )
         stored.setncatts(encoded(variable.attrs))
         if values.size:
             waiting.append((stored, values))

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
+from matplotlib import textpath
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType  # newer than the oldest matplotlib that will do
@@ -284,6 +286,23 @@ def _smaller(text: str) -> str:
     return text
 
 
+_FORMULAS = MathTextParser("path")
+
+
+@contextlib.contextmanager
+def _formulas_set_once() -> Iterator[None]:
+    """Set the formula of a label once, not once in every figure.
+
+    Every renderer has a parser of its own, whose memory goes with it.
+    """
+    own = textpath.MathTextParser
+    textpath.MathTextParser = lambda output: _FORMULAS
+    try:
+        yield
+    finally:
+        textpath.MathTextParser = own
+
+
 def svg(figure: Figure) -> str:
     """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
 
@@ -300,7 +319,7 @@ def svg(figure: Figure) -> str:
     True
     """
     buffer = io.StringIO()
-    with paper_style():
+    with paper_style(), _formulas_set_once():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
     return _smaller(buffer.getvalue())
 

@@ -48,7 +48,8 @@ def noise_level(values: np.ndarray) -> float:
 
 
 def _known(values: np.ndarray) -> np.ndarray:
-    """Values that are numbers; the array itself if all are."""
+    """Values that are numbers, in a row; no copy is made if all are."""
+    values = values.reshape(-1)
     if not np.isnan(values.sum()):  # one number says whether anything is missing
         return values
     return values[~np.isnan(values)]
