@@ -21,8 +21,8 @@ _MANY = 1e4
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def few_ticks(axis: Axis, low: float, high: float, decades: int = 8) -> None:
-    """Give a logarithmic axis at most so many decades with a number, and ticks between them.
+def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: bool = True) -> None:
+    """Give a logarithmic axis at most so many decades with a number, and `small` ticks between.
 
     Over many decades the ticks at 2 to 9 would be a black bar, and slow to draw: then there is one
     per decade.
@@ -32,7 +32,8 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8) -> None:
     axis.set_minor_locator(NullLocator())
     axis.set_minor_formatter(NullFormatter())
     subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
-    axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))
+    if small:
+        axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))
 
 
 def power_of_ten(value: float, place: int | None = None) -> str:

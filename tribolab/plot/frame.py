@@ -26,11 +26,22 @@ def single_axes() -> tuple[PaperFigure, Axes]:
     return figure, figure.add_subplot()
 
 
-def logarithmic(axes: Axes, *names: str) -> None:
-    """Make axes (``"x"``, ``"y"``) logarithmic, with ticks that stay few over many decades."""
+def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:
+    """Make axes (``"x"``, ``"y"``) logarithmic, with ticks that stay few over many decades.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    *names
+        Which of its axes.
+    small
+        Whether there are ticks between those with a number.
+    """
     for name in names:
         getattr(axes, f"set_{name}scale")("log")
-        few_ticks(getattr(axes, f"{name}axis"), *getattr(axes.dataLim, f"interval{name}"))
+        interval = getattr(axes.dataLim, f"interval{name}")
+        few_ticks(getattr(axes, f"{name}axis"), *interval, small=small)
 
 
 def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str]:

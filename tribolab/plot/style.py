@@ -38,6 +38,7 @@ _RC: dict[RcKeyType, Any] = {
     "font.size": 7.5,
     "axes.labelsize": 8,
     "axes.titlesize": 8,
+    "axes.titley": 1.0,  # else the ticks above the frame are measured to keep clear of them
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,

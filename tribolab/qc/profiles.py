@@ -113,7 +113,7 @@ def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
     A profile that is quantised coarsely reaches its outermost height in a row by chance; as many
     points on the next level below tell it from one that is cut off.
     """
-    flags = signals.saturation(height, excess=3.0, fewest=fewest)
+    flags = signals.saturation(height, excess=3.0, fewest=fewest).copy()
     for end in (np.nanmax(height, initial=-np.inf), np.nanmin(height, initial=np.inf)):
         at_end = height == end
         if longest_run(at_end) < fewest:
