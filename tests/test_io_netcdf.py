@@ -74,7 +74,7 @@ def test_values_types_flags_and_attributes_come_back_the_same(tmp_path):
     assert back.attrs["sure"] is True and back.attrs["nothing"] is None
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=40)
 @given(ATTRIBUTES)
 def test_any_attribute_comes_back_the_same(tmp_path_factory, attrs):
     file = tmp_path_factory.mktemp("nc") / "a.nc"

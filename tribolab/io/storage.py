@@ -90,8 +90,8 @@ def _common(name: str, variable: xr.Variable) -> bool:
         return False
     if not _ORDERS.isdisjoint(variable.attrs):
         return False
-    if variable.dtype.kind == "O":
-        return all(isinstance(value, str) for value in variable.values.flat)
+    if variable.dtype.kind == "O":  # of what an empty one holds xarray has an opinion of its own
+        return variable.size > 0 and all(isinstance(value, str) for value in variable.values.flat)
     return variable.dtype.kind in "fiuU"
 
 
