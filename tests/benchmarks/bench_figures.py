@@ -1,17 +1,15 @@
 """How long each kind of publication figure takes to draw and to save as SVG.
 
-Usage: python tests/benchmarks/bench_figures.py [CAMPAIGN.toml] [repeats] [FOLDER]
+Usage: python tests/benchmarks/bench_figures.py [FOLDER] [repeats] [PICTURES]
 
-Makes the report of a campaign in this process and draws each of its figures so often (default 3);
-what was analysed before is taken from the results that lie beside the campaign file. Without a
-campaign, a small one is simulated and analysed first (a minute). Prints CPU milliseconds, the least
-of the repeats, of the slowest figure of each kind. With FOLDER, the figures are kept there as PNG,
-to be looked at.
+Analyses a small simulated campaign without figures (in FOLDER if named, where it is found the next
+time: a minute), then has them drawn in this process, each so often (default 3). Prints CPU
+milliseconds, the least of the repeats, of the slowest figure of each kind. With PICTURES, the
+figures are kept in that folder as PNG, to be looked at.
 """
 
 from __future__ import annotations
 
-import shutil
 import sys
 import tempfile
 import time
@@ -20,10 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from tribolab import plot, rig
-from tribolab.app.run import FINGERPRINT, run_campaign
+from tribolab.app.run import run_campaign
 
 _NO_FIGURES = {"Trace", "envelope", "figure_data", "paper_style", "save", "svg"}
-_OF_RUNS = {"strokes", "trace"}
 
 
 class Stopwatch:
@@ -47,7 +44,7 @@ class Stopwatch:
 
     def saved(self, figure: Any, path: str | Path) -> Path:
         """Draw and save the figure that was drawn last, several times."""
-        if self.drawn is None or self.drawn[0] in _OF_RUNS:
+        if self.drawn is None or Path(path).suffix != ".svg":
             return self.save(figure, path)
         name, draw = self.drawn
         spent = []
@@ -70,18 +67,17 @@ def main() -> None:
     pictures = Path(sys.argv[3]) if len(sys.argv) > 3 else None
     if pictures:
         pictures.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        campaign = given or rig.simulate_campaign(scratch / "small", small=True)
-        known, results = campaign.parent / "results", scratch / "results"
-        if known.is_dir():
-            shutil.copytree(known, results)
-            (results / FINGERPRINT).unlink(missing_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = given or Path(scratch)
+        campaign = folder / "small" / "campaign.toml"
+        if not campaign.exists():
+            rig.simulate_campaign(campaign.parent, small=True)
+        run_campaign(campaign, jobs=1, figures="none")
         watch = Stopwatch(repeats, pictures)
         for name in set(plot.__all__) - _NO_FIGURES:
             watch.stand_before(name)
         plot.save = watch.saved
-        run_campaign(campaign, output=results, jobs=1)
+        run_campaign(campaign, jobs=1, figures="all")
     print(f"{'kind':26s} figures   draw   save    both  [ms of CPU]")
     for name, spent in sorted(watch.times.items(), key=lambda item: -max(map(sum, item[1]))):
         draw, save = max(spent, key=sum)
