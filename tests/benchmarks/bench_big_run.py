@@ -54,7 +54,7 @@ import importlib, resource, sys, time
 from pathlib import Path
 sys.path.insert(0, {root!r})
 import netCDF4, pyarrow.csv, scipy.signal, scipy.stats, xarray
-from tribolab.campaign import work
+from tribolab.campaign import runs
 from tribolab.campaign.plan import PlannedRun
 
 def timed(module, name, part):
@@ -78,12 +78,13 @@ timed(friction + "segments.find", "find_segments", "segments")
 timed(friction + "coefficient.coefficient", "friction_coefficient", "coefficient")
 timed(friction + "oscillation.stick_slip", "stick_slip", "stick-slip")
 timed("tribolab.qc.run_checks", "check_run", "checks")
-timed("tribolab.campaign.work", "write_data", "write")
+timed("tribolab.campaign.runs", "write_data", "write")
+timed("tribolab.campaign.runs", "_trace", "trace")
 folder = Path({folder!r})
 run = PlannedRun("big", (folder / "big.csv",), ("big.csv",), "S", "dry", 31.0, None, None,
                  str(folder / "bench.toml"))
 clock, cpu = time.perf_counter(), time.process_time()
-record = work.process_run(work.RunTask(run, folder))
+record = runs.process_run(runs.RunTask(run, folder)).record
 spent = time.process_time() - cpu, time.perf_counter() - clock
 print("%-12s %7.2f s CPU %7.2f s   peak %6.0f MB" % ("all", *spent, peak()))
 outcome = record.outcome
