@@ -109,18 +109,19 @@ def check_run(
     flagged = run
     # what is wrong with the time is wrong with every signal; that the time is right says nothing
     # of a signal's value
-    of_time = [(check, _objections(r.flags)) for check, r in results if _on(r, "time")]
+    of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
     for variable in subject.signals:
         flags: dict[str, list[np.ndarray]] = {}
-        own = [(check, r.flags) for check, r in results if _on(r, variable)]
-        for check, values in (*own, *of_time):
+        for check, values in (*_flags_on(results, variable), *of_time):
             flags.setdefault(check.name, []).append(values)
         flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
-def _on(result: Result, variable: str) -> bool:
-    return result.flags is not None and result.variable == variable
+def _flags_on(
+    results: tuple[tuple[Check, Result], ...], variable: str
+) -> list[tuple[Check, np.ndarray]]:
+    return [(c, r.flags) for c, r in results if r.flags is not None and r.variable == variable]
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:
