@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io.netcdf import CHUNK, read_groups, read_netcdf, write_netcdf
+from tribolab.io.attributes import encoded
+from tribolab.io.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
 from tribolab.io.seal import unseal
+from tribolab.io.storage import CHUNK, storage
 
 ATTRIBUTES = st.dictionaries(
     st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),
@@ -131,6 +133,104 @@ def test_several_groups_are_read_at_once_and_travel_to_other_processes(tmp_path)
     assert list(read_groups(file, ["no", "run"], optional=True)) == ["run"]
     with pytest.raises(ReadError, match="no group 'no'"):
         read_groups(file, ["run", "no"])
+
+
+SIZES = {"time": 3, "segment": 2, "event": 0, "long": 1500}
+TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=6)
+KINDS = st.sampled_from(
+    "int8 int16 int32 int64 uint8 uint16 uint32 uint64 float32 float64 >f8 >i2 bool str object "
+    "datetime64[ns] timedelta64[ns] S3".split()
+)
+
+
+@st.composite
+def variables(draw):
+    """A variable of any type that a dataset may hold, over any of the dims, or none."""
+    kind = draw(KINDS)
+    dims = tuple(draw(st.lists(st.sampled_from(sorted(SIZES)), max_size=2, unique=True)))
+    shape = tuple(SIZES[dim] for dim in dims)
+    rng = np.random.default_rng(draw(st.integers(0, 99)))
+    if kind in ("str", "object"):
+        words = draw(st.lists(TEXT, min_size=1, max_size=4))
+        values = np.array(words, dtype=object)[rng.integers(0, len(words), shape)]
+        values = np.asarray(values, dtype=kind)
+    else:
+        values = rng.integers(0, 100, shape).astype(kind)
+    if kind == "float64" and draw(st.booleans()):
+        values = np.where(values > 50, np.nan, values / 7)
+    unit = {} if kind.startswith(("datetime", "timedelta")) else {"units": "N"}
+    attrs = draw(st.sampled_from([{}, unit, {"flags": (1, 2), "sure": True}]))
+    return xr.Variable(dims, values, attrs)
+
+
+def written_by_xarray(groups, path):
+    """Write groups one by one, as xarray does it."""
+    for group, data in groups.items():
+        data = data.copy()
+        data.attrs = encoded(data.attrs)
+        for name in data.variables:
+            data[name].attrs = encoded(data[name].attrs)
+            if data[name].dtype.kind in "fiu":
+                data[name].encoding = {"_FillValue": None}
+        data.to_netcdf(path, mode="a" if path.exists() else "w", group=group)
+    return path
+
+
+@settings(deadline=None, max_examples=25)
+@given(
+    st.dictionaries(st.sampled_from([*SIZES, *"abcdef"]), variables(), max_size=6),
+    st.lists(st.sampled_from("abcdef"), max_size=2),
+)
+def test_groups_come_back_as_from_the_files_of_xarray(tmp_path_factory, content, coords):
+    folder = tmp_path_factory.mktemp("nc")
+    content = {k: v for k, v in content.items() if k not in SIZES or v.dims == (k,)}
+    data = xr.Dataset(content, attrs={"source": "a.csv"})
+    data = data.set_coords([name for name in coords if name in data])
+    groups = {None: data.assign_attrs(root=True), "run": data}
+    groups["second"] = data[[name for name in coords[:1] if name in data]]
+    own, other = write_groups(groups, folder / "own.nc"), folder / "other.nc"
+    found, wanted = (read_groups(path, groups) for path in (own, written_by_xarray(groups, other)))
+    for name, expected in wanted.items():
+        got = found[name]
+        got.attrs.pop("groups", None)
+        assert got.identical(expected)
+        assert list(got.variables) == list(expected.variables)
+        assert {n: v.dtype for n, v in got.variables.items()} == {
+            n: v.dtype for n, v in expected.variables.items()
+        }
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        xr.Dataset({"a/b": ("n", [1.0])}),
+        xr.Dataset({"a": ("n/m", [1.0])}),
+        xr.Dataset({"a": ("n", np.array([{}, 1], object))}),
+        xr.Dataset({"a": ("n", np.zeros(2, np.float16))}),
+        xr.Dataset({"a": ("n", [1.0], {"": 1})}),
+        xr.Dataset(attrs={"a": np.array([None])}),
+    ],
+)
+def test_what_netcdf_cannot_hold_is_our_error(tmp_path, data):
+    with pytest.raises(TribolabError, match=r"run\.nc: the netCDF file cannot be written"):
+        write_groups({"run": data}, tmp_path / "run.nc")
+
+
+def test_a_group_that_is_there_can_be_added_to(tmp_path):
+    file = write_groups({"run": xr.Dataset({"a": ("n", [1.0, 2.0])})}, tmp_path / "run.nc")
+    write_netcdf(xr.Dataset({"b": ("n", [3, 4])}), file, group="run")
+    found = read_netcdf(file, "run")
+    assert found.a.values.tolist() == [1.0, 2.0] and found.b.values.tolist() == [3, 4]
+
+
+def test_a_signal_from_a_converter_takes_a_quarter_of_its_bytes(tmp_path):
+    steps = np.round(np.random.default_rng(0).normal(31, 0.5, 20_000) / 0.0153) * 0.0153
+    data = xr.Dataset({"normal_force": ("time", steps)})
+    file = write_netcdf(data, tmp_path / "run.nc")
+    assert file.stat().st_size < 0.25 * steps.nbytes + 12_000
+    assert read_netcdf(file).identical(data)
+    assert storage(np.random.default_rng(0).random(9000)).get("zlib") in (None, True)
+    assert "zlib" not in storage(np.random.default_rng(0).integers(0, 2**63, 9000))
 
 
 def test_an_empty_table_comes_back_empty(tmp_path):

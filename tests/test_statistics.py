@@ -8,8 +8,8 @@ from scipy.signal import lfilter
 
 from tribolab.friction.statistics import (
     BLOCKS,
-    describe,
     error_of_mean,
+    estimate_of,
     on_grid,
     sample_weights,
     student_widening,
@@ -103,7 +103,7 @@ def test_error_of_strongly_jittered_or_whole_periods_errs_on_the_wide_side():
 def test_stick_slip_is_known_better_than_independent_samples_would_tell():
     rng = np.random.default_rng(5)
     record = oscillation(rng, "saw", 0.05, 0.02, 30.0, 30.0)[0]
-    found = describe(np.arange(N) / 1e3, record)
+    found = estimate_of(np.arange(N) / 1e3, record)
     assert found.sem < 0.5 * found.std / np.sqrt(N)
 
 
@@ -111,12 +111,12 @@ def test_memory_lengthens_the_autocorrelation_time_as_theory_says():
     # integrated time of AR(1): (1 + a) / (1 - a) / 2 samples
     rng = np.random.default_rng(6)
     a = np.exp(-1 / 5)
-    found = [describe(np.arange(N) * 0.1, r).autocorrelation_time for r in memory(rng, 5)[:200]]
+    found = [estimate_of(np.arange(N) * 0.1, r).autocorrelation_time for r in memory(rng, 5)[:200]]
     assert np.median(found) == pytest.approx(0.05 * (1 + a) / (1 - a), rel=0.15)
 
 
 def test_white_noise_counts_every_sample():
-    found = [describe(np.arange(N) * 0.1, r) for r in white(np.random.default_rng(7))[:200]]
+    found = [estimate_of(np.arange(N) * 0.1, r) for r in white(np.random.default_rng(7))[:200]]
     assert np.median([f.effective_samples for f in found]) > 0.9 * N
     assert np.median([f.autocorrelation_time for f in found]) == pytest.approx(0.05, rel=0.1)
 
@@ -132,7 +132,7 @@ def test_wander_is_rarely_called_a_trend(time):
 def test_real_trend_is_found_with_its_size():
     rng = np.random.default_rng(8)
     time = np.arange(2000) * 0.01
-    found = describe(time, 0.3 + 1e-3 * time + 0.005 * rng.standard_normal(2000))
+    found = estimate_of(time, 0.3 + 1e-3 * time + 0.005 * rng.standard_normal(2000))
     assert found.trend == pytest.approx(1e-3, rel=0.1)
     assert found.trend_change == pytest.approx(0.02, rel=0.1)
     assert found.trend_p_value < 1e-6
@@ -142,7 +142,7 @@ def test_drift_widens_the_error_because_it_is_not_removed():
     rng = np.random.default_rng(9)
     time = np.arange(2000) * 0.01
     noise = 0.005 * rng.standard_normal(2000)
-    steady, drifting = describe(time, noise), describe(time, noise + 1e-3 * time)
+    steady, drifting = estimate_of(time, noise), estimate_of(time, noise + 1e-3 * time)
     assert drifting.sem > 3 * steady.sem
 
 
@@ -151,26 +151,26 @@ def test_uneven_sampling_is_weighted_by_time():
     time = np.concatenate([np.arange(50) * 1.0, 50 + np.arange(5000) * 0.01])
     values = np.where(time < 50, 0.2, 0.4)
     assert sample_weights(time) is not None
-    assert describe(time, values).mean == pytest.approx(0.3, abs=0.003)
+    assert estimate_of(time, values).mean == pytest.approx(0.3, abs=0.003)
 
 
 def test_even_sampling_gives_the_plain_mean_and_standard_deviation():
     values = np.random.default_rng(1).standard_normal(500)
     time = np.arange(500) + 0.05 * np.sin(np.arange(500))
-    found = describe(time, values)
+    found = estimate_of(time, values)
     assert found.mean == np.mean(values)
     assert found.std == np.std(values, ddof=1)
 
 
 def test_constant_signal_has_no_error_and_no_trend():
-    found = describe(np.arange(100.0), np.full(100, 0.3))
+    found = estimate_of(np.arange(100.0), np.full(100, 0.3))
     assert (found.mean, found.std, found.sem, found.trend) == (0.3, 0.0, 0.0, 0.0)
     assert found.trend_p_value == 1.0
 
 
 @pytest.mark.parametrize("n", [0, 1, 2])
 def test_too_few_samples_give_no_error_instead_of_a_number(n):
-    found = describe(np.arange(float(n)), np.full(n, 0.3))
+    found = estimate_of(np.arange(float(n)), np.full(n, 0.3))
     assert found.samples == n
     assert np.isnan(found.sem)
     assert np.isnan(found.trend_p_value)
@@ -179,7 +179,7 @@ def test_too_few_samples_give_no_error_instead_of_a_number(n):
 def test_missing_numbers_are_left_out():
     values = np.random.default_rng(2).standard_normal(600)
     values[::3] = np.nan
-    found = describe(np.arange(600.0), values)
+    found = estimate_of(np.arange(600.0), values)
     assert found.samples == 400
     assert found.mean == pytest.approx(np.nanmean(values))
 
@@ -200,8 +200,8 @@ def test_empty_stretches_of_the_grid_are_interpolated():
 def test_estimates_follow_scale_shift_and_time_origin(seed, n, scale, shift, origin):
     values = np.random.default_rng(seed).standard_normal(n)
     time = np.arange(n) * 0.5
-    plain = describe(time, values)
-    other = describe(time + origin, scale * (values + shift))
+    plain = estimate_of(time, values)
+    other = estimate_of(time + origin, scale * (values + shift))
     assert other.mean == pytest.approx(scale * (plain.mean + shift), rel=1e-6, abs=1e-6 * scale)
     for name in ("std", "sem", "trend_change"):
         assert getattr(other, name) == pytest.approx(
@@ -214,7 +214,7 @@ def test_intervals_of_few_effective_samples_hold_by_student_s_t():
     """A memory of a third of the record: 95 % intervals missed the mean two times in five."""
     rng = np.random.default_rng(77)
     time = np.arange(N) * 0.01
-    found = [describe(time, record) for record in memory(rng, N / 4)[:400]]
+    found = [estimate_of(time, record) for record in memory(rng, N / 4)[:400]]
     few = [one for one in found if one.effective_samples < 4]
     assert len(few) > 100
     inside = np.mean([abs(one.mean) < 1.96 * one.sem for one in few])
@@ -231,12 +231,12 @@ def test_intervals_of_few_effective_samples_hold_by_student_s_t():
 @pytest.mark.parametrize("share", [0.05, 0.15, 0.3])
 def test_three_errors_hold_the_mean_of_friction_whose_memory_is_long_beside_the_stroke(share):
     records = memory(np.random.default_rng(17), share * N)[:150]
-    found = [describe(np.arange(N) * 0.1, one) for one in records]
+    found = [estimate_of(np.arange(N) * 0.1, one) for one in records]
     off = np.abs([one.mean / one.sem for one in found])
     assert np.mean(off > 3) <= 0.02
 
 
 def test_a_memory_that_might_be_there_hardly_widens_the_error_of_white_noise():
-    found = [describe(np.arange(N) * 0.1, one) for one in white(np.random.default_rng(18))[:100]]
+    found = [estimate_of(np.arange(N) * 0.1, one) for one in white(np.random.default_rng(18))[:100]]
     error = np.array([one.sem for one in found]) * np.sqrt(N)
     assert 0.95 < np.median(error) < 1.3

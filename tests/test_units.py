@@ -47,7 +47,10 @@ def test_usual_units_are_what_the_units_library_says():
     prefixed = [(f"{p}{u}", u) for p in units._PREFIXES for u in ("m", "m/s", "N", "Pa", "s", "V")]
     for unit, si_unit in [*units._USUAL, *prefixed]:
         ureg = units.registry()
-        source, target = ureg.Unit(units._clean(unit)), ureg.Unit(units._clean(si_unit))
+        source, target = (
+            ureg.Unit(units.as_pint_writes(unit)),
+            ureg.Unit(units.as_pint_writes(si_unit)),
+        )
         zero, one = (ureg.Quantity(x, source).to(target).magnitude for x in (0.0, 1.0))
         assert conversion(unit, si_unit) == pytest.approx((one - zero, zero), rel=1e-14), unit
 

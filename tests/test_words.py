@@ -114,7 +114,7 @@ def test_every_cure_has_words_of_its_own_for_the_terminal_and_the_campaign():
     from tribolab.io import cures
 
     said = [one for one in vars(cures).values() if isinstance(one, errors.Cure)]
-    said += [cures.name_instrument(), cures.draft_dialect(Path("a b.txt"), cures.RUN)]
+    said += [cures.name_instrument(), cures.unknown_instrument(Path("a b.txt"), cures.RUN)]
     assert len(said) >= 7
     for cure in said:
         assert cure.notebook and cure.terminal and cure.campaign

@@ -180,7 +180,7 @@ def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
     >>> nearest("x", ["left", "right", "up"], most=2)
     '; known are left, right and 1 more'
     """
-    known = [one if len(one) <= _MOST else f"{one[:_MOST]} ..." for one in known]
+    known = [name if len(name) <= _MOST else f"{name[:_MOST]} ..." for name in known]
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
     if close:
         return "; did you mean " + " or ".join(repr(c) for c in close) + "?"

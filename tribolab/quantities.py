@@ -268,21 +268,21 @@ def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
     >>> dictionary([("gap", "u", "m", "local interfacial gap")])["gap"].unit
     'm'
     """
-    found: dict[str, Quantity] = {}
+    known: dict[str, Quantity] = {}
     for row in rows:
-        one = Quantity(*row)
-        if one.name in found:
+        entry = Quantity(*row)
+        if entry.name in known:
             raise TribolabError(
-                f"the quantity '{one.name}' stands twice in the dictionary: as "
-                f"'{found[one.name].long_name}' and as '{one.long_name}'; give one another name"
+                f"the quantity '{entry.name}' stands twice in the dictionary: as "
+                f"'{known[entry.name].long_name}' and as '{entry.long_name}'; give one another name"
             )
-        if one.bare is None and reciprocal(one.unit):
+        if entry.bare is None and reciprocal(entry.unit):
             raise TribolabError(
-                f"the quantity '{one.name}' [{one.unit}] does not say what it counts: add "
+                f"the quantity '{entry.name}' [{entry.unit}] does not say what it counts: add "
                 '"cycles", "radians", "nothing" or "ask"'
             )
-        found[one.name] = one
-    return found
+        known[entry.name] = entry
+    return known
 
 
 QUANTITIES: dict[str, Quantity] = dictionary(_ROWS)
@@ -395,8 +395,8 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
         # as objects: an array of text would turn the numbers beside it into text without a unit
         entries = np.asarray(value, dtype=object)
         numbers = [
-            to_si(str(one), unit, name=name, bare=bare) if isinstance(one, str) else float(one)
-            for one in entries.ravel()
+            to_si(str(cell), unit, name=name, bare=bare) if isinstance(cell, str) else float(cell)
+            for cell in entries.ravel()
         ]
     except (TypeError, ValueError) as error:
         raise UnitError(
@@ -443,7 +443,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
     return stamp_array(data, name)
 
 
-def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str):
+def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str) -> Any:
     """Return values the way an argument was given: a float, an array or a stamped DataArray."""
     if isinstance(given, xr.DataArray):
         return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)

@@ -77,9 +77,9 @@ def reciprocal(unit: str) -> Reciprocal | None:
     if (word := small.replace(".", "")) in _WORDS:
         return Reciprocal(_WORDS[word], "cycles", "s")
     for form in _FORMS:
-        found = form.fullmatch(small)
-        if found and found["per"] in _PER:
-            return _of(found["count"] or "", found["per"])
+        match = form.fullmatch(small)
+        if match and match["per"] in _PER:
+            return _of(match["count"] or "", match["per"])
     return None
 
 

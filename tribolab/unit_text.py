@@ -58,10 +58,10 @@ def parse_unit(text: str) -> Parsed:
     if not text.strip():  # a pure number
         return Parsed(1.0, {})
     reader = _Reader(text)
-    found = reader.unit(0)
+    parsed = reader.unit(0)
     if reader.kind:
         raise reader.error(f"'{shown(reader.value)}' does not belong there")
-    return found
+    return parsed
 
 
 class _Reader:
@@ -113,12 +113,12 @@ class _Reader:
     def factor(self, depth: int) -> Parsed:
         kind, value = self.kind, self.value
         if kind == "number":
-            found = Parsed(float(value), {})
+            parsed = Parsed(float(value), {})
         elif kind == "name":
-            found = Parsed(1.0, {value: 1.0})
+            parsed = Parsed(1.0, {value: 1.0})
         elif value == "(":
             self.step()
-            found = self.unit(depth + 1)
+            parsed = self.unit(depth + 1)
             if self.value != ")":
                 raise self.error("a bracket is not closed")
         else:
@@ -126,12 +126,12 @@ class _Reader:
         self.step()
         power = self.power(kind)
         if power is None:
-            return found
-        if found.powers == {} and value != "10":
+            return parsed
+        if parsed.powers == {} and value != "10":
             raise self.error("of numbers only 10 has powers")
-        if abs(power) > 3 * _LARGEST_POWER or (abs(power) > _LARGEST_POWER and found.powers):
+        if abs(power) > 3 * _LARGEST_POWER or (abs(power) > _LARGEST_POWER and parsed.powers):
             raise self.error(f"the power {power:g} is out of range")
-        return Parsed(found.factor**power, {n: p * power for n, p in found.powers.items()})
+        return Parsed(parsed.factor**power, {n: p * power for n, p in parsed.powers.items()})
 
     def power(self, of: str) -> float | None:
         """Read a power: after a sign for it, or digits right behind a name, as in m2 and s-1."""

@@ -69,7 +69,7 @@ _USUAL = {
 
 
 @functools.lru_cache(maxsize=1)
-def registry() -> pint.UnitRegistry:
+def registry() -> pint.UnitRegistry[float]:
     """Return the one pint registry, made when first asked for."""
     import pint
 
@@ -81,7 +81,8 @@ _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- 
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
 
 
-def _clean(unit: str) -> str:
+def as_pint_writes(unit: str) -> str:
+    """Return a unit, typeset or from netCDF, in the spelling that pint reads."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
@@ -97,7 +98,7 @@ class _Units(NamedTuple):
 def _units(text: str) -> _Units:
     """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
     ureg = registry()
-    factor, powers = parse_unit(_clean(text))
+    factor, powers = parse_unit(as_pint_writes(text))
     product = ureg.Unit("")
     for name, power in powers.items():
         product = product * ureg.Unit(name) ** power
@@ -161,13 +162,13 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     try:
         source, target = _units(unit), _units(si_unit)
         zero = ureg.Quantity(0.0, source.units).to(target.units).magnitude
-        one = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
+        size = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
     except Exception as error:  # pint raises many kinds on text that is no unit
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
-    scale = float(one - zero)
+    scale = float(size - zero)
     # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
 

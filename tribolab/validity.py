@@ -20,7 +20,7 @@ TINY = float(np.finfo(float).tiny)  # what is divided by a number that may be 0
 
 
 @dataclass(frozen=True)
-class Limit:
+class ValidityLimit:
     """One approximation and how far it reaches.
 
     Parameters
@@ -45,7 +45,7 @@ class Limit:
 
 
 LIMITS = {
-    "film": Limit(
+    "film": ValidityLimit(
         "film thickness over the radius R",
         1e-2,  # a cylinder's gap is 0.5 % wider than the parabola's where the film is doubled,
         # 6 % at R/10 and twice as wide at R/2: there its own edge is reached, sqrt(2 R h) = R
@@ -53,21 +53,21 @@ LIMITS = {
         "the gap is taken as a parabola and the film as thin",
         "take lower speeds or a thinner liquid",
     ),
-    "half_width": Limit(
+    "half_width": ValidityLimit(
         "half-width of the contact over the radius R",
         0.3,
         1.0,
         "the bodies are taken as a parabola on a half-space",
         "take a smaller load, a larger radius or a stiffer body, or compute with finite elements",
     ),
-    "slope": Limit(
+    "slope": ValidityLimit(
         "rms slope of the surface",
         1.0,
         5.0,
         "slopes are taken as small in elasticity and flow",
         "end the spectrum at a smaller wavenumber (q_high), or look whether the scans hold noise",
     ),
-    "binding": Limit(
+    "binding": ValidityLimit(
         "gamma_eff at magnification 1 over the work of adhesion",
         1.0,
         3.0,
@@ -75,7 +75,7 @@ LIMITS = {
         "look at work of adhesion, modulus and spectrum: so soft a body is in complete contact, "
         "and capillary or large-strain theories apply",
     ),
-    "frequency": Limit(
+    "frequency": ValidityLimit(
         "share of rubber friction or stiffness that rests on frequencies outside the modulus table",
         0.05,
         0.98,
@@ -83,7 +83,7 @@ LIMITS = {
         "give a master curve that reaches over the frequencies q v (shift sweeps of several "
         "temperatures), or other speeds",
     ),
-    "pressure": Limit(
+    "pressure": ValidityLimit(
         "contact pressure over the largest in the table of p(u)",
         1.0,
         # at the table's end u is 1e-17 h_rms, and ~ exp(-k p^2) from there on: 1e-205 at four
@@ -131,14 +131,14 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
         numbers = numbers[~np.isnan(numbers)]
         if not numbers.size or not (largest := float(numbers.max())) > limit.suspect:
             continue
-        found = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
+        compared = f"{limit.what} is {largest:.3g}{f' {where}' if where else ''}"
         if largest > limit.refuse:
             raise AnalysisError(
-                f"{found}, far above {limit.suspect:g}: {limit.because}",
+                f"{compared}, far above {limit.suspect:g}: {limit.because}",
                 function=who,
                 cure=limit.cure,
             )
-        reasons.append(f"{found}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
+        reasons.append(f"{compared}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
     return {
         "validity": SUSPECT if reasons else PASS,
         "validity_reasons": " | ".join(reasons),
@@ -154,7 +154,7 @@ def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     >>> together([one, one, {"validity": "pass", "validity_reasons": ""}, {}])
     {'validity': 'suspect', 'validity_reasons': 'too steep'}
     """
-    reasons = [reason for one in attrs for reason in reasons_of(one)]
+    reasons = [reason for result in attrs for reason in reasons_of(result)]
     unique = list(dict.fromkeys(reasons))
     return {"validity": SUSPECT if unique else PASS, "validity_reasons": " | ".join(unique)}
 

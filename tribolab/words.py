@@ -155,8 +155,8 @@ class Count(int):
 
     def __format__(self, nouns: str) -> str:
         """Write the number and, of "one|many", what suits it."""
-        one, _, more = nouns.partition("|")
-        return f"{int(self)} {one if self == 1 else more}" if nouns else str(int(self))
+        singular, _, more = nouns.partition("|")
+        return f"{int(self)} {singular if self == 1 else more}" if nouns else str(int(self))
 
 
 _PACKAGE = Path(__file__).parent

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import optimize
 from slip_traces import in_red_noise, intermittent, plain, quiet, scattered
 
-from tribolab.friction.oscillation.examine import examine
+from tribolab.friction.oscillation.examine import examine_record
 from tribolab.friction.oscillation.waveform import CLASSES, LIMITS, features
 from tribolab.rig.traces import simulate_trace
 
@@ -28,7 +28,7 @@ def draw(seed: int) -> tuple[int, list[float]] | None:
     """Class and features of one random trace."""
     rng = np.random.default_rng(seed)
     form, time, values = _of_rig(rng) if rng.uniform() < 0.6 else _tricky(rng)
-    found = examine(time, values)
+    found = examine_record(time, values)
     if isinstance(found, str):
         return None
     return _FORMS[form], list(features(found.waveform, found.oscillation).values())

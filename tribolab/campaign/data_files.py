@@ -43,13 +43,12 @@ def write_data(groups: dict[str | None, xr.Dataset], path: Path) -> None:
     OutputError
         If there is no room, or the folder is gone.
     """
-    from tribolab.io.netcdf import write_netcdf
+    from tribolab.io.netcdf import write_groups
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
         with NETCDF:
-            for group, data in groups.items():
-                write_netcdf(data, part, group=group)
+            write_groups(groups, part)
         part.replace(path)
     except (OSError, RuntimeError, TribolabError) as error:
         # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from collections.abc import Hashable
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -96,7 +97,7 @@ def adhesion(
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
     work = work_value(work_of_adhesion)
-    over = finite_pressures(pressure)
+    over: xr.DataArray = finite_pressures(pressure)
     flat = over.values.ravel()
     least = surface.small_pressure
     pushed = np.maximum(flat, least)
@@ -109,10 +110,11 @@ def adhesion(
     with np.errstate(divide="ignore"):
         ratio = solved.area[:, -1] / without / np.where(sticks, share, 1.0)
 
-    dims, shape, q = over.dims, over.shape, surface.wavenumber
+    dims: tuple[Hashable, ...] = over.dims
+    shape, q = over.shape, surface.wavenumber
     both = (*dims, "wavenumber")
 
-    def over_both(values: np.ndarray) -> tuple[tuple, np.ndarray]:
+    def over_both(values: np.ndarray) -> tuple[tuple[Hashable, ...], np.ndarray]:
         return both, values.reshape(*shape, q.size)
 
     data = {
@@ -223,7 +225,7 @@ def finite_pressures(pressure: str | Pressure) -> xr.DataArray:
     return over
 
 
-def pressure_coords(over: xr.DataArray) -> dict:
+def pressure_coords(over: xr.DataArray) -> dict[Hashable, Any]:
     """Coordinates of the pressures, and the pressures themselves."""
     kept = {name: values for name, values in over.coords.items() if name != "pressure"}
     return {**kept, "pressure": (over.dims, over.values)}

@@ -161,25 +161,29 @@ class Interface:
         unit = (self.elastic * (dry[:, 1:] + dry[:, :-1]) / 2).sum(axis=1)
         gained = work * self.area_gain
 
-        def misfit(area, energy, unit, gained):
+        def misfit(
+            area: np.ndarray, energy: np.ndarray, unit: np.ndarray, gained: np.ndarray
+        ) -> np.ndarray:
             return (energy - gained * area) / (unit + gained * area)
 
-        def at(x, pressure, unit, gained):
+        def misfit_at(
+            x: np.ndarray, pressure: np.ndarray, unit: np.ndarray, gained: np.ndarray
+        ) -> np.ndarray:
             area, energy = self.march(np.sinh(x) * unit, pressure)
             return misfit(area[-1], energy[-1], unit, gained)
 
         # on the scale of asinh roots that are tiny (small pressure) and large are found as fast
-        found = find_root(
-            at,
+        root = find_root(
+            misfit_at,
             (np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)),
             args=(pressure, unit, gained),
             tolerances={"xatol": 0.0, "xrtol": 4e-16, "fatol": 1e-11, "frtol": 0.0},
             maxiter=iterations,
         )
-        start = np.sinh(found.x) * unit
+        start = np.sinh(root.x) * unit
         area, energy = (values.T for values in self.march(start, pressure))
         residual = np.abs(misfit(area[:, -1], energy[:, -1], unit, gained))
-        return Balance(area, np.maximum(energy, 0.0) / area, start, residual, found.nit)
+        return Balance(area, np.maximum(energy, 0.0) / area, start, residual, root.nit)
 
 
 def rough_interface(

@@ -75,7 +75,7 @@ def adhesion_uncertainty(
     [0.1, 0.12, 0.12]
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
-    over = finite_pressures(pressure)
+    over: xr.DataArray = finite_pressures(pressure)
     flat = over.values.ravel()
     spread = work_of_adhesion_spread(energies, samples=samples, seed=seed)
     endings = ("", "_low", "_high")

@@ -133,7 +133,7 @@ def gap_distributions(
             f"pressure: at {values[closed].min():.4g} Pa the contact is complete, its mean "
             f"separation {mean[closed].max():.2g} m; no gap is left: leave such pressures out"
         )
-    facts = {"gamma": gamma, "cutoff_m": smallest}
+    facts: dict[str, str | float] = {"gamma": gamma, "cutoff_m": smallest}
     facts |= examine("gap_distribution", slope=rms_slope(psd))
     return [
         stamp(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import overload
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -74,6 +76,14 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: LineContact) -> np.ndarr
     # F/(2a) with F put in terms of a, so that no load gives 0 and not 0/0
     a = hertz_half_width(load, contact)
     return np.pi * contact.effective_modulus * a / (8 * contact.radius)
+
+
+@overload
+def hertz_pressure(x: np.ndarray, load: str | float, contact: LineContact) -> np.ndarray: ...
+
+
+@overload
+def hertz_pressure(x: ArrayLike, load: str | float, contact: LineContact) -> np.ndarray | float: ...
 
 
 def hertz_pressure(x: ArrayLike, load: str | float, contact: LineContact) -> np.ndarray | float:

@@ -51,7 +51,7 @@ def line_limits(
     if not loads.size:
         return together([])
     largest = float(loads.max())
-    found = [
+    compared = [
         examine(
             who,
             f"at {largest:.3g} N/m",
@@ -62,11 +62,11 @@ def line_limits(
         )
     ]
     if psd is not None:
-        found.append(examine(who, slope=rms_slope(psd)))
+        compared.append(examine(who, slope=rms_slope(psd)))
     if np.size(film):
         speeds, films = np.abs(np.asarray(speed, dtype=float)), np.asarray(film, dtype=float)
         thick = films.reshape(speeds.size, -1).max(axis=1) / contact.radius
         beyond = speeds[thick > LIMITS["film"].suspect]
         where = f"(above the limit from {beyond.min():.3g} m/s on)" if beyond.size else ""
-        found.append(examine(who, where, film=thick))
-    return together(found)
+        compared.append(examine(who, where, film=thick))
+    return together(compared)

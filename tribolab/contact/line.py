@@ -204,8 +204,8 @@ def _newton(
         shape = gap + kernel @ p
         if np.max(np.abs(dp)) < _CONVERGED * p.max():
             u = c + shape
-            found = table.pressure(u)
-            return found, u, step, float(np.max(np.abs(p - found)) / found.max())
+            carried = table.pressure(u)
+            return carried, u, step, float(np.max(np.abs(p - carried)) / carried.max())
     raise AnalysisError(
         f"no convergence in {_STEPS} steps at {force:g} N/m; "
         f"the last changed the pressure by {np.max(np.abs(dp)) / p.max():.1e} of its maximum",

@@ -106,7 +106,8 @@ def apparent_contact_area_ratio(
     stiffness = modulus * np.sqrt(np.pi * cumulative(*spectrum_arrays(psd), 3))
     valid = examine("apparent_contact_area_ratio", slope=stiffness[-1] / modulus * np.sqrt(2))
     values = pressure_values(pressure)
-    over, q = labelled(pressure, "pressure"), psd["wavenumber"]
+    over: xr.DataArray = labelled(pressure, "pressure")
+    q = psd["wavenumber"]
     area = xr.DataArray(
         _area(values[..., None], stiffness),
         coords={**over.coords, "wavenumber": q},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -15,7 +15,7 @@ from tribolab.quantities import stamp
 from tribolab.units import to_si
 
 
-class Range(NamedTuple):
+class BoundedValue(NamedTuple):
     """A value and the bounds between which it is reported."""
 
     value: float
@@ -23,7 +23,8 @@ class Range(NamedTuple):
     high: float
 
 
-Stated = str | float | tuple[str | float, str | float, str | float] | Range
+Stated = str | float | tuple[str | float, str | float, str | float] | BoundedValue
+Works = TypeVar("Works", float, np.ndarray)
 
 
 def dry_work_of_adhesion(surface_energy_1: str | float, surface_energy_2: str | float) -> float:
@@ -156,7 +157,7 @@ class SurfaceEnergies:
                 raise AnalysisError(
                     f"{field.name}: a value or (value, lowest, highest) is wanted; got {stated}"
                 )
-            given = Range(*(read(part, field.name) for part in parts))
+            given = BoundedValue(*(read(part, field.name) for part in parts))
             if not given.low <= given.value <= given.high:
                 raise AnalysisError(
                     f"{field.name}: the value {given.value:g} must lie between its bounds "
@@ -167,12 +168,14 @@ class SurfaceEnergies:
     @property
     def dry(self) -> float:
         """Work of adhesion of the dry solids [J/m2], Eq. (13), at the chosen values."""
-        return float(_dry(self.solid_1.value, self.solid_2.value))
+        solid_1, solid_2, *_ = _ranges(self)
+        return float(_dry(solid_1.value, solid_2.value))
 
     @property
     def wet(self) -> float:
         """Work of adhesion under the liquid [J/m2], Eq. (14), at the chosen values."""
-        return float(_wet(self.dry, self.liquid.value, self.angle_1.value, self.angle_2.value))
+        *_, liquid, angle_1, angle_2 = _ranges(self)
+        return float(_wet(self.dry, liquid.value, angle_1.value, angle_2.value))
 
 
 def sample_work_of_adhesion(
@@ -239,20 +242,22 @@ def work_of_adhesion_spread(
     )
 
 
-def _ranges(energies: SurfaceEnergies) -> list[Range]:
+def _ranges(energies: SurfaceEnergies) -> list[BoundedValue]:
     return [getattr(energies, field.name) for field in fields(energies)]
 
 
-def _works(solid_1, solid_2, liquid, angle_1, angle_2):
+def _works(
+    solid_1: Works, solid_2: Works, liquid: Works, angle_1: Works, angle_2: Works
+) -> tuple[Works, Works]:
     dry = _dry(solid_1, solid_2)
     return dry, _wet(dry, liquid, angle_1, angle_2)
 
 
-def _dry(first, second):
+def _dry(first: Works, second: Works) -> Works:
     return 2 * np.sqrt(first * second)
 
 
-def _wet(dry, tension, first, second):
+def _wet(dry: Works, tension: Works, first: Works, second: Works) -> Works:
     return dry - tension * (np.cos(first) + np.cos(second))
 
 

@@ -86,19 +86,19 @@ def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
 def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
     x_unit, z_unit = _scan_units(part, 2)
     units = (x_unit, x_unit, z_unit)
-    found = [
+    axes = [
         column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
         for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
     ]
-    return found, ["it is a map: columns 1 and 2 fill a grid"]
+    return axes, ["it is a map: columns 1 and 2 fill a grid"]
 
 
 def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
-    found = [
+    axes = [
         column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
         for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
     ]
-    return found, ["it is a profile: two columns, the first rises in even steps"]
+    return axes, ["it is a profile: two columns, the first rises in even steps"]
 
 
 def _run(

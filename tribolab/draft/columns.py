@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -34,7 +35,7 @@ def understand(layout: Layout) -> Understood:
     Parameters
     ----------
     layout
-        From `tribolab.draft.layout.examine`.
+        From `tribolab.draft.layout.find_layout`.
     """
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)
@@ -92,7 +93,8 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
             "mark left open in it?"
         ) from error
     numbers = np.full(frame.shape, np.nan)
-    text, missing = [""] * layout.width, [[] for _ in range(layout.width)]
+    text = [""] * layout.width
+    missing: list[list[str]] = [[] for _ in range(layout.width)]
     understood = np.array([dtype.kind in "fiu" for dtype in frame.dtypes], dtype=bool)
     numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
     for index in np.flatnonzero(~understood).tolist():
@@ -115,7 +117,8 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     cells = list(heading.cells if heading else ())[: layout.width]
     cells += [""] * (layout.width - len(cells))
     row = list(heading.unit_cells if heading else ()) + [""] * layout.width
-    columns, seen = [], {}
+    columns: list[DraftColumn] = []
+    seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
         if unit is not None and not is_unit(unit):
@@ -123,8 +126,8 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None
         seen[name] = seen.get(name, 0) + 1
-        found = name if name and heading and heading.aligned else None
-        columns.append(DraftColumn(place, cell, found, seen[name] if found else 1, file_unit=unit))
+        known = name if name and heading and heading.aligned else None
+        columns.append(DraftColumn(place, cell, known, seen[name] if known else 1, file_unit=unit))
     return columns
 
 
@@ -147,8 +150,8 @@ def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, lis
     bare = [_bare(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
-    best = {found[0].quantity for found in run if found}
-    profile = {found[0].quantity for found in scan if found}
+    best = {options[0].quantity for options in run if options}
+    profile = {options[0].quantity for options in scan if options}
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
         {"x", "height"} <= profile
     ):
@@ -157,44 +160,53 @@ def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, lis
     return kind, _assigned(columns, bare, run, numbers, kind)
 
 
+class _Proposal(NamedTuple):
+    """A column for a quantity; of several the one of the highest rank is taken."""
+
+    rank: tuple[float, bool, int]
+    place: int
+    option: Match
+
+
 def _assigned(
     columns: list[DraftColumn],
     bare: list[tuple[str, str | None, bool]],
-    found: list[list[Match]],
+    matched: list[list[Match]],
     numbers: np.ndarray,
     kind: Kind,
 ) -> list[DraftColumn]:
     """Give each quantity to the column whose name fits best."""
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = np.isfinite(numbers).any(axis=0)
-    proposals: dict[str, list[tuple]] = {}
-    for index, options in enumerate(found):
+    proposals: dict[str, list[_Proposal]] = {}
+    for index, options in enumerate(matched):
         option = _preferred(options, bare[index][1], numbers[:, index], has_units)
         if option:
             # of names used twice the later counts: exporters repeat first what was plotted
             rank = (option.score, bool(filled[index]), index)
-            proposals.setdefault(option.quantity, []).append((rank, index, option))
+            proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
     result = list(columns)
     for index, column in enumerate(columns):
         if not column.label:
             continue
         unit = bare[index][1]
-        if unit is not None and not found[index]:
+        if unit is not None and not matched[index]:
             same = [q for q in _SIGNALS if _told_by(unit, quantity(q).unit)]
             hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
             result[index] = column._replace(note=hint or "the name is not known")
-        elif not found[index]:
+        elif not matched[index]:
             result[index] = column._replace(note="the name is not known")
-    for name, options in proposals.items():
-        rank, winner, _ = max(options)
-        for _, index, option in options:
-            if index == winner:
-                several = len(options) > 1 and sorted(options)[-2][0][0] > rank[0] - 0.05
+    for name, rivals in proposals.items():
+        best = max(rivals)
+        for _, index, option in rivals:
+            if index == best.place:
+                second = sorted(rivals)[-2] if len(rivals) > 1 else None
+                several = second is not None and second.rank[0] > best.rank[0] - 0.05
                 result[index] = _column(
                     columns[index], bare[index], option, numbers[:, index], kind, several
                 )
             else:
-                note = f"also looks like {name}; column {winner + 1} is used"
+                note = f"also looks like {name}; column {best.place + 1} is used"
                 result[index] = columns[index]._replace(quantity=name, note=note)
     return result
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tribolab.draft.columns import first_cells_of, understand
 from tribolab.draft.drafted import SHOWN, Drafted
-from tribolab.draft.layout import examine
+from tribolab.draft.layout import find_layout
 from tribolab.draft.model import Understood
 from tribolab.draft.show import draft_html
 from tribolab.draft.toml import dialect_toml
@@ -75,7 +75,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     name = dialect_name(file.path if name is None else name)
     if is_results(file.head):
         return _results(file, name)
-    layout = examine(file)
+    layout = find_layout(file)
     understood = understand(layout)
     toml = dialect_toml(name, layout, understood) if understood.kind != "table" else ""
     draft = Draft(

@@ -19,8 +19,10 @@ _TELLING = 200  # cells that tell whether a row is one of units
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 _BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
-DIMENSIONS = ("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m")
-DIMENSIONS += ("m/s**2", "N m")
+DIMENSIONS = (
+    *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
+    *("m/s**2", "N m"),
+)
 _UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
 
 

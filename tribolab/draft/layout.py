@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.header import Heading, escaped, find_heading, first_cells
@@ -70,7 +71,7 @@ class Layout(NamedTuple):
         return [mark.join(row[p] if p < len(row) else "" for p in places) for row in rows]
 
 
-def examine(file: File) -> Layout:
+def find_layout(file: File) -> Layout:
     """Find out how a text file is written.
 
     Parameters
@@ -160,13 +161,13 @@ def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
     for index, line in enumerate(lines):
         if not line.strip():
             continue
-        found = grammar.width(line)
-        if not found and rows and grammar.goes_on(line, width):
-            found = width
-        if found != width and not (rows and index == last and 0 < found < width):
+        cells = grammar.width(line)
+        if not cells and rows and grammar.goes_on(line, width):
+            cells = width
+        if cells != width and not (rows and index == last and 0 < cells < width):
             close()
-            width = found
-        if found == width and found:
+            width = cells
+        if cells == width and cells:
             rows.append(index)
     close()
     return blocks
@@ -174,7 +175,7 @@ def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
 
 def _main(blocks: list[Block]) -> tuple[list[Block], int]:
     """Return the blocks under the same header that hold most numbers; how many others there are."""
-    weight: Counter = Counter()
+    weight: Counter[tuple[tuple[str, ...] | None, int]] = Counter()
     for block in blocks:
         weight[_key(block)] += len(block.rows) * block.width
     key = weight.most_common(1)[0][0]
@@ -184,7 +185,7 @@ def _main(blocks: list[Block]) -> tuple[list[Block], int]:
     return main, len(blocks) - len(main)
 
 
-def _key(block: Block) -> tuple:
+def _key(block: Block) -> tuple[tuple[str, ...] | None, int]:
     heading = block.heading
     if heading is None:
         return None, block.width
@@ -209,8 +210,8 @@ def _pattern(
         ]
         texts = list(dict.fromkeys(texts))
         pattern = "^" + (texts[0] if len(texts) == 1 else f"(?:{'|'.join(texts)})")
-        found = [i for i, line in enumerate(lines) if re.match(pattern, line)]
-        if found == wanted or (not repeats and found[:1] == wanted):
+        matched = [i for i, line in enumerate(lines) if re.match(pattern, line)]
+        if matched == wanted or (not repeats and matched[:1] == wanted):
             return pattern, repeats
     return None, False
 
@@ -223,23 +224,23 @@ def _step(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
         done = block.stop
     tried: set[str] = set()
     for line in texts[0]:
-        found = re.match(
+        told = re.match(
             r"(?i)(\W*(?:[a-z]+ ?- ?|(?:step|schritt|segment|stage)\D{0,5}))(\d+)\b", line
         )
-        found = found or re.match(r"(.* - )(\d+)$", line)
-        if not found:
+        told = told or re.match(r"(.* - )(\d+)$", line)
+        if not told:
             continue
-        general = r"^.* - (\d+)$" if found[1].endswith(" - ") else f"^{escaped(found[1])}(\\d+)"
+        general = r"^.* - (\d+)$" if told[1].endswith(" - ") else f"^{escaped(told[1])}(\\d+)"
         if general in tried:
             continue
         tried.add(general)
         if len(tried) > _TRIED:
             break
-        numbers = []
-        for text in texts:
-            hits = re.findall(general, "\n".join(text), re.MULTILINE)
-            numbers.append(int(hits[-1]) if hits else None)
-        if None not in numbers and all(b > a for a, b in zip(numbers, numbers[1:], strict=False)):
+        hits = [re.findall(general, "\n".join(text), re.MULTILINE) for text in texts]
+        if not all(hits):
+            continue
+        numbers = [int(hit[-1]) for hit in hits]
+        if all(b > a for a, b in zip(numbers, numbers[1:], strict=False)):
             return general
     return None
 
@@ -258,7 +259,7 @@ def _end(
     lines: tuple[str, ...], blocks: list[Block], tail: list[str], grammar: Grammar
 ) -> str | None:
     """Return a pattern for the line that ends the table, if anything stands below it."""
-    stops = [(lines, block.stop) for block in blocks]
+    stops: list[tuple[Sequence[str], int]] = [(lines, block.stop) for block in blocks]
     if tail:
         stops[-1] = (
             tail,

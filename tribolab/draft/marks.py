@@ -92,5 +92,5 @@ def _pattern(between: list[str], rows: list[str]) -> str | None:
         pattern = r"^\s*[A-Za-z]"
     else:
         pattern = r"^\s*[" + "".join(re.escape(start) for start in sorted(starts)) + "]"
-    found = re.compile(pattern)
-    return None if any(found.match(row) for row in rows) else pattern
+    mark = re.compile(pattern)
+    return None if any(mark.match(row) for row in rows) else pattern

@@ -109,13 +109,13 @@ def _columns_table(draft: Drafted) -> Table:
     named = [c for c in draft.understood.columns if c.label or filled[c.place - 1]]
     for number, column in enumerate(named):
         if number < _LISTED or column.quantity:
-            found = escape(column.quantity or "") if column.used else ""
+            meaning = escape(column.quantity or "") if column.used else ""
             unit = column.read_unit or ""
             table.add_row(
                 str(column.place),
                 escape(cut(column.label)),
                 escape(unit),
-                found,
+                meaning,
                 escape(_remark(column)),
             )
     left = sum(1 for column in named[_LISTED:] if not column.quantity)

@@ -89,8 +89,8 @@ def find_line_ends(raw: bytes) -> str:
         "CR": raw.count(b"\r") - both - 2 * twice,
         "CR CR LF": twice,
     }
-    found = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
-    return " and ".join(found) or "none"
+    ends = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    return " and ".join(ends) or "none"
 
 
 def find_grammar(lines: Sequence[str]) -> Grammar | None:

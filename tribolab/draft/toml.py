@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def _time_table(understood: Understood) -> str:
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
-def _speed_table(kind: str, columns: list[DraftColumn]) -> str:
+def _speed_table(kind: str, columns: Sequence[DraftColumn]) -> str:
     names = {column.quantity for column in columns if column.used}
     if kind == "run" and "sliding_velocity" in names:
         return ""

@@ -38,14 +38,14 @@ def find_values(layout: Layout) -> list[DraftValue]:
     Parameters
     ----------
     layout
-        From `tribolab.draft.layout.examine`.
+        From `tribolab.draft.layout.find_layout`.
 
     Returns
     -------
     list of DraftValue
         A dozen at most; none from a file without a header, of which no preamble is known.
     """
-    found: dict[str, DraftValue] = {}
+    values: dict[str, DraftValue] = {}
     in_name = _IN_NAME.search(layout.file.path.stem)
     if in_name:
         pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
@@ -54,15 +54,15 @@ def find_values(layout: Layout) -> list[DraftValue]:
             value = DraftValue(
                 "set_normal_force", pattern, in_name["unit"], None, name, "file name"
             )
-            found[value.name] = value
+            values[value.name] = value
     stop = layout.heading.names if layout.heading else 0
     for line in layout.lines[:stop]:
         said = _SAYS.match(line.rstrip())
         # a digit before the colon: a time of day
-        if said and not said["key"][-1].isdigit() and len(found) < _MOST:
+        if said and not said["key"][-1].isdigit() and len(values) < _MOST:
             value = _value(said)
-            found.setdefault(value.name, value)
-    return list(found.values())
+            values.setdefault(value.name, value)
+    return list(values.values())
 
 
 def _value(said: re.Match[str]) -> DraftValue:

@@ -185,14 +185,14 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     text = squeezed(name)
     if not text:
         return []
-    found = []
+    options = []
     for word in SCAN_WORDS if scan else RUN_WORDS:
         score = _score(text, word)
         known = quantity(word.quantity)
         read_as = _MEANT.get(known.unit, {}).get(unit or "")
         if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
-            found.append(Match(word.quantity, score, read_as))
-    return sorted(found, key=lambda match: -match.score)
+            options.append(Match(word.quantity, score, read_as))
+    return sorted(options, key=lambda match: -match.score)
 
 
 def _score(text: str, word: Word) -> float:

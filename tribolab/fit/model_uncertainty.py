@@ -138,34 +138,33 @@ def model_uncertainty(
         inlet_length=begins,
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
-    given = {
+    speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
+    if np.any(speeds <= 0):
+        raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
+    given: dict[str, Any] = {
         "viscosity": eta,
         "load": force,
         "shear_stress": stress,
-        "speed": np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed")),
-    }
-    if np.any(given["speed"] <= 0):
-        raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
-    plain = {
+        "speed": speeds,
         "rough_body": rough_body,
         "friction_factors": friction_factors,
         "gamma": gamma,
         "inlet_length": begins,
     }
-    coarse = {**given, **plain, "cells": min(cells, _CELLS)}
+    coarse = {**given, "cells": min(cells, _CELLS)}
     with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
-        curve = stribeck_curve(contact, psd, **given, **plain, cells=cells)
+        curve = stribeck_curve(contact, psd, **given, cells=cells)
         reference = stribeck_curve(contact, psd, **coarse) if cells > _CELLS else curve
-        found = variations(base)
-        varied = [one for one in found if isinstance(one, Variation)]
+        unknowns = variations(base)
+        varied = [unknown for unknown in unknowns if isinstance(unknown, Variation)]
         mu, fitted, limits = _all_ends(contact, psd, coarse, varied, reference, refit)
-    left = [one for one in found if isinstance(one, Skipped)]
+    left = [unknown for unknown in unknowns if isinstance(unknown, Skipped)]
     height = reference["friction_coefficient"].values
     if error is None:
         left.append(Skipped("shear stress", "no shear_stress_error was given"))
     elif not refit:
-        one, ends = _of_stress(error, reference)
-        varied.append(one)
+        fitted_stress, ends = _of_stress(error, reference)
+        varied.append(fitted_stress)
         mu = np.concatenate([mu, ends[None]])
         fitted = np.concatenate([fitted, np.zeros((1, 2))])
     log_ratio = np.log(mu / height)
@@ -180,20 +179,20 @@ def model_uncertainty(
                 ("variation", "range_end", "sliding_speed"),
                 top * np.exp(log_ratio),
             ),
-            **_table(varied, mu, height, given["speed"]),
+            **_table(varied, mu, height, speeds),
             "shear_stress_change_low": ("variation", fitted[:, 0]),
             "shear_stress_change_high": ("variation", fitted[:, 1]),
         },
         {
-            "sliding_speed": given["speed"],
-            "variation": np.array([one.name for one in varied], dtype=str),
+            "sliding_speed": speeds,
+            "variation": np.array([variation.name for variation in varied], dtype=str),
             "range_end": ["low", "high"],
         },
     )
     return stamp(
         data.assign_attrs(curve.attrs),
-        load_N_m=given["load"],
-        not_varied="; ".join(f"{one.name}: {one.reason}" for one in left + held_fixed(base)),
+        load_N_m=force,
+        not_varied="; ".join(f"{name}: {reason}" for name, reason in left + held_fixed(base)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
         **together([curve.attrs, *limits]),
@@ -216,16 +215,17 @@ def _all_ends(
     mu, limits = np.full((len(varied), 2, aim.size), np.nan), []
     beyond = {reason.split(" is ")[0] for reason in reasons_of(reference.attrs)}
     fitted = np.full((len(varied), 2), np.nan)
-    for i, one in enumerate(varied):
-        for j, end in enumerate(one.ends):
+    for i, variation in enumerate(varied):
+        for j, end in enumerate(variation.ends):
             if end is None:
                 continue
             try:
                 changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
             except AnalysisError as error:
-                raise AnalysisError(error, where=f"varied {one.name} ({one.texts[j]})") from error
+                where = f"varied {variation.name} ({variation.texts[j]})"
+                raise AnalysisError(error, where=where) from error
             limits += [
-                {"validity_reasons": f"varied {one.name} ({one.texts[j]}): {reason}"}
+                {"validity_reasons": f"varied {variation.name} ({variation.texts[j]}): {reason}"}
                 for reason in reasons_of(changed.attrs)
                 if reason.split(" is ")[0] not in beyond
             ]
@@ -265,7 +265,7 @@ def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarr
     """Return the fitted stress's own error as a variation, and mu at its ends, without solving."""
     stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
     ends = np.array([max(stress - _NORMAL * error, 0.0), stress + _NORMAL * error])
-    texts = tuple(f"{end / 1e6:.3g} MPa" for end in ends)
+    texts = (f"{ends[0] / 1e6:.3g} MPa", f"{ends[1] / 1e6:.3g} MPa")
     reason = "1.96 standard errors of the fit"
     area = reference["friction_per_shear_stress"].values
     changed = mu + (ends - stress)[:, None] * area
@@ -285,9 +285,9 @@ def _table(
 ) -> dict[str, tuple[str, Any]]:
     """Return ends, reasons and largest changes of each variation."""
     words = {
-        "variation_low": [one.texts[0] for one in varied],
-        "variation_high": [one.texts[1] for one in varied],
-        "variation_reason": [one.reason for one in varied],
+        "variation_low": [variation.texts[0] for variation in varied],
+        "variation_high": [variation.texts[1] for variation in varied],
+        "variation_reason": [variation.reason for variation in varied],
     }
     table: dict[str, tuple[str, Any]] = {
         name: ("variation", np.array(texts, dtype=str))  # text also where nothing is varied

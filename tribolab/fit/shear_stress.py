@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,6 +26,7 @@ _LIKELY = 0.01  # probability of chi-square above which a range of speeds counts
 _FEWEST = 4  # speeds in such a range
 _ATOM = 1e-19  # m2, contact area under which the bodies do not touch
 _STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
+_Computed = Callable[[np.ndarray], xr.Dataset]  # the curve for logarithms of the free parameters
 
 
 def fit_shear_stress(
@@ -139,17 +140,17 @@ def fit_shear_stress(
         return stribeck_curve(body, psd, given.get("viscosity", eta), force, stress, speed, **model)
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
-    found, best = computed(start), start
+    model_curve, best = computed(start), start
     least = _ATOM / (force * contact.length)
-    if not np.any(_parts(found)[1][used] > least):
+    if not np.any(_parts(model_curve)[1][used] > least):
         raise AnalysisError(
             "at none of these speeds do the bodies touch; take lower speeds",
             function="fit_shear_stress",
         )
     if free:
         best = _profiled(computed, start, mu[used], error[used], used)
-        found = computed(best)
-    fluid, area = _parts(found)
+        model_curve = computed(best)
+    fluid, area = _parts(model_curve)
     area = np.where(area > least, area, 0.0)
     stress = _regression(mu[used], fluid[used], area[used], error[used])
     residual = mu - fluid - stress * area
@@ -170,7 +171,7 @@ def fit_shear_stress(
         np.log(speed[used]),
         known=source != "scatter",
     )
-    found = with_shear_stress(found, stress).assign(
+    model_curve = with_shear_stress(model_curve, stress).assign(
         friction_coefficient_residual=("sliding_speed", residual),
         used=("sliding_speed", used.astype(int)),
     )
@@ -193,7 +194,7 @@ def fit_shear_stress(
         error_from=source,
         spectrum_error=spectrum_error,
         spectrum_scanned="psd_2d_low" in (psd if psd is not None else ()),
-        curve=stamp(found),
+        curve=stamp(model_curve),
         parameters={"shear_stress": stress, **dict(zip(free, np.exp(best).tolist(), strict=True))},
         covariance=covariance,
     )
@@ -202,8 +203,10 @@ def fit_shear_stress(
 def shear_stress_ratio(one: ShearStressFit, other: ShearStressFit) -> tuple[float, float]:
     """Ratio of two corrected shear stresses [1] and its standard error, the fits independent."""
     ratio = one.corrected_shear_stress / other.corrected_shear_stress
-    parts = (f.corrected_shear_stress_error / f.corrected_shear_stress for f in (one, other))
-    return ratio, float(abs(ratio) * np.hypot(*parts))
+    relative, other_relative = (
+        fit.corrected_shear_stress_error / fit.corrected_shear_stress for fit in (one, other)
+    )
+    return ratio, float(abs(ratio) * np.hypot(relative, other_relative))
 
 
 def runs_p_value(residual: np.ndarray) -> float:
@@ -218,15 +221,15 @@ def runs_p_value(residual: np.ndarray) -> float:
     plus, minus = int(sign.sum()), int((~sign).sum())
     if plus == 0 or minus == 0:
         return 1.0  # one sign throughout says nothing of their order
-    found = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
+    seen = 1 + int(np.count_nonzero(sign[1:] != sign[:-1]))
     ways = 0.0
-    for runs in range(2, found + 1):
+    for runs in range(2, seen + 1):
         half = runs // 2
         if runs % 2 == 0:
-            ways += 2 * comb(plus - 1, half - 1) * comb(minus - 1, half - 1)
+            ways += float(2 * comb(plus - 1, half - 1) * comb(minus - 1, half - 1))
         else:
-            ways += comb(plus - 1, half) * comb(minus - 1, half - 1)
-            ways += comb(plus - 1, half - 1) * comb(minus - 1, half)
+            ways += float(comb(plus - 1, half) * comb(minus - 1, half - 1))
+            ways += float(comb(plus - 1, half - 1) * comb(minus - 1, half))
     return float(ways / comb(plus + minus, plus))
 
 
@@ -234,13 +237,13 @@ def _points(
     measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
     """Speeds, friction, errors, which to use, and where the errors come from."""
-    mu = measured.get("friction_coefficient")
-    if mu is not None and mu.dims == ("segment",):
+    given = measured.get("friction_coefficient")
+    if given is not None and given.dims == ("segment",):
         measured = measured_stribeck_curve([measured])
-    elif mu is None or mu.dims != ("sliding_speed",):
-        over = (
-            "is not in it" if mu is None else f"is over {', '.join(map(repr, mu.dims)) or 'none'}"
-        )
+    elif given is None or given.dims != ("sliding_speed",):
+        over = "is not in it"
+        if given is not None:
+            over = f"is over {', '.join(map(repr, given.dims)) or 'none'}"
         raise AnalysisError(
             f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
             cure=Cure(
@@ -288,22 +291,27 @@ def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, error: np.n
     return float(weighted @ (mu - fluid) / (weighted @ area))
 
 
-def _profiled(computed, start: np.ndarray, mu, error, used) -> np.ndarray:
+def _profiled(
+    computed: _Computed, start: np.ndarray, mu: np.ndarray, error: np.ndarray, used: np.ndarray
+) -> np.ndarray:
     """Logarithms of the free parameters at the least squares; sigma_f follows from each."""
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
         return (mu - fluid - _regression(mu, fluid, area, error) * area) / error
 
-    found = least_squares(residual, start, diff_step=_STEP, x_scale=1.0, xtol=1e-6, ftol=1e-8)
-    if not found.success:
+    steps = np.full(start.size, _STEP)
+    fit = least_squares(residual, start, diff_step=steps, x_scale=1.0, xtol=1e-6, ftol=1e-8)
+    if not fit.success:
         raise AnalysisError(
-            f"no least squares ({found.message}); free fewer", function="fit_shear_stress"
+            f"no least squares ({fit.message}); free fewer", function="fit_shear_stress"
         )
-    return found.x
+    return fit.x
 
 
-def _jacobian(computed, best: np.ndarray, stress: float, area, used) -> np.ndarray:
+def _jacobian(
+    computed: _Computed, best: np.ndarray, stress: float, area: np.ndarray, used: np.ndarray
+) -> np.ndarray:
     """Return the derivatives of mu over sigma_f and over the logarithms of the free parameters."""
     columns = [area[used]]
     for step in _STEP * np.eye(best.size):
@@ -323,7 +331,14 @@ def _covariance(weighted: np.ndarray, extra: np.ndarray) -> np.ndarray:
     return inverse @ inverse.T * np.outer(scale, scale)
 
 
-def _valid_range(speed, mu, fluid, area, error, used) -> tuple[float, float]:
+def _valid_range(
+    speed: np.ndarray,
+    mu: np.ndarray,
+    fluid: np.ndarray,
+    area: np.ndarray,
+    error: np.ndarray,
+    used: np.ndarray,
+) -> tuple[float, float]:
     """Find the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
     speed, mu, fluid, area, error = (a[used] for a in (speed, mu, fluid, area, error))
     best, widest = (np.nan, np.nan), 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import xarray as xr
@@ -13,7 +13,7 @@ from tribolab.contact.geometry import LineContact
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import SHORTEST, half_width
-from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
+from tribolab.lubrication.factors import CUTOFF, PERCOLATION, FlowFactors, RoughBody, flow_factors
 from tribolab.surface.extrapolation import MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
@@ -55,6 +55,25 @@ class Base(NamedTuple):
     youngs_modulus_range: tuple[float, float] | None
     inlet_length: float  # [m], infinite if nothing is stated
 
+    @property
+    def spectrum(self) -> xr.Dataset:
+        """The spectrum of a rough surface."""
+        assert self.psd is not None  # what is `OF_ROUGHNESS` is varied of rough surfaces alone
+        return self.psd
+
+
+class Changed(TypedDict, total=False):
+    """Arguments of `stribeck_curve` that one end of a range changes."""
+
+    psd: xr.Dataset
+    factors: FlowFactors
+    gamma: float
+    rough_body: RoughBody
+    friction_factors: bool
+    viscosity: float
+    contact: LineContact
+    inlet_length: float
+
 
 class Variation(NamedTuple):
     """One unknown, the ends of its range, and what each end changes in `stribeck_curve`."""
@@ -62,7 +81,7 @@ class Variation(NamedTuple):
     name: str
     reason: str
     texts: tuple[str, str]  # of the low and the high end; empty where there is only one
-    ends: tuple[dict[str, Any] | None, dict[str, Any] | None]
+    ends: tuple[Changed | None, Changed | None]
 
 
 class Skipped(NamedTuple):
@@ -74,14 +93,15 @@ class Skipped(NamedTuple):
 
 def spectrum_band(base: Base) -> Variation | Skipped:
     """Move the measured part to the ends of its band, what is extrapolated along with it."""
-    psd = base.psd
+    psd = base.spectrum
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")
     q, c = spectrum_arrays(psd)
     seen = np.flatnonzero((_origin(psd) == MEASURED) & (c > 0))
     if seen.size == 0:
         return Skipped("spectrum band", "no part of the spectrum is marked as measured")
-    ends, spread = [], []
+    ends: list[Changed] = []
+    spread = []
     for name in ("psd_2d_low", "psd_2d_high"):
         ratio = psd[name].values[seen] / c[seen]
         if not np.all(np.isfinite(ratio) & (ratio > 0)):
@@ -102,7 +122,7 @@ def spectrum_band(base: Base) -> Variation | Skipped:
 
 def long_waves(base: Base) -> Variation | Skipped:
     """Leave out what was extrapolated to small wavenumbers, or take more of it."""
-    psd, name = base.psd, "spectrum at long waves"
+    psd, name = base.spectrum, "spectrum at long waves"
     q, c = spectrum_arrays(psd)
     guessed = _origin(psd) == TO_SMALL
     if not guessed.any() or guessed.all():
@@ -128,39 +148,40 @@ def long_waves(base: Base) -> Variation | Skipped:
 
 def hurst_exponent(base: Base) -> Variation | Skipped:
     """Tilt what was extrapolated to large wavenumbers about the last measured one."""
-    q, c = spectrum_arrays(base.psd)
+    psd = base.spectrum
+    q, c = spectrum_arrays(psd)
     last = _measured_to(base)
     if last is None:
         return Skipped("Hurst exponent", _NO_TAIL)
-    fitted = float(base.psd.attrs.get("hurst_exponent_standard_error", 0.0))
+    fitted = float(psd.attrs.get("hurst_exponent_standard_error", 0.0))
     error = max(_HURST, _NORMAL * fitted)
-    hurst = base.psd.attrs.get("hurst_exponent", _local_exponent(q, c))
+    hurst = psd.attrs.get("hurst_exponent", _local_exponent(q, c))
     tilt = np.maximum(q / last, 1.0)
-    low, high = ({"psd": _spectrum(q, c * tilt ** (-2 * d))} for d in (-error, error))
+    low, high = (_spectrum(q, c * tilt ** (-2 * d)) for d in (-error, error))
     return Variation(
         "Hurst exponent",
         f"of the part above {last:.3g} 1/m; at least {_HURST:g}, as a spectrum need not be one "
         "power law over the decades that were not measured, or 1.96 standard errors of the fit",
         (f"H = {hurst - error:.3g}", f"H = {hurst + error:.3g}"),
-        (low, high),
+        ({"psd": low}, {"psd": high}),
     )
 
 
 def short_waves(base: Base) -> Variation | Skipped:
     """End the spectrum at longer waves, or carry it on to the size of an atom."""
-    name = "spectrum at short waves"
-    q, c = spectrum_arrays(base.psd)
+    psd, name = base.spectrum, "spectrum at short waves"
+    q, c = spectrum_arrays(psd)
     last = _measured_to(base)
     if last is None:
         return Skipped(name, _NO_TAIL)
     cut = max(last, q[-1] / _COARSER)
     atom = np.pi / _ATOM
-    longer = None
+    longer: Changed | None = None
     if q[-1] < atom and np.all(c[-2:] > 0):
         beyond = np.geomspace(q[-1], atom, 11)[1:]
         tail = c[-1] * (beyond / q[-1]) ** (-2 * (1 + _local_exponent(q, c)))
         longer = {"psd": _spectrum(np.append(q, beyond), np.append(c, tail))}
-    shorter = {"psd": band(base.psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
+    shorter: Changed | None = {"psd": band(psd[["psd_2d"]], q[0], cut)} if cut < q[-1] else None
     return Variation(
         name,
         "where the shortest waves that matter are is a convention: ten times longer, and an atom",
@@ -206,7 +227,7 @@ def energy_factor(base: Base) -> Variation | Skipped:
 
 def rough_body(base: Base) -> Variation:
     """Take the other body as the rough one: phi_s changes sign."""
-    other = "moving" if base.rough_body == "stationary" else "stationary"
+    other: RoughBody = "moving" if base.rough_body == "stationary" else "stationary"
     return Variation(
         "rough body",
         "which of the two is rough sets the sign of phi_s, and papers differ",
@@ -249,7 +270,10 @@ def youngs_modulus(base: Base) -> Variation | Skipped:
         "Young's modulus",
         "as stated; that of an elastomer hangs on batch, cure, age and frequency",
         (f"{low / 1e6:.3g} MPa", f"{high / 1e6:.3g} MPa"),
-        tuple({"contact": replace(base.contact, youngs_modulus=end)} for end in (low, high)),
+        (
+            {"contact": replace(base.contact, youngs_modulus=low)},
+            {"contact": replace(base.contact, youngs_modulus=high)},
+        ),
     )
 
 
@@ -307,9 +331,9 @@ def held_fixed(base: Base) -> list[Skipped]:
     return [Skipped(name, reason) for name, reason in fixed]
 
 
-def _factors(base: Base, **changed: float) -> dict[str, Any]:
+def _factors(base: Base, **changed: float) -> Changed:
     given = {"percolation": PERCOLATION, "gamma": base.gamma, **changed}
-    return {"factors": flow_factors(base.psd, base.rough_body, **given)}
+    return {"factors": flow_factors(base.spectrum, base.rough_body, **given)}
 
 
 def _origin(psd: xr.Dataset) -> np.ndarray:
@@ -320,7 +344,7 @@ def _origin(psd: xr.Dataset) -> np.ndarray:
 
 def _measured_to(base: Base) -> float | None:
     """Largest wavenumber that was measured, if there is more of the spectrum beyond it."""
-    q, _ = spectrum_arrays(base.psd)
+    q, _ = spectrum_arrays(base.spectrum)
     if base.measured_to is not None:
         if not q[0] < base.measured_to < q[-1]:
             raise AnalysisError(
@@ -329,7 +353,7 @@ def _measured_to(base: Base) -> float | None:
                 function="measured_to",
             )
         return base.measured_to
-    guessed = _origin(base.psd) == TO_LARGE
+    guessed = _origin(base.spectrum) == TO_LARGE
     return float(q[~guessed][-1]) if guessed.any() and not guessed.all() else None
 
 

@@ -37,9 +37,10 @@ class Models(NamedTuple):
     """What does not depend on the record: axes (time), their variances and the level on them."""
 
     axes: np.ndarray  # (time, axis, stretch)
-    variance: np.ndarray  # (time, white, axis)
+    weight: np.ndarray  # (time, white, axis): one over their variance
     level: np.ndarray  # (time, axis)
-    prior: np.ndarray  # (time, white), logarithm
+    of_level: np.ndarray  # (time, white): what all axes tell of the level
+    prior: np.ndarray  # (time, white), logarithm, with all that is the same for every record
 
 
 @lru_cache(maxsize=16)
@@ -52,7 +53,10 @@ def _models(count: int) -> Models:
     # no wander at all: the last share of white noise, at any time
     variance[:, -1, :] = 1.0
     prior[:, -1] = CALM / TIMES.size
-    return Models(axes, variance, axes.sum(axis=2), np.log(prior))
+    level, weight = axes.sum(axis=2), 1 / variance
+    of_level = (weight * level[:, None, :] ** 2).sum(axis=2)
+    fixed = np.log(prior) - 0.5 * (np.log(variance).sum(axis=2) + np.log(of_level))
+    return Models(axes, weight, level, of_level, fixed)
 
 
 def error_with_memory(record: np.ndarray) -> float:
@@ -84,21 +88,25 @@ def error_with_memory(record: np.ndarray) -> float:
     if not size > 0:
         return 0.0
     own = models.axes @ ((record - record.mean()) / size)
-    weight = 1 / models.variance
-    of_level = (weight * models.level[:, None, :] ** 2).sum(axis=2)
-    place = (weight * (models.level * own)[:, None, :]).sum(axis=2) / of_level
-    squares = (weight * own[:, None, :] ** 2).sum(axis=2) - of_level * place**2
+    weight, of_level = models.weight, models.of_level
+    place = (weight @ (models.level * own)[:, :, None])[:, :, 0] / of_level
+    squares = (weight @ (own**2)[:, :, None])[:, :, 0] - of_level * place**2
     scale = np.sqrt(np.maximum(squares, 1e-300) / (n - 1) / of_level)
-    likely = models.prior - 0.5 * (
-        np.log(models.variance).sum(axis=2) + np.log(of_level) + (n - 1) * np.log(squares)
-    )
+    likely = models.prior - 0.5 * (n - 1) * np.log(squares)
     chance = np.exp(likely - likely.max()).ravel()
     chance /= chance.sum()
     place, scale = place.ravel(), scale.ravel()
-    distance = np.geomspace(0.3, 60.0, 120) / np.sqrt(n)
-    above, below = (
-        special.stdtr(n - 1, -(distance[:, None] - way * place) / scale) for way in (1, -1)
-    )
-    beyond = (above + below) @ chance
-    third = float(np.exp(np.interp(-np.log(BEYOND), -np.log(beyond), np.log(distance)))) / 3
-    return third * size
+
+    def exceeded(distance: np.ndarray) -> np.ndarray:
+        """Return minus the logarithm of the chance that the level lies farther away."""
+        above, below = (
+            special.stdtr(n - 1, -(distance[:, None] - way * place) / scale) for way in (1, -1)
+        )
+        return -np.log((above + below) @ chance)
+
+    # first roughly, then between the two nearest
+    distance = np.geomspace(0.3, 60.0, 12) / np.sqrt(n)
+    after = int(np.clip(np.searchsorted(exceeded(distance), -np.log(BEYOND)), 1, 11))
+    distance = np.geomspace(distance[after - 1], distance[after], 10)
+    third = np.exp(np.interp(-np.log(BEYOND), exceeded(distance), np.log(distance))) / 3
+    return float(third * size)

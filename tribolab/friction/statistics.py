@@ -27,7 +27,7 @@ References
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from scipy import special
@@ -49,6 +49,9 @@ NARROWING, FEWER = 0.2, 11.0
 STUDENT = 8.0  # effective samples below which the error is at least as wide as Student's t asks
 
 
+_Samples = TypeVar("_Samples", float, np.ndarray)
+
+
 class Estimate(NamedTuple):
     """What a record says of its mean and trend."""
 
@@ -63,10 +66,20 @@ class Estimate(NamedTuple):
     trend_p_value: float
 
 
-NOTHING = Estimate(*[np.nan] * 3, 0, *[np.nan] * 5)
+NOTHING = Estimate(
+    mean=np.nan,
+    std=np.nan,
+    sem=np.nan,
+    samples=0,
+    effective_samples=np.nan,
+    autocorrelation_time=np.nan,
+    trend=np.nan,
+    trend_change=np.nan,
+    trend_p_value=np.nan,
+)
 
 
-def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
+def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     """Mean with its standard error, memory and trend of one record.
 
     Parameters
@@ -91,7 +104,7 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
     Examples
     --------
     >>> rng = np.random.default_rng(0)
-    >>> found = describe(np.arange(1000.0), 0.3 + 0.01 * rng.standard_normal(1000))
+    >>> found = estimate_of(np.arange(1000.0), 0.3 + 0.01 * rng.standard_normal(1000))
     >>> abs(found.mean - 0.3) < 3 * found.sem, 0.0002 < found.sem < 0.0005
     (True, True)
     """
@@ -114,7 +127,7 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    plain, sem = (float(one[0]) for one in error_of_mean(blocks[None, :]))
+    plain, sem = (float(width[0]) for width in error_of_mean(blocks[None, :]))
     effective = float(np.clip((std / plain) ** 2, 1.0, n))
     slow = 0.0 if _oscillates(blocks) else error_with_memory(blocks)
     error = max(sem, plain * student_widening(effective), slow)
@@ -135,7 +148,7 @@ def describe(time: np.ndarray, values: np.ndarray) -> Estimate:
 
 def _oscillates(record: np.ndarray) -> bool:
     """Whether most of a record goes to and fro: its periods cancel, and no wander is left."""
-    power, _ = spectrum((record - record.mean())[None, :])
+    power, _ = model_spectra((record - record.mean())[None, :])
     cycles = np.arange(power.shape[1]) * record.size / GRID
     return bool(power[0, cycles > 2.5].max(initial=0.0) > HUMP * power[0, 0])
 
@@ -246,7 +259,7 @@ def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndar
     return np.stack(models)[best, rows], sigma, best
 
 
-def spectrum(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def model_spectra(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Model spectra of records on `GRID` / 2 + 1 frequencies, corrected near zero.
 
     Returns
@@ -293,7 +306,7 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     n = records.shape[1]
     centred = records - records.mean(axis=1, keepdims=True)
-    power, floor = spectrum(centred)
+    power, floor = model_spectra(centred)
     plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
     effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
     student = special.stdtrit(n - 1, 0.995) / special.ndtri(0.995)
@@ -303,7 +316,7 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plain, plain * student * beside * _widening(effective, n)
 
 
-def _widening(effective: np.ndarray | float, n: int) -> np.ndarray | float:
+def _widening(effective: _Samples, n: int) -> _Samples:
     """Return the factor by which a spectrum known from few effective samples widens an error."""
     share = effective / min(n / BLOCKS, 1)
     wide = 1 + WIDENING / (1 + (share / FEW) ** 2)
@@ -323,7 +336,7 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     rest = record - record.mean() - slope * place
     if not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()):
         return slope, 0.0 if slope else 1.0
-    power, _ = spectrum(rest[None, :])
+    power, _ = model_spectra(rest[None, :])
     error = float(np.sqrt(variance_of_sum(power, weights)[0]))
     plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
     effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)

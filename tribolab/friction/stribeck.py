@@ -130,8 +130,8 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         key = np.where(friction["pair"].values >= 0, friction["pair"].values, own)
     result = []
-    for one in np.unique(key[known]):
-        part = known & (key == one)
+    for group in np.unique(key[known]):
+        part = known & (key == group)
         result.append(
             _Value(
                 run,
@@ -168,8 +168,8 @@ def _combined(values: list[_Value]) -> tuple[float, ...]:
     run = np.array([v.run for v in values])
     mu, sem = np.array([v.mu for v in values]), np.array([v.sem for v in values])
     means, squares, freedom = [], 0.0, 0
-    for one in np.unique(run):
-        part = run == one
+    for number in np.unique(run):
+        part = run == number
         means.append(_random_effects(mu[part], sem[part]))
         squares += float(np.sum((mu[part] - mu[part].mean()) ** 2))
         freedom += int(part.sum()) - 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -13,7 +13,19 @@ from tribolab.io.dialects.signature import peek
 from tribolab.io.runs import read
 
 
-def describe_companion(path: str | Path, instrument: str | Path | None = None) -> dict[str, Any]:
+class CompanionFacts(TypedDict, total=False):
+    """What is known of a companion log; see `describe_companion`."""
+
+    missing: str
+    refused: str
+    instrument: str
+    shift_s: float
+    uncertainty_s: float
+    source: str
+    ways: dict[str, str]
+
+
+def describe_companion(path: str | Path, instrument: str | Path | None = None) -> CompanionFacts:
     """Say what was found of a raw file's companion log, and how the clocks were matched.
 
     Parameters
@@ -42,7 +54,7 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
         return {"refused": error.told("terminal")}
     if "companion_missing" in attrs:
         return {"missing": attrs["companion_missing"]}
-    told: dict[str, Any] = {
+    told: CompanionFacts = {
         "instrument": attrs["companion_instrument"],
         "shift_s": float(attrs["clock_shift_s"]),
         "uncertainty_s": float(attrs["clock_shift_uncertainty_s"]),

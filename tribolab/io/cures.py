@@ -33,7 +33,7 @@ def name_instrument(table: str = "", say: str = "say which with") -> Cure:
     )
 
 
-def draft_dialect(path: Path, table: str) -> Cure:
+def unknown_instrument(path: Path, table: str) -> Cure:
     """Cure for a file of an instrument that is not known, and where to name what is drafted."""
     command = "'tribolab dialect {}' drafts a description of it"
     name = name_instrument(table, say="name it with")

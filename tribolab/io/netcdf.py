@@ -1,31 +1,32 @@
-"""Results as netCDF: attributes that netCDF refuses are encoded here, and only here."""
+"""Results as netCDF: what is written comes back the same."""
 
 from __future__ import annotations
 
 import contextlib
-import json
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief, shown
+from tribolab.io.attributes import decoded
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
+from tribolab.io.storage import write_into
 
 if TYPE_CHECKING:
     import netCDF4
 
 GROUPS = "groups"  # attribute of the root of a file of groups
-CHUNK = 65_536  # samples; a default chunk would be the whole array
-_COMPRESSION = 2
-_MARK, _TUPLE = "json:", "json-tuple:"
 # What netCDF4 and xarray raise on a file that is damaged.
-_DAMAGE = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError)
-_DAMAGE += (MemoryError, OverflowError)
+_DAMAGE = (
+    *(OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError),
+    *(MemoryError, OverflowError),
+)
+# What they raise on data that netCDF cannot hold, and on a disk that takes no more.
+_REFUSED = (OSError, ValueError, TypeError, AttributeError, KeyError, RuntimeError)
 
 
 def write_netcdf(
@@ -60,10 +61,10 @@ def write_netcdf(
 
     Notes
     -----
-    Long arrays are stored in chunks of 65 536 samples with shuffle and zlib. True, False, None,
-    dicts and lists among the attributes become JSON text behind the mark ``json:``. In a file of
-    groups the root's attribute ``groups`` names them, for those who open the root alone. The file
-    is sealed (see `tribolab.io.seal`).
+    Long arrays are stored in chunks of 65 536 samples with zlib, shuffled where that makes them
+    smaller. True, False, None, dicts and lists among the attributes become JSON text behind the
+    mark ``json:``. In a file of groups the root's attribute ``groups`` names them, for those who
+    open the root alone. The file is sealed (see `tribolab.io.seal`).
 
     Examples
     --------
@@ -76,23 +77,53 @@ def write_netcdf(
     """
     path = Path(path)
     mode = mode or ("a" if group and path.exists() else "w")
-    encoded = data.copy()
-    encoded.attrs = _encoded(data.attrs)
-    encoding = {}
-    for name in encoded.variables:
-        variable = encoded[name]
-        variable.attrs = _encoded(data[name].attrs)
-        variable.encoding = {}
-        encoding[name] = _storage(variable)
+    return _write(path, {group: data}, mode)
+
+
+def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> Path:
+    """Write datasets as the groups of a new file, which is opened but once; as `write_netcdf`.
+
+    Parameters
+    ----------
+    groups
+        Dataset by name of the group; None stands for the root.
+    path
+        The file; one that is there is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    TribolabError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_groups({None: xr.Dataset(), "run": run}, Path(folder) / "run.nc")
+    ...     read_netcdf(path).attrs, read_netcdf(path, "run").identical(run)
+    ({'groups': 'run'}, True)
+    """
+    return _write(Path(path), groups, "w")
+
+
+def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w", "a"]) -> Path:
+    import netCDF4
+
     try:
         if mode == "a" and path.is_file():
             unseal(path)
-        with _plain_name(path) as file:
-            encoded.to_netcdf(file, mode=mode, group=group, encoding=encoding, engine="netcdf4")
-            if group:
-                _name_groups(file)
+        with _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
+            write_into(file, groups)
+            if any(groups):  # whoever opens the file without a group sees the root alone
+                file.setncattr(GROUPS, "; ".join(file.groups))
         seal(path)
-    except (OSError, ValueError, TypeError) as error:
+    except _REFUSED as error:
         raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
     return path
 
@@ -203,17 +234,17 @@ def _load(
     try:
         with opened(path) as file:
             there = list(file.groups)
-            found = {}
+            datasets = {}
             for name in groups:
                 group = ("run" if "run" in there else None) if name == "run?" else name
                 if group is None or group in there:
-                    found[name] = _group(file, group)
+                    datasets[name] = _group(file, group)
                 elif not optional:
                     raise ReadError(
                         f"{path}: there is no group '{shown(group)}'; there are "
                         f"{', '.join(there) or 'none'}"
                     )
-        return found
+        return datasets
     except _DAMAGE as error:
         raise ReadError(
             f"{path}: this is not a netCDF file that can be read: {brief(error)}"
@@ -223,73 +254,10 @@ def _load(
 def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
     store = xr.backends.NetCDF4DataStore(file, group=group)
     data = xr.open_dataset(store, decode_times=False, mask_and_scale=False).load()
-    data.attrs = _decoded(data.attrs)
+    data.attrs = decoded(data.attrs)
     for name in data.variables:
-        data[name].attrs = _decoded(data[name].attrs)
+        data[name].attrs = decoded(data[name].attrs)
         data[name].encoding = {}
     data.encoding = {}
     data.set_close(None)  # it is in memory: an open file could not travel to another process
     return data
-
-
-def _name_groups(path: Path) -> None:
-    """Name the groups at the root: whoever opens a file without a group sees the root alone."""
-    import netCDF4
-
-    with netCDF4.Dataset(path, "a") as file:
-        file.setncattr(GROUPS, "; ".join(file.groups))
-
-
-def _storage(variable: xr.DataArray) -> dict[str, Any]:
-    storage: dict[str, Any] = {}
-    if variable.dtype.kind in "fiu":
-        storage["_FillValue"] = None
-        if variable.ndim and variable.size > 1024:
-            chunks = tuple(min(length, CHUNK) for length in variable.shape)
-            storage |= {
-                "zlib": True,
-                "shuffle": True,
-                "complevel": _COMPRESSION,
-                "chunksizes": chunks,
-            }
-    return storage
-
-
-def _encoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
-    return {str(name): _encode(value) for name, value in attrs.items()}
-
-
-def _encode(value: Any) -> Any:
-    if isinstance(value, str):
-        # text that happens to begin with the mark must come back as text
-        return _MARK + json.dumps(value) if value.startswith((_MARK, _TUPLE)) else value
-    if isinstance(value, np.bool_):
-        value = bool(value)
-    if isinstance(value, np.ndarray | np.generic):
-        return value
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return value
-    mark = _TUPLE if isinstance(value, tuple) else _MARK
-    return mark + json.dumps(value, ensure_ascii=False, default=_plain)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.generic | np.ndarray):
-        return value.tolist()
-    return str(value)
-
-
-def _decoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
-    return {str(name): _decode(value) for name, value in attrs.items()}
-
-
-def _decode(value: Any) -> Any:
-    if isinstance(value, str) and value.startswith(_TUPLE):
-        return tuple(json.loads(value.removeprefix(_TUPLE)))
-    if isinstance(value, str):
-        return json.loads(value.removeprefix(_MARK)) if value.startswith(_MARK) else value
-    if isinstance(value, np.integer):
-        return int(value)
-    if isinstance(value, np.floating):
-        return float(value)
-    return value

@@ -53,10 +53,10 @@ def read_own_run(path: Path) -> xr.Dataset:
             )
     run = run.drop_vars(strange)
     run.attrs = _attributes(run.attrs)
-    for name in run.variables:
-        run[name].attrs = {
+    for variable in run.variables:
+        run[variable].attrs = {
             key: value
-            for key, value in run[name].attrs.items()
+            for key, value in run[variable].attrs.items()
             if isinstance(value, str) or key not in ("units", "long_name", "standard_name")
         }
     if strange:

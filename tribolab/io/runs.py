@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -160,7 +160,33 @@ def group_files(
     return [groups[file] for file in order if file not in taken]
 
 
-def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, Any]:
+class ColumnFacts(TypedDict):
+    """What a quantity was called, and between which values it lies, in SI."""
+
+    label: str
+    unit: str
+    minimum: float
+    maximum: float
+
+
+class FileFacts(TypedDict):
+    """What was understood of a raw file; see `describe`."""
+
+    file: str
+    instrument: str
+    title: str
+    columns: dict[str, ColumnFacts]
+    not_used: list[str]
+    rows: int
+    duration_s: float
+    interval_s: float | None
+    longest_interval_s: float | None
+    steps: int | None
+    left_out: str
+    metadata: dict[str, object]
+
+
+def describe(path: PathLike, instrument: str | Path | None = None) -> FileFacts:
     """Say what was understood of one raw file.
 
     Parameters
@@ -187,7 +213,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> dict[str, 
     time = run["time"].to_numpy()
     gaps = np.diff(time)
     labels = run.attrs.get("columns_used", {})
-    columns = {
+    columns: dict[str, ColumnFacts] = {
         str(name): {
             "label": labels.get(str(name), ""),
             "unit": run[name].attrs.get("units", ""),
@@ -270,8 +296,10 @@ def _run(logs: Logs) -> xr.Dataset:
     contents = [read_content(path, dialect) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
-    if all(content.pieces[0].started for content in contents):
-        contents.sort(key=lambda content: content.pieces[0].started)
+    starts = [content.pieces[0].started for content in contents]
+    dated = [(start, content) for start, content in zip(starts, contents, strict=True) if start]
+    if len(dated) == len(contents):
+        contents = [content for _, content in sorted(dated, key=lambda pair: pair[0])]
     joined = join_clocks(contents, dialect)
     columns = _columns(contents, dialect)
     if "part" in joined and "step" not in columns:
@@ -292,7 +320,7 @@ def _run(logs: Logs) -> xr.Dataset:
     attrs |= _attributes(contents, dialect, origin)
     attrs |= row_attributes(len(time), contents, mended, dialect)
     if "joined" in joined:
-        attrs["clock_joined"] = joined["joined"]
+        attrs["clock_joined"] = str(joined["joined"])
     data = xr.Dataset(
         {name: ("time", values) for name, values in columns.items()},
         coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),

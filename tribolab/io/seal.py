@@ -78,8 +78,8 @@ def is_sealed(path: Path) -> bool:
         if left < 0:
             return False
         file.seek(left)
-        found = file.read()
-        if not found.startswith(_MARK):
+        magic = file.read()
+        if not magic.startswith(_MARK):
             return False
         file.seek(0)
         digest = hashlib.sha256()
@@ -89,7 +89,7 @@ def is_sealed(path: Path) -> bool:
                 return False
             digest.update(block)
             left -= len(block)
-    return found == _MARK + digest.hexdigest().encode()
+    return magic == _MARK + digest.hexdigest().encode()
 
 
 def try_out(path: Path) -> None:

@@ -20,7 +20,7 @@ _CLASS = 100.0  # films within this factor share a mesh
 SHORTEST = 1.5  # half-widths from the middle to where the liquid may begin
 
 
-class Layout(NamedTuple):
+class MeshLayout(NamedTuple):
     """All but the cells that the mesh of a speed hangs on, as `graded_mesh` takes it."""
 
     edge: float
@@ -29,7 +29,7 @@ class Layout(NamedTuple):
     size: float
 
 
-def layout(film: float, decay: float, domain: float, inlet_length: float) -> Layout:
+def layout(film: float, decay: float, domain: float, inlet_length: float) -> MeshLayout:
     """Choose the mesh for the film of one speed alone, whatever other speeds are asked for.
 
     Parameters
@@ -55,7 +55,7 @@ def layout(film: float, decay: float, domain: float, inlet_length: float) -> Lay
     # outside a Hertz contact the gap grows as 1.9 g (x/a - 1)^1.5
     edge = (max(decay, lowest) / 1.9) ** (2 / 3)
     open_end = np.isinf(inlet_length)
-    return Layout(
+    return MeshLayout(
         _rounded(np.clip(edge, 3e-4, 0.5)),
         _rounded(_INLET * reach) if open_end else float(inlet_length),
         _rounded(_OUTLET * reach),

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import PchipInterpolator, PPoly
 from scipy.special import erfinv
 
 from tribolab.contact.gap import COMPLETE, gap_distributions
@@ -83,8 +83,8 @@ class FlowFactors:
         """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
         u = np.asarray(separation, dtype=float)
         if self.flow is None or self.friction is None:
-            one, zero = np.ones_like(u), np.zeros_like(u)
-            return Factors(one, zero, one, zero, one)
+            ones, zero = np.ones_like(u), np.zeros_like(u)
+            return Factors(ones, zero, ones, zero, ones)
         phi_p, open_flow = self.flow(u)[0]
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
         phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)
@@ -286,6 +286,8 @@ class FactorTable:
     origin: float
     coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
     limit: np.ndarray  # at infinity (factor)
+    _curve: PchipInterpolator = field(init=False, repr=False)
+    _slope: PPoly = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Fit the curve once."""

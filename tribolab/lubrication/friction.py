@@ -45,5 +45,5 @@ def fluid_friction(
 
 
 def _plain(u: np.ndarray) -> Factors:
-    one, zero = np.ones_like(u), np.zeros_like(u)
-    return Factors(one, zero, one, zero, one)
+    ones, zero = np.ones_like(u), np.zeros_like(u)
+    return Factors(ones, zero, ones, zero, ones)

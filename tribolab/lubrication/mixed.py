@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import lapack
 
-from tribolab.contact.separation import Separation
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mesh import Mesh
 
@@ -20,12 +19,19 @@ _CONVERGED = 1e-10  # of the maximum pressure, and of the load
 _ROUNDING = 1e-8  # the same, where a further step no longer gains
 
 
+class Repulsion(Protocol):
+    """What pushes the bodies apart where they are near: a rough contact, or what stands in."""
+
+    def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
+
+
 class Problem(NamedTuple):
     """All that does not change with speed; lengths along x in b, gaps in g, pressures in p."""
 
     mesh: Mesh
     factors: FlowFactors
-    separation: Separation | None  # none between smooth surfaces: they never touch
+    separation: Repulsion | None  # none between smooth surfaces: they never touch
     load: float  # F_N/L in units of p b
     half_width: float  # b [m]
     gap: float  # g = b^2/(2R) [m]

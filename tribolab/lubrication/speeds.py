@@ -78,10 +78,10 @@ def solve_speeds(system: System, force: float, speeds: np.ndarray) -> list[Point
     for _, group in groupby(posed, key=lambda pair: id(pair[1].mesh)):
         some = list(group)
         problem, wanted = some[0][1], [v for v, _ in some]
-        found = _carried_on(system, force, problem, wanted, points[-1]) if points else None
-        if found is None:
-            found = _afresh(system, force, problem, np.array(wanted))
-        points += [Point(v, problem, one) for v, one in zip(wanted, found, strict=True)]
+        solutions = _carried_on(system, force, problem, wanted, points[-1]) if points else None
+        if solutions is None:
+            solutions = _afresh(system, force, problem, np.array(wanted))
+        points += [Point(v, problem, s) for v, s in zip(wanted, solutions, strict=True)]
     return points
 
 

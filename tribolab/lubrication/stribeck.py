@@ -184,7 +184,7 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
     added = {
         name: curve[name] + solid for name in ("friction_coefficient", "friction_without_factors")
     }
-    curve = curve.assign(friction_coefficient_solid=solid, **added)
+    curve = curve.assign({"friction_coefficient_solid": solid, **added})
     return stamp(curve, shear_stress_Pa=shear_stress)
 
 
@@ -309,7 +309,7 @@ def _curve(
     magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
     points = solve_speeds(system, force, magnitudes)
     # all in one: the pressures of all meshes have one unit
-    solid = np.stack([one.solution.fields.contact * one.problem.pressure for one in points])
+    solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
     rows = [
         _row(system, force, point, area, friction_factors)
         for point, area in zip(points, _area(system, solid), strict=True)

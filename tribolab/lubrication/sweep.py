@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ import xarray as xr
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_pressure
 from tribolab.contact.line import line_kernel, rough_line_contact
+from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import film_estimate
 from tribolab.lubrication.mesh import Mesh
@@ -41,7 +42,7 @@ def dry_state(problem: Problem, contact: LineContact, psd: xr.Dataset, load: flo
     NotConvergedError
         If Newton's method fails.
     """
-    gamma = problem.separation.gamma if problem.separation else 0.45
+    gamma = problem.separation.gamma if isinstance(problem.separation, Separation) else 0.45
     dry = rough_line_contact(load, contact, psd, gamma, _START_POINTS)
     x = problem.mesh.x * problem.half_width
     pressure = np.interp(x, dry.x.values, dry.pressure.values, left=0.0, right=0.0)
@@ -130,7 +131,7 @@ class _Cushion(NamedTuple):
 def sweep(
     problem: Problem,
     viscosity: float,
-    speeds: Sequence[float],
+    speeds: Iterable[float],
     start: State | None,
     lifted: Callable[[], State] | None = None,
 ) -> list[Solution]:
@@ -187,7 +188,7 @@ def _march(
             aim = aims[-1]
             number = couette_number(problem, viscosity, float(np.exp(aim)))
             try:
-                found = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
+                solution = solve_speed(problem, number, _predicted(problem.mesh, known, start, aim))
             except NotConvergedError as error:
                 budget -= 1
                 closer = (aim + known[-1][0]) / 2 if known else aim - np.log(10)
@@ -196,9 +197,9 @@ def _march(
                     return solved, error
                 aims.append(closer)
                 continue
-            known = [*known[-2:], (aim, found.state)]
+            known = [*known[-2:], (aim, solution.state)]
             aims.pop()
-        solved.append(found)
+        solved.append(solution)
     return solved, None
 
 

@@ -80,7 +80,7 @@ def _apart(row: xr.Dataset) -> str:
     return text
 
 
-def adhesion(known: Mode) -> Evidence | None:
+def macroscopic_adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion reaches the macroscopic scale."""
     work, bounds = known.work_of_adhesion, known.work_of_adhesion_range
     if work is None:
@@ -99,7 +99,7 @@ def adhesion(known: Mode) -> Evidence | None:
     return Evidence(AGAINST, text, "adhesion")
 
 
-def doubt(known: Mode) -> Evidence | None:
+def vanishing_adhesion(known: Mode) -> Evidence | None:
     """Whether adhesion may vanish within its bounds."""
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
@@ -203,11 +203,12 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
     """Say what friction a uniform slip at the rough surfaces' shear stress would need."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
-    if not uniform > BELOW * seen > 0:  # nothing to explain
+    stress = known.rough_shear_stress
+    if stress is None or not uniform > BELOW * seen > 0:  # nothing to explain
         return None
     text = (
         f"uniform slip at the rough surfaces' shear stress "
-        f"({1e-6 * known.rough_shear_stress:.2g} MPa) over A/A0 = {known.area_ratio:.2g} would "
+        f"({1e-6 * stress:.2g} MPa) over A/A0 = {known.area_ratio:.2g} would "
         f"need µ = {uniform:.2g}; µ = {friction_text(seen)} is measured"
     )
     if known.youngs_modulus:

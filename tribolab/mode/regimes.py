@@ -45,20 +45,20 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
     error = np.zeros(mu.size)
     if "friction_coefficient_sem" in curve:
         error = np.nan_to_num(curve["friction_coefficient_sem"].values)
-    found = np.full(mu.size, MIXED, dtype=object)
+    regimes = np.full(mu.size, MIXED, dtype=object)
     if mu.size < 3:
-        return found
+        return regimes
     level = float(np.median(mu[:3]))
     flat = np.abs(mu - level) <= np.maximum(FLAT * abs(level), SIGMAS * error)
     count = int(np.argmin(np.append(flat, False)))
     if count >= 3:
-        found[:count] = BOUNDARY
+        regimes[:count] = BOUNDARY
     lowest = int(np.argmin(mu))
     risen = np.arange(mu.size) > lowest
     risen &= mu > np.maximum(RISE * mu[lowest], mu[lowest] + SIGMAS * error)
     if count < mu.size:
-        found[risen & (found != BOUNDARY)] = HYDRODYNAMIC
-    return found
+        regimes[risen & (regimes != BOUNDARY)] = HYDRODYNAMIC
+    return regimes
 
 
 def model_regimes(curve: xr.Dataset) -> np.ndarray:

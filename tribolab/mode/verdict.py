@@ -125,12 +125,12 @@ def sliding_mode(
     known = known or Mode()
     curve = _curve(measured, model, slip, known.fluid)
     numbers = _numbers(measured, model, curve, known) | _in_band(measured, band)
-    found = tuple(
-        one
-        for one in (
+    weighed = tuple(
+        told
+        for told in (
             evidence.traces(slip),
-            evidence.adhesion(known),
-            evidence.doubt(known),
+            evidence.macroscopic_adhesion(known),
+            evidence.vanishing_adhesion(known),
             evidence.strength(slip),
             evidence.scaling(slip),
             evidence.weakening(curve, slip),
@@ -138,7 +138,7 @@ def sliding_mode(
             evidence.misfit(numbers),
             evidence.uniform_slip(numbers, known),
         )
-        if one is not None
+        if told is not None
     )
     verdict = _verdict(slip, known)
     numbers |= evidence.forced_wetting(curve, slip, known) if verdict == SUSPECTED else {}
@@ -147,15 +147,15 @@ def sliding_mode(
     return SlidingMode(
         verdict,
         text,
-        found,
+        weighed,
         decide,
-        paragraph(name, text, found, decide, numbers),
+        paragraph(name, text, weighed, decide, numbers),
         curve,
         numbers,
     )
 
 
-def oscillating(slip: xr.Dataset | None) -> np.ndarray:
+def oscillating_speeds(slip: xr.Dataset | None) -> np.ndarray:
     """Speeds at which stick-slip is claimed [m/s]."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
@@ -165,7 +165,7 @@ def oscillating(slip: xr.Dataset | None) -> np.ndarray:
 def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
     if slip is None or slip.sizes.get("sliding_speed", 0) == 0:
         return UNKNOWN
-    if not oscillating(slip).size:
+    if not oscillating_speeds(slip).size:
         undecided = slip["waveform"].values == UNDECIDED
         return UNKNOWN if undecided.mean() > 0.5 else NO_STICK_SLIP
     if known.work_of_adhesion is None or slip.attrs.get("scaling") == FIXED_FREQUENCY:
@@ -252,9 +252,8 @@ def _numbers(
         off = curve["friction_coefficient_model"].values - mu
         if np.isfinite(off).any():
             numbers["model_misfit"] = float(np.sqrt(np.nanmean(off**2)) / np.nanmax(mu))
-    given = (known.rough_shear_stress, known.area_ratio, known.pressure)
-    if all(x is not None for x in given):
-        stress, area, pressure = given
+    stress, area, pressure = known.rough_shear_stress, known.area_ratio, known.pressure
+    if stress is not None and area is not None and pressure is not None:
         numbers["uniform_stress_Pa"] = stress * area
         numbers["uniform_friction"] = stress * area / pressure
     return numbers

@@ -69,22 +69,22 @@ def suggestions(
 ) -> tuple[str, ...]:
     """Return what measurement would decide."""
     if verdict == "adhesion-controlled macroscopic instability suspected":
-        found = [
+        advice = [
             "watch the contact through the transparent body: detached folds that cross it would "
             "show the instability, a still picture would refute it",
             "measure the pull-off force: it has to be finite where γ_eff(1) > 0",
         ]
         if known.fluid:
-            found.append(
+            advice.append(
                 "change the viscosity: forced wetting would move with viscosity times speed, "
                 "an instability of the rig would not"
             )
         else:
-            found.append(
+            advice.append(
                 "change the stiffness of the rig: stick-slip of the rig would change its "
                 "wavelength, folds in the contact would not"
             )
-        return tuple(found)
+        return tuple(advice)
     if verdict == "stick-slip of unknown origin":
         if known.work_of_adhesion is not None:
             return ("change stiffness or mass of the rig: its own vibration would move with them",)
@@ -120,7 +120,7 @@ def paragraph(
         ("against", "Against it:"),
         ("neutral", "Beside it:"),
     ):
-        mine = [one.text for one in evidence if one.side == side]
+        mine = [told.text for told in evidence if told.side == side]
         if mine:
             parts.append(f"{opening} {'; '.join(mine)}.")
     if decide:

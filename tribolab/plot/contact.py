@@ -6,14 +6,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import (
-    band,
     colours,
     legend_above,
     logarithmic,
     name_style,
     name_surfaces,
+    shaded_band,
     single_axes,
 )
 from tribolab.plot.labels import column, label
@@ -22,8 +24,8 @@ from tribolab.words import is_dry, number
 
 Surfaces = Mapping[str, xr.Dataset]
 _SMALLEST_AREA = 1e-4
-_WET_STYLES = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
-_DRY_STYLES = ("--", (0, (2, 1)))
+_WET_STYLES: tuple[LineStyleType, ...] = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
+_DRY_STYLES: tuple[LineStyleType, ...] = ("--", (0, (2, 1)))
 
 
 def contact_area(
@@ -72,7 +74,7 @@ def contact_area(
             columns = {column("pressure"): p, "contact_area_ratio": area}
             if "contact_area_ratio_low" in contact:
                 low, high = (contact[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
-                band(axes, p, low, high, chosen[name])
+                shaded_band(axes, p, low, high, chosen[name])
                 columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
             axes.plot(p, area, color=chosen[name], linewidth=1.1)
             figure.keep("contact area", name, **columns)
@@ -127,19 +129,19 @@ def adhesive_area(
     media = _media(adhesions)
     with paper_style():
         figure, axes = single_axes()
-        for name, found in adhesions.items():
+        for name, contact in adhesions.items():
             if name in contacts:
                 p, area = (contacts[name][k].values for k in ("pressure", "contact_area_ratio"))
                 axes.plot(p, area, color=chosen[name], linestyle=":", linewidth=1.1)
                 columns = {column("pressure"): p, "contact_area_ratio": area}
                 figure.keep("contact area", f"{name}, no adhesion", **columns)
-            for medium in found.medium.values.tolist():
-                one, p = found.sel(medium=medium), found.pressure.values
-                area = one.contact_area_ratio.values
+            for medium in contact.medium.values.tolist():
+                wet, p = contact.sel(medium=medium), contact.pressure.values
+                area = wet.contact_area_ratio.values
                 columns = {column("pressure"): p, "contact_area_ratio": area}
-                if "contact_area_ratio_low" in one:
-                    low, high = (one[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
-                    band(axes, p, low, high, chosen[name])
+                if "contact_area_ratio_low" in wet:
+                    low, high = (wet[f"contact_area_ratio_{end}"].values for end in ("low", "high"))
+                    shaded_band(axes, p, low, high, chosen[name])
                     columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
                 axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
                 figure.keep("contact area", f"{name}, {medium}", **columns)
@@ -182,10 +184,10 @@ def effective_work(
     media = _media(adhesions)
     with paper_style():
         figure, axes = single_axes()
-        for name, found in adhesions.items():
-            for medium in found.medium.values.tolist():
-                zeta = found.magnification.values
-                work = found.effective_work_of_adhesion.sel(medium=medium).values
+        for name, contact in adhesions.items():
+            for medium in contact.medium.values.tolist():
+                zeta = contact.magnification.values
+                work = contact.effective_work_of_adhesion.sel(medium=medium).values
                 axes.plot(zeta, work, color=chosen[name], linestyle=media[medium], linewidth=1.1)
                 columns = {
                     "magnification": zeta,
@@ -227,8 +229,8 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
     with paper_style():
         figure, axes = single_axes()
         ends = []
-        for name, found in distributions.items():
-            u, density = found.gap.values, found.gap_density.values
+        for name, data in distributions.items():
+            u, density = data.gap.values, data.gap_density.values
             share = u * density
             axes.plot(u, share, color=chosen[name], linewidth=1.1)
             ends.append(u[share > 1e-3 * share.max()][[0, -1]])
@@ -237,7 +239,7 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
         name_surfaces(axes, chosen)
         logarithmic(axes, "x")
         # below the cut-off a gap is smaller than an atom
-        smallest = min(found.attrs.get("cutoff_m", 0.0) for found in distributions.values())
+        smallest = min(data.attrs.get("cutoff_m", 0.0) for data in distributions.values())
         axes.set_xlim(max(np.min(ends) / 1.5, smallest), 1.5 * np.max(ends))
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_xlabel(label("gap"))
@@ -298,9 +300,9 @@ def line_pressure(
     return figure
 
 
-def _media(adhesions: Surfaces) -> dict[str, object]:
+def _media(adhesions: Surfaces) -> dict[str, LineStyleType]:
     """Give every medium a line style: dashed where it is dry."""
-    names = dict.fromkeys(m for found in adhesions.values() for m in found.medium.values.tolist())
+    names = dict.fromkeys(m for data in adhesions.values() for m in data.medium.values.tolist())
     dry = [name for name in names if is_dry(name)]
     wet = [name for name in names if not is_dry(name)]
     return {
@@ -310,7 +312,7 @@ def _media(adhesions: Surfaces) -> dict[str, object]:
     }
 
 
-def _mark(figure: PaperFigure, axes, loads: xr.Dataset | None) -> None:
+def _mark(figure: PaperFigure, axes: Axes, loads: xr.Dataset | None) -> None:
     if loads is None:
         return
     pressure, force = loads.pressure.values, loads.normal_force.values
@@ -321,7 +323,7 @@ def _mark(figure: PaperFigure, axes, loads: xr.Dataset | None) -> None:
     figure.keep("Hertz pressure", "loads", normal_force_N=force, pressure_Pa=pressure)
 
 
-def _area_axes(axes) -> None:
+def _area_axes(axes: Axes) -> None:
     logarithmic(axes, "x", "y")
     axes.set_xlim(axes.dataLim.x0, axes.dataLim.x1)
     axes.set_ylim(max(axes.dataLim.y0 / 1.3, _SMALLEST_AREA), 1.3)
@@ -357,9 +359,9 @@ def contact_separation(
     chosen = colours(list(separations), surfaces)
     with paper_style():
         figure, axes = single_axes()
-        for name, found in separations.items():
-            over = found.separation.values / found.attrs["rms_roughness_m"]
-            p = found.contact_pressure.values
+        for name, separation in separations.items():
+            over = separation.separation.values / separation.attrs["rms_roughness_m"]
+            p = separation.contact_pressure.values
             axes.plot(over, 1e-6 * p, color=chosen[name], linewidth=1.1)
             columns = {"separation_over_rms_roughness": over, "contact_pressure_Pa": p}
             figure.keep("contact pressure", name, **columns)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.frame import few_ticks, legend_above
+from tribolab.plot.decades import few_ticks
+from tribolab.plot.frame import legend_above
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     GREY,
@@ -27,6 +29,14 @@ from tribolab.words import force_text, is_dry
 
 _LOAD_MARKERS = "os^DvP<X"
 Curves = xr.Dataset | Sequence[xr.Dataset] | None
+
+
+class _Look(NamedTuple):
+    """How a curve is drawn: by surface and load, and whether it is dry."""
+
+    colour: str
+    marker: str
+    dry: bool
 
 
 def stribeck(
@@ -137,13 +147,13 @@ def _load(curve: xr.Dataset) -> float:
 
 def _look(
     curve: xr.Dataset, styles: dict[str, SurfaceStyle], loads: list[float], surfaces: int
-) -> dict:
+) -> _Look:
     own = styles[_attribute(curve, "surface")]
     rank = loads.index(_load(curve)) if _load(curve) in loads else 0
     colour = shade(own.colour, rank, len(loads))
     by_load = surfaces == 1 and len(loads) > 1
     marker = _LOAD_MARKERS[rank % len(_LOAD_MARKERS)] if by_load else own.marker
-    return {"color": colour, "marker": marker, "dry": is_dry(_attribute(curve, "medium"))}
+    return _Look(colour, marker, is_dry(_attribute(curve, "medium")))
 
 
 def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
@@ -157,7 +167,16 @@ def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
     return ", ".join(words)
 
 
-def _points(figure, axes: Axes, curve, name, numbered, look, text, with_model) -> int:
+def _points(
+    figure: PaperFigure,
+    axes: Axes,
+    curve: xr.Dataset,
+    name: str,
+    numbered: bool,
+    look: _Look,
+    text: str,
+    with_model: bool,
+) -> int:
     if name not in curve:
         return 0
     y = np.atleast_1d(np.asarray(curve[name], float))
@@ -172,7 +191,7 @@ def _points(figure, axes: Axes, curve, name, numbered, look, text, with_model) -
         return 0
     order = np.argsort(x[fine], kind="stable")
     x, y, std, sem = (a[fine][order] for a in (x, y, std, sem))
-    colour, dry = look["color"], look["dry"]
+    colour, dry = look.colour, look.dry
     for spread, width, alpha, cap in ((std, 2.4, 0.28, 0), (sem, 0.8, 1.0, 1.8)):
         there = np.isfinite(spread)
         if there.any():
@@ -182,7 +201,7 @@ def _points(figure, axes: Axes, curve, name, numbered, look, text, with_model) -
             )  # fmt: skip
     joined = not with_model and not numbered and np.unique(x).size == x.size
     axes.plot(
-        x, y, color=colour, marker=look["marker"], markersize=4.2, markeredgewidth=0.9,
+        x, y, color=colour, marker=look.marker, markersize=4.2, markeredgewidth=0.9,
         markerfacecolor="white" if dry else colour, markeredgecolor=colour,
         linestyle=("--" if dry else "-") if joined else "none", linewidth=0.7,
         label=text or "_nolegend_", zorder=4,
@@ -193,13 +212,15 @@ def _points(figure, axes: Axes, curve, name, numbered, look, text, with_model) -
     return int(fine.sum())
 
 
-def _line(figure, axes: Axes, curve, name, look, text) -> int:
+def _line(
+    figure: PaperFigure, axes: Axes, curve: xr.Dataset, name: str, look: _Look, text: str
+) -> int:
     if name not in curve or not _has_speed(curve):
         return 0
     x, y = (np.atleast_1d(np.asarray(curve[n], float)) for n in ("sliding_speed", name))
     fine = np.isfinite(y) & (x > 0)
     axes.plot(
-        x[fine], y[fine], color=look["color"], linestyle="--" if look["dry"] else "-",
+        x[fine], y[fine], color=look.colour, linestyle="--" if look.dry else "-",
         linewidth=1.2, label=text, zorder=3,
     )  # fmt: skip
     figure.keep("curve", text, **{column("sliding_speed"): x[fine], column(name): y[fine]})

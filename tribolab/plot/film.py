@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
+from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
@@ -29,11 +30,11 @@ _PANELS = (
     ("contact_pressure", 1e-6, r"contact pressure $p_{\mathrm{cont}}$ (MPa)"),
     ("fluid_pressure", 1e-6, r"fluid pressure $p_{\mathrm{fluid}}$ (MPa)"),
 )
-_FLOW = (
+_FLOW: tuple[tuple[str, LineStyleType, str], ...] = (
     ("pressure_flow_factor", "-", r"$\phi_{\mathrm{p}}$"),
     ("shear_flow_factor", "--", r"$\phi_{\mathrm{s}}$"),
 )
-_FRICTION = (
+_FRICTION: tuple[tuple[str, LineStyleType, str], ...] = (
     ("shear_stress_factor", "-", r"$\phi_{\mathrm{f}}$"),
     ("shear_stress_correction", "--", r"$\phi_{\mathrm{fs}}$"),
     ("pressure_stress_factor", ":", r"$\phi_{\mathrm{fp}}$"),
@@ -74,17 +75,17 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
         figure = new_figure(DOUBLE_MM, _HEIGHT)
         panels = figure.subplots(1, 3)
         widest = centre = 0.0
-        for rank, one in enumerate(profiles):
-            v, x = float(one["sliding_speed"]), 1e3 * one["x"].values
-            total = (one["contact_pressure"] + one["fluid_pressure"]).values
+        for rank, profile in enumerate(profiles):
+            v, x = float(profile["sliding_speed"]), 1e3 * profile["x"].values
+            total = (profile["contact_pressure"] + profile["fluid_pressure"]).values
             widest = max(widest, np.abs(x[total > 5e-3 * total.max()]).max())
             place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(profiles) - 1, 1))
-            centre = max(centre, float(one["separation"].values[np.abs(x).argmin()]))
+            centre = max(centre, float(profile["separation"].values[np.abs(x).argmin()]))
             look = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
             for axes, (name, factor, _) in zip(panels, _PANELS, strict=True):
-                axes.plot(x, factor * one[name].values, **look, label=speed_text(v))
-            numbers = {f"{name}_{unit}": one[name].values for name, unit in _UNITS}
-            figure.keep("profiles", speed_text(v), x_m=one["x"].values, **numbers)
+                axes.plot(x, factor * profile[name].values, **look, label=speed_text(v))
+            numbers = {f"{name}_{unit}": profile[name].values for name, unit in _UNITS}
+            figure.keep("profiles", speed_text(v), x_m=profile["x"].values, **numbers)
         for axes, (_, _, text), letter in zip(panels, _PANELS, "abc", strict=True):
             axes.set_xlim(-1.05 * widest, 1.05 * widest)
             axes.set_xlabel("coordinate $x$ (mm)")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from tribolab.plot.decades import few_ticks
 from tribolab.plot.labels import plain
 from tribolab.plot.style import (
     GREY,
@@ -19,8 +19,6 @@ from tribolab.plot.style import (
     surface_styles,
 )
 
-_MANY = 1e4
-
 
 def single_axes() -> tuple[PaperFigure, Axes]:
     """Return an empty one-column figure and its axes; call inside `paper_style()`."""
@@ -28,23 +26,22 @@ def single_axes() -> tuple[PaperFigure, Axes]:
     return figure, figure.add_subplot()
 
 
-def logarithmic(axes: Axes, *names: str) -> None:
-    """Make axes (``"x"``, ``"y"``) logarithmic, with ticks that stay few over many decades."""
+def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:
+    """Make axes (``"x"``, ``"y"``) logarithmic, with ticks that stay few over many decades.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    *names
+        Which of its axes.
+    small
+        Whether there are ticks between those with a number.
+    """
     for name in names:
         getattr(axes, f"set_{name}scale")("log")
-        few_ticks(getattr(axes, f"{name}axis"), *getattr(axes.dataLim, f"interval{name}"))
-
-
-def few_ticks(axis: Axis, low: float, high: float, decades: int = 8) -> None:
-    """Give a logarithmic axis at most so many decades with a number, and ticks between them.
-
-    Over many decades the ticks at 2 to 9 would be a black bar, and slow to draw: then there is one
-    per decade.
-    """
-    axis.set_major_locator(LogLocator(numticks=decades))
-    subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
-    axis.set_minor_locator(LogLocator(subs=subs, numticks=90))
-    axis.set_minor_formatter(NullFormatter())
+        interval = getattr(axes.dataLim, f"interval{name}")
+        few_ticks(getattr(axes, f"{name}axis"), *interval, small=small)
 
 
 def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str]:
@@ -60,7 +57,7 @@ def name_surfaces(axes: Axes, chosen: dict[str, str]) -> None:
             axes.plot([], [], color=colour, linewidth=1.4, label=plain(name))
 
 
-def name_style(axes: Axes, text: str, **look: object) -> None:
+def name_style(axes: Axes, text: str, **look: Any) -> None:
     """Put a line style that holds for all surfaces into the legend, in grey."""
     axes.plot([], [], **{"color": GREY, "linewidth": 1.1, **look}, label=plain(text))
 
@@ -84,7 +81,7 @@ def legend_above(figure: PaperFigure, axes: Axes, title: str = "", left: float =
         figure.text(left / SINGLE_MM, 1 - 1.3 / height, plain(title), va="top", fontsize=8)
 
 
-def band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
+def shaded_band(axes: Axes, x: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str) -> None:
     """Shade between two bounds, where both are known."""
     fine = np.isfinite(low) & np.isfinite(high)
     axes.fill_between(x[fine], low[fine], high[fine], color=colour, alpha=0.2, linewidth=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,13 +11,21 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.frame import band, colours, few_ticks, legend_above, logarithmic, single_axes
+from tribolab.plot.decades import few_ticks
+from tribolab.plot.frame import (
+    colours,
+    legend_above,
+    logarithmic,
+    shaded_band,
+    single_axes,
+)
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     BLACK,
     GREY,
     SINGLE_MM,
     PaperFigure,
+    SurfaceStyle,
     margins,
     new_figure,
     paper_style,
@@ -106,14 +115,16 @@ def _model(
 ) -> None:
     v = curve["sliding_speed"].values
     fluid = curve["friction_coefficient_couette"] + curve["friction_coefficient_pressure"]
-    for name, values, look, text in (
+    lines: tuple[tuple[str, xr.DataArray, dict[str, Any], str], ...] = (
         ("model", curve["friction_coefficient"], {"linestyle": "-", "linewidth": 1.2}, "model"),
         ("solid", curve["friction_coefficient_solid"], {"linestyle": "--"}, "solid part"),
         ("viscous", fluid, {"linestyle": (0, (1, 1.2)), "color": BLACK}, "viscous part"),
-    ):
+    )
+    for name, values, look, text in lines:
         if only and name not in only:
             continue
-        axes.plot(v, values, **{"color": colour, "linewidth": 0.9, "zorder": 3} | look, label=text)
+        look = {"color": colour, "linewidth": 0.9, "zorder": 3, **look}
+        axes.plot(v, values, **look, label=text)
         numbers = {column("sliding_speed"): v, "friction_coefficient": values.values}
         figure.keep("friction", name, **numbers)
 
@@ -121,13 +132,20 @@ def _model(
 def _band(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, colour: str) -> None:
     v = uncertainty["sliding_speed"].values
     low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
-    band(axes, v, low, high, colour)
+    shaded_band(axes, v, low, high, colour)
     axes.fill_between([], [], [], color=colour, alpha=0.2, linewidth=0, label="its band")
     numbers = {column("sliding_speed"): v, "friction_coefficient_low": low}
     figure.keep("friction", "band", **numbers, friction_coefficient_high=high)
 
 
-def _measured(figure, axes: Axes, data: xr.Dataset, style, text: str, hollow: bool = False) -> None:
+def _measured(
+    figure: PaperFigure,
+    axes: Axes,
+    data: xr.Dataset,
+    style: SurfaceStyle,
+    text: str,
+    hollow: bool = False,
+) -> None:
     v, mu = data["sliding_speed"].values, data["friction_coefficient"].values
     kept = {}
     for end, look in (("_std", (2.4, 0.28, 0)), ("_sem", (0.8, 1.0, 1.8))):
@@ -148,7 +166,9 @@ def _measured(figure, axes: Axes, data: xr.Dataset, style, text: str, hollow: bo
     figure.keep("friction", text, **columns, **kept)
 
 
-def _misfit(figure: PaperFigure, axes: Axes, fit: xr.Dataset, style, what: str) -> None:
+def _misfit(
+    figure: PaperFigure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, what: str
+) -> None:
     v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
     error = np.nan_to_num(fit["friction_coefficient_sem"].values)
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -16,8 +16,7 @@ from matplotlib.transforms import Bbox, TransformedBbox
 from tribolab.errors import AnalysisError
 from tribolab.plot.labels import column, plain
 from tribolab.plot.reduce import envelope
-from tribolab.plot.signals import Signal, Stroke, main_signal
-from tribolab.plot.signals import strokes as find_strokes
+from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
     BACKWARD,
     DOUBLE_MM,
@@ -35,6 +34,7 @@ _MOST_LINES = 6  # per direction and panel
 _POINTS = 2000  # pixel columns in the whole figure, which keeps it below 150 kB
 _TOLERANCE = 0.05
 _COLOURS = {1: FORWARD, -1: BACKWARD, 0: SKY}
+_Item = TypeVar("_Item")
 
 
 def strokes(
@@ -84,7 +84,7 @@ def strokes(
     ['100 µm/s', '1 mm/s']
     """
     signal = main_signal(run, friction)
-    parts = find_strokes(run, segments)
+    parts = strokes_of(run, segments)
     if not parts:
         raise AnalysisError("the run has no segment, so there are no strokes to draw")
     groups = _by_speed(parts)
@@ -143,7 +143,7 @@ def _by_speed(parts: list[Stroke]) -> list[list[Stroke]]:
     return groups
 
 
-def _evenly(items: list, most: int) -> list:
+def _evenly(items: list[_Item], most: int) -> list[_Item]:
     if len(items) <= most:
         return items
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
@@ -224,7 +224,7 @@ class _Cell:
             Bbox.from_bounds(self.left, self.bottom, self.width, height), self.sheet.transData
         )
         self._add(Rectangle((self.left, self.bottom), self.width, height, fill=False, **_EDGE))
-        ticks = MaxNLocator(3).tick_values(low, high)
+        ticks = np.asarray(MaxNLocator(3).tick_values(low, high))
         ticks = ticks[(ticks >= low) & (ticks <= high)]
         for tick, text in zip(ticks, _tick_labels(ticks), strict=True):
             y = self.bottom + (tick - low) * self.scale
@@ -265,8 +265,8 @@ class _Cell:
 
 
 _TICK = 1.0  # mm
-_LINE = {"color": "#222222", "linewidth": 0.6, "zorder": 4}
-_EDGE = {"edgecolor": "#222222", "linewidth": 0.6, "zorder": 4}
+_LINE: dict[str, Any] = {"color": "#222222", "linewidth": 0.6, "zorder": 4}
+_EDGE: dict[str, Any] = {"edgecolor": "#222222", "linewidth": 0.6, "zorder": 4}
 
 
 def _tick_labels(ticks: np.ndarray) -> list[str]:
@@ -288,7 +288,7 @@ def _tick_labels(ticks: np.ndarray) -> list[str]:
     return [f"{tick + 0.0:.{decimals}f}".replace("-", MINUS) for tick in ticks]
 
 
-def _sign(part: Stroke, signal: Signal, friction) -> float:
+def _sign(part: Stroke, signal: Signal, friction: xr.Dataset | None) -> float:
     """Sign that makes ordinary friction positive; an instrument may have rectified already."""
     if friction is not None and "friction_coefficient" in friction:
         values = signal.values[part.samples]
@@ -299,7 +299,7 @@ def _sign(part: Stroke, signal: Signal, friction) -> float:
     return -1.0 if part.direction < 0 else 1.0
 
 
-def _mean_text(group: list[Stroke], signal: Signal, friction) -> str:
+def _mean_text(group: list[Stroke], signal: Signal, friction: xr.Dataset | None) -> str:
     if friction is None or signal.name != "friction_coefficient" or signal.name not in friction:
         return ""
     means = np.array([float(friction[signal.name][part.number]) for part in group])
@@ -311,7 +311,9 @@ def _mean_text(group: list[Stroke], signal: Signal, friction) -> str:
 def _key(figure: PaperFigure, parts: list[Stroke], means: bool, height: float) -> None:
     words = {1: "forward", -1: "backward", 0: "direction unknown"}
     seen = sorted({int(np.sign(part.direction)) for part in parts}, reverse=True)
-    handles = [Line2D([], [], color=_COLOURS[d], linewidth=0.8, label=words[d]) for d in seen]
+    handles: list[Artist] = [
+        Line2D([], [], color=_COLOURS[d], linewidth=0.8, label=words[d]) for d in seen
+    ]
     if means:
         handles.append(Line2D([], [], color=MEAN, linewidth=0.9, label="mean"))
     handles.append(Patch(color="#E4E4E4", linewidth=0, label="trimmed"))

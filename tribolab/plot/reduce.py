@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+_PIECE = 1 << 17  # points that are worked on at a time
+
 
 def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarray, np.ndarray]:
     """Reduce a trace to the smallest and the largest point of each pixel column.
@@ -59,19 +61,44 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
     x, y = np.asarray(x, float), np.asarray(y, float)
     if x.size <= 2 * columns:
         return np.arange(x.size)
+    starts = _starts(x, columns)
+    edges = np.r_[starts, x.size]
+    kept, first = [], 0
+    while first < starts.size:  # some columns at a time
+        last = int(np.searchsorted(edges, edges[first] + _PIECE, "right")) - 1
+        last = min(max(last, first + 1), starts.size)
+        begin = edges[first]
+        kept.append(begin + _extremes(y[begin : edges[last]], starts[first:last] - begin))
+        first = last
+    return np.concatenate(kept)
+
+
+def _starts(x: np.ndarray, columns: int) -> np.ndarray:
+    """Index of the first point of each column that has any."""
     span = x[-1] - x[0]
-    # dividing before the product keeps the ratio finite for any span
-    place = (x - x[0]) / span if span > 0 else np.linspace(0, 1, x.size)
-    column = np.minimum((place * columns).astype(np.int64), columns - 1)
-    starts = np.flatnonzero(np.r_[True, np.diff(column) > 0])
-    group = np.repeat(np.arange(starts.size), np.diff(np.r_[starts, x.size]))
-    order = np.arange(x.size)
+    found = [np.zeros(1, int)]
+    for begin in range(0, x.size - 1, _PIECE):
+        part = x[begin : begin + _PIECE + 1]
+        if span > 0:
+            # dividing before the product keeps the ratio finite for any span
+            place = (part - x[0]) / span
+        else:
+            place = np.arange(begin, begin + part.size) * (1 / (x.size - 1))
+        column = np.minimum((place * columns).astype(np.int64), columns - 1)
+        found.append(begin + 1 + np.flatnonzero(np.diff(column) > 0))
+    return np.concatenate(found)
+
+
+def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Index of the first smallest and the first largest point of each column."""
+    group = np.repeat(np.arange(starts.size), np.diff(np.r_[starts, y.size]))
+    order = np.arange(y.size)
 
     def first_where(hit: np.ndarray) -> np.ndarray:
-        return np.minimum.reduceat(np.where(hit, order, x.size), starts)
+        return np.minimum.reduceat(np.where(hit, order, y.size), starts)
 
     lowest = first_where(y == np.fmin.reduceat(y, starts)[group])
     highest = first_where(y == np.fmax.reduceat(y, starts)[group])
-    empty = lowest == x.size  # NaN equals nothing: the column has no number
+    empty = lowest == y.size  # NaN equals nothing: the column has no number
     lowest[empty] = highest[empty] = starts[empty]
     return np.unique(np.r_[lowest, highest])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
@@ -12,7 +13,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.reduce import envelope
-from tribolab.plot.signals import Stroke, main_signal, strokes
+from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
     BACKWARD,
     DOUBLE_MM,
@@ -80,7 +81,7 @@ def trace(
     ['time', 'motion', 'distance']
     """
     signal = main_signal(run, friction)
-    parts = strokes(run, segments)
+    parts = strokes_of(run, segments)
     time = np.asarray(run["time"], float)
     motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
     known = bool(parts) and bool(np.isfinite([part.speed for part in parts]).all())
@@ -112,7 +113,14 @@ def trace(
     return figure
 
 
-def _over_time(figure, axes, time, signal, segments, friction) -> None:
+def _over_time(
+    figure: PaperFigure,
+    axes: Axes,
+    time: np.ndarray,
+    signal: Signal,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+) -> None:
     x, y = envelope(time, signal.values, COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.5, zorder=3)
     figure.keep("time", "trace", **{column("time"): x, column(signal.name): y})
@@ -128,7 +136,14 @@ def _over_time(figure, axes, time, signal, segments, friction) -> None:
     _means(axes, inner[0], inner[1], signal, friction, np.arange(starts.size), directions)
 
 
-def _motion(figure, axes, time, name, run, segments) -> None:
+def _motion(
+    figure: PaperFigure,
+    axes: Axes,
+    time: np.ndarray,
+    name: str,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+) -> None:
     x, y = envelope(time, np.asarray(run[name], float), COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.6, zorder=3)
     figure.keep("motion", name, **{column("time"): x, column(name): y})
@@ -137,9 +152,11 @@ def _motion(figure, axes, time, name, run, segments) -> None:
     axes.set_ylabel(label(name, words[name]))
     if name != "position":
         _symlog(axes, y, np.asarray(segments["sliding_speed"], float))
-    bounds = [np.asarray(segments[n], float) for n in ("start", "stop")]
-    inner = [np.asarray(segments[n], float) for n in ("trimmed_start", "trimmed_stop")]
-    _shade(axes, *bounds, *inner, np.asarray(segments["direction"], int))
+    start, stop, inner_start, inner_stop = (
+        np.asarray(segments[n], float) for n in ("start", "stop", "trimmed_start", "trimmed_stop")
+    )
+    directions = np.asarray(segments["direction"], int)
+    _shade(axes, start, stop, inner_start, inner_stop, directions)
 
 
 def _symlog(axes: Axes, values: np.ndarray, speeds: np.ndarray) -> None:
@@ -161,7 +178,13 @@ def _symlog(axes: Axes, values: np.ndarray, speeds: np.ndarray) -> None:
     axes.set_ylim(-(10.0 ** (high + 0.4)) if both else -(10.0**low), 10.0 ** (high + 0.4))
 
 
-def _over_distance(figure, axes, signal, parts: list[Stroke], friction) -> None:
+def _over_distance(
+    figure: PaperFigure,
+    axes: Axes,
+    signal: Signal,
+    parts: list[Stroke],
+    friction: xr.Dataset | None,
+) -> None:
     lengths = np.array([part.distance[-1] for part in parts])
     begins = np.r_[0.0, np.cumsum(lengths)[:-1]]
     budget = max(20, COLUMNS // len(parts))
@@ -183,8 +206,8 @@ def _over_distance(figure, axes, signal, parts: list[Stroke], friction) -> None:
     directions = np.array([part.direction for part in parts])
     _shade(axes, begins, begins + lengths, *inner, directions)
     _speeds_above(axes, begins, begins + lengths, np.array([part.speed for part in parts]))
-    numbers = np.array([part.number for part in parts])
-    _means(axes, *inner, signal, friction, numbers, directions)
+    places = np.array([part.number for part in parts])
+    _means(axes, *inner, signal, friction, places, directions)
 
 
 def _ylabel(name: str) -> str:
@@ -202,7 +225,14 @@ def _room_above(axes: Axes, values: np.ndarray) -> None:
         axes.set_ylim(low - 0.06 * span, high + 0.26 * span)
 
 
-def _shade(axes: Axes, start, stop, inner_start, inner_stop, directions) -> None:
+def _shade(
+    axes: Axes,
+    start: np.ndarray,
+    stop: np.ndarray,
+    inner_start: np.ndarray,
+    inner_stop: np.ndarray,
+    directions: np.ndarray,
+) -> None:
     """Shade the segments: the part that counts dark, the trimmed ends light."""
     across = blended_transform_factory(axes.transData, axes.transAxes)
     signs = np.sign(np.asarray(directions, int))
@@ -223,7 +253,7 @@ def _shade(axes: Axes, start, stop, inner_start, inner_stop, directions) -> None
             axes.add_artist(patch)
 
 
-def _speeds_above(axes: Axes, start, stop, speeds) -> None:
+def _speeds_above(axes: Axes, start: np.ndarray, stop: np.ndarray, speeds: np.ndarray) -> None:
     """Write the speed (or, if unknown, the number) over the segments that have room for it.
 
     Neighbours of one speed share the text.
@@ -259,7 +289,15 @@ def _speeds_above(axes: Axes, start, stop, speeds) -> None:
         )
 
 
-def _means(axes, start, stop, signal, friction, numbers, directions) -> None:
+def _means(
+    axes: Axes,
+    start: np.ndarray,
+    stop: np.ndarray,
+    signal: Signal,
+    friction: xr.Dataset | None,
+    numbers: np.ndarray,
+    directions: np.ndarray,
+) -> None:
     """Draw the mean of each segment where the trace runs, i.e. with the sign of the stroke."""
     if friction is None or signal.name not in friction or not numbers.size:
         return
@@ -277,7 +315,9 @@ def _key(axes: Axes, parts: list[Stroke], means: bool) -> None:
 
     words = {1: "forward", -1: "backward", 0: "direction unknown"}
     seen = sorted({int(np.sign(part.direction)) for part in parts}, reverse=True)
-    handles = [Patch(color=_SHADE[d], alpha=0.18, linewidth=0, label=words[d]) for d in seen]
+    handles: list[Artist] = [
+        Patch(color=_SHADE[d], alpha=0.18, linewidth=0, label=words[d]) for d in seen
+    ]
     if parts:
         handles.append(Patch(color=NEUTRAL, alpha=0.07, linewidth=0, label="trimmed"))
     if means:

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
-from tribolab.plot.frame import band, logarithmic
+from tribolab.plot.frame import logarithmic, shaded_band
 from tribolab.plot.labels import label, plain
 from tribolab.plot.style import (
     BLUE,
@@ -60,7 +61,7 @@ def model_sensitivity(
         figure = new_figure(DOUBLE_MM, _HEIGHT)
         left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1, 1]})
         low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
-        band(left, v, low, high, colour)
+        shaded_band(left, v, low, high, colour)
         left.plot(v, mu, color=colour, linewidth=1.2)
         numbers = {"friction_coefficient": mu, "friction_coefficient_low": low}
         figure.keep("band", "model", sliding_speed_m_s=v, **numbers, friction_coefficient_high=high)
@@ -76,7 +77,7 @@ def model_sensitivity(
     return figure
 
 
-def _bars(figure: PaperFigure, axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
+def _bars(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
     names = uncertainty["variation"].values
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     known = np.isfinite(change).any(axis=-1)

@@ -82,7 +82,7 @@ class Stroke(NamedTuple):
     direction: int
 
 
-def strokes(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
+def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
     """Return the samples of each segment with the distance slid since its start [m].
 
     The distance comes from the position, else the speed, else (both unknown) it is the time
@@ -94,17 +94,17 @@ def strokes(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
     inner = [np.asarray(segments[name], float) for name in ("trimmed_start", "trimmed_stop")]
     speeds = np.asarray(segments["sliding_speed"], float)
     directions = np.asarray(segments["direction"], int)
-    found = []
+    parts = []
     for k in range(segments.sizes["segment"]):
         part = slice(int(first[k]), int(last[k]))
         if part.stop - part.start < 2:
             continue
         way = _way(run, time, part, speeds[k])
         ends = np.interp([inner[0][k], inner[1][k]], time[part], way)
-        found.append(
+        parts.append(
             Stroke(k, part, way, (float(ends[0]), float(ends[1])), speeds[k], int(directions[k]))
         )
-    return found
+    return parts
 
 
 def _way(run: xr.Dataset, time: np.ndarray, part: slice, speed: float) -> np.ndarray:

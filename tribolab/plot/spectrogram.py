@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 
 from tribolab.errors import AnalysisError
+from tribolab.plot.decades import power_of_ten
 from tribolab.plot.frame import logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.style import BLACK, DOUBLE_MM, PaperFigure, margins, new_figure, paper_style
@@ -70,7 +71,7 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> PaperFigure:
                 frequency_Hz=np.tile(frequency, number.size),
                 ratio=ratio.ravel(),
             )  # fmt: skip
-            logarithmic(axes, "y")
+            logarithmic(axes, "y", small=False)
             some = np.unique(np.linspace(0, number.size - 1, _LABELS).round().astype(int))
             speeds = [speed_text(float(slip["sliding_speed"].values[k])) for k in some]
             axes.set_xticks(
@@ -78,7 +79,6 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> PaperFigure:
                 [f"{n}\n{_stacked(v)}" for n, v in zip(number[some], speeds, strict=True)],
             )
             axes.tick_params(axis="x", labelsize=6)
-            axes.minorticks_off()
             axes.set_xlabel("number and speed of the segment")
             axes.set_ylabel("frequency $f$ (Hz)")
             axes.set_title(plain(label), fontsize=7, loc="left", pad=3)
@@ -86,7 +86,10 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> PaperFigure:
             axes.remove()
         width = 1 - 22 / DOUBLE_MM
         bar = figure.add_axes((width, 0.25, 0.015, 0.5))
-        figure.colorbar(image, cax=bar, label="power over background $S/S_0$")
+        scale = figure.colorbar(
+            image, cax=bar, label="power over background $S/S_0$", format=power_of_ten
+        )
+        scale.minorticks_off()
     return figure
 
 

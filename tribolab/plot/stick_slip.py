@@ -96,7 +96,7 @@ def slip_traces(
     ['dry']
     """
     drawn = [(trace, *_distance(trace)) for trace in traces]
-    drawn = [one for one in drawn if one[1].size > 1]
+    drawn = [curve for curve in drawn if curve[1].size > 1]
     if not drawn:
         raise AnalysisError("there is no stroke to draw")
     ends = [x[-1] for _, x, _ in drawn]

@@ -7,14 +7,19 @@ import io
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
+from matplotlib import textpath
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
+
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType  # newer than the oldest matplotlib that will do
 
 SINGLE_MM = 86.0
 DOUBLE_MM = 178.0
@@ -27,12 +32,13 @@ BLUE, VERMILLION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#6B6B6B"
 FORWARD, BACKWARD, NEUTRAL = "#3A3A3A", ORANGE, GREY
 MEAN = "#C00000"
 
-_RC = {
+_RC: dict[RcKeyType, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so every machine draws the same
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
     "axes.labelsize": 8,
     "axes.titlesize": 8,
+    "axes.titley": 1.0,  # else the ticks above the frame are measured to keep clear of them
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
@@ -101,7 +107,7 @@ class PaperFigure(Figure):
     Made without pyplot, so no global state is touched and nothing has to be closed.
     """
 
-    def __init__(self, *args, **kwargs) -> None:
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._numbers: list[dict[str, object]] = []
 
@@ -281,6 +287,23 @@ def _smaller(text: str) -> str:
     return text
 
 
+_FORMULAS = MathTextParser("path")
+
+
+@contextlib.contextmanager
+def _formulas_set_once() -> Iterator[None]:
+    """Set the formula of a label once, not once in every figure.
+
+    Every renderer has a parser of its own, whose memory goes with it.
+    """
+    own = textpath.MathTextParser
+    textpath.MathTextParser = lambda output: _FORMULAS
+    try:
+        yield
+    finally:
+        textpath.MathTextParser = own
+
+
 def svg(figure: Figure) -> str:
     """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
 
@@ -297,7 +320,7 @@ def svg(figure: Figure) -> str:
     True
     """
     buffer = io.StringIO()
-    with paper_style():
+    with paper_style(), _formulas_set_once():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
     return _smaller(buffer.getvalue())
 

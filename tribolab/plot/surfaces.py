@@ -9,12 +9,12 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.frame import (
-    band,
     colours,
     legend_above,
     logarithmic,
     name_style,
     name_surfaces,
+    shaded_band,
     single_axes,
 )
 from tribolab.plot.labels import column, label, plain
@@ -67,7 +67,7 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
                 psd[f"psd_2d{end}"].values if f"psd_2d{end}" in psd else value * np.nan
                 for end in ("_low", "_high")
             )
-            band(axes, q, low, high, chosen[name])
+            shaded_band(axes, q, low, high, chosen[name])
             origin = psd.origin.values if "origin" in psd else np.zeros(q.size, int)
             dashed |= bool((origin != _MEASURED).any())
             for part, style in ((origin == _MEASURED, "-"), (origin != _MEASURED, "--")):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -17,6 +17,24 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FAIL_ON = ("suspect", "fail", "never")
+
+
+class FindingRow(TypedDict):
+    """One result as a row; `value` is None where there is no number, limits are in SI."""
+
+    name: str
+    check: str
+    status: str
+    noted: bool
+    variable: str
+    message: str
+    where: str
+    count: int
+    value: float | None
+    unit: str
+    limits: dict[str, float]
+    question: str
+    cure: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,9 +59,9 @@ class Findings:
     limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
 
     @property
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[FindingRow]:
         """One dict for each result, graver ones first; numbers that are unknown are None."""
-        rows = [
+        rows: list[FindingRow] = [
             {
                 "name": self.name,
                 "check": check.name,
@@ -74,16 +92,16 @@ class Findings:
     @property
     def status(self) -> str:
         """The gravest status; "pass" if at least one check passed and none objected."""
-        found = {result.status for _, result in self.results}
+        statuses = {result.status for _, result in self.results}
         for status in reversed(STATUSES):
-            if status in found and status != "skipped":
+            if status in statuses and status != "skipped":
                 return status
         return "skipped"
 
     def count(self) -> Mapping[str, int]:
         """Return how many results there are of each status."""
-        found = [result.status for _, result in self.results]
-        return {status: found.count(status) for status in STATUSES}
+        statuses = [result.status for _, result in self.results]
+        return {status: statuses.count(status) for status in STATUSES}
 
     @property
     def summary(self) -> str:
@@ -91,8 +109,8 @@ class Findings:
         by_check: dict[str, set[str]] = {}
         for check, result in self.results:
             by_check.setdefault(check.name, set()).add(result.status)
-        objecting = {n for n, found in by_check.items() if found & {"suspect", "fail", "error"}}
-        passed = {n for n, found in by_check.items() if "pass" in found} - objecting
+        objecting = {n for n, told in by_check.items() if told & {"suspect", "fail", "error"}}
+        passed = {n for n, told in by_check.items() if "pass" in told} - objecting
         skipped = len(by_check) - len(objecting) - len(passed)
         parts = [f"{Count(len(passed)):check|checks} passed"]
         parts += [f"{len(objecting)} objected"] if objecting else []
@@ -125,7 +143,10 @@ class Findings:
         told = told[objections | noted]
         look = {"text-align": "left", "vertical-align": "top"}
         short, long = (
-            rows.style.hide().format(na_rep="", escape="html").set_properties(**look).to_html()
+            rows.style.hide()
+            .format(na_rep="", escape="html")
+            .set_properties(subset=None, **look)
+            .to_html()
             for rows in (told, self.table.drop(columns="name"))
         )
         counted = ", ".join(f"{count} {status}" for status, count in self.count().items() if count)

@@ -50,11 +50,34 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
     >>> combine([np.array([1, 1, 2]), np.array([2, 3, 2])])
     array([1, 3, 2], dtype=int8)
     """
-    flags = iter(flags)
-    worst = _PRECEDENCE[next(flags)]
-    for other in flags:
-        np.maximum(worst, _PRECEDENCE[other], out=worst)
-    return _BY_PRECEDENCE[worst]
+    first, *others = flags
+    if not others:
+        return first
+    shape = np.shape(first)
+    grave = max((_PRECEDENCE[f.flat[0]] for f in (first, *others) if is_uniform(f)), default=0)
+    single = [f for f in (first, *others) if not is_uniform(f)]
+    if not single:
+        return uniform(shape, int(_BY_PRECEDENCE[grave]))
+    worst = np.full(shape, grave, np.int8)
+    for other in single:
+        np.maximum(worst, _PRECEDENCE.take(other), out=worst)
+    return _BY_PRECEDENCE.take(worst)
+
+
+def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
+    """One severity for all samples, in the memory of one: read-only.
+
+    Examples
+    --------
+    >>> uniform(3, GOOD)
+    array([1, 1, 1], dtype=int8)
+    """
+    return np.broadcast_to(np.int8(severity), shape)
+
+
+def is_uniform(flags: np.ndarray) -> bool:
+    """Whether an array of flags is one of `uniform`, of one sample at least."""
+    return flags.size > 0 and not any(flags.strides)
 
 
 def attach(
@@ -80,11 +103,16 @@ def attach(
     """
     result = data.copy()
     shape, dims = data[name].shape, data[name].dims
-    severity = combine([np.full(shape, NOT_EVALUATED, np.int8), *flags.values()])
-    severity[np.isnan(data[name].values)] = MISSING
-    tests = np.zeros(shape, dtype=np.int32)
+    severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
+    unknown = np.isnan(data[name].values)
+    if unknown.any():
+        severity = np.where(unknown, np.int8(MISSING), severity)
+    tests = np.broadcast_to(np.int32(0), shape)
     for check, values in flags.items():
-        tests[np.isin(values, (SUSPECT, FAIL, MISSING))] |= np.int32(1 << bits[check])
+        # suspect, fail and missing are the largest numbers
+        bad = values[:1] >= SUSPECT if is_uniform(values) else values >= SUSPECT
+        if bad.any():
+            tests = tests | np.where(bad, np.int32(1 << bits[check]), np.int32(0))
     known = sorted(bits, key=bits.__getitem__)
     result[f"{name}_qc"] = (
         dims,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 
@@ -66,7 +67,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     middles = np.array([np.nanmedian(b) if np.isfinite(b).any() else 0.0 for b in blocks])
     spread = np.array([_spread(b, m) for b, m in zip(blocks, middles, strict=True)])
     least = np.quantile(spread, 0.25)
-    digit = signals.quantisation_step(height)
+    digit = quantisation_step(height)
     for start, block, middle, scale in zip(
         np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
     ):  # a loop over blocks, not over points
@@ -77,13 +78,13 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
         beside = np.zeros(size.size)
         beside[1:] = np.maximum(beside[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
         beside[:-1] = np.maximum(beside[:-1], np.maximum(signed[1:] * np.sign(signed[:-1]), 0.0))
-        found = np.flatnonzero((size > limit) & (size > 3.0 * beside))
-        if found.size:
+        jumps_at = np.flatnonzero((size > limit) & (size > 3.0 * beside))
+        if jumps_at.size:
             usual = np.delete(
-                size, np.unique(np.clip([found - 1, found, found + 1], 0, size.size - 1))
+                size, np.unique(np.clip([jumps_at - 1, jumps_at, jumps_at + 1], 0, size.size - 1))
             )
-            found = found[size[found] > 3.0 * usual.max(initial=0.0)]
-        flags[start + 1 + found] = SUSPECT
+            jumps_at = jumps_at[size[jumps_at] > 3.0 * usual.max(initial=0.0)]
+        flags[start + 1 + jumps_at] = SUSPECT
     return flags
 
 
@@ -112,7 +113,7 @@ def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
     A profile that is quantised coarsely reaches its outermost height in a row by chance; as many
     points on the next level below tell it from one that is cut off.
     """
-    flags = signals.saturation(height, excess=3.0, fewest=fewest)
+    flags = signals.saturation(height, excess=3.0, fewest=fewest).copy()
     for end in (np.nanmax(height, initial=-np.inf), np.nanmin(height, initial=np.inf)):
         at_end = height == end
         if longest_run(at_end) < fewest:
@@ -188,18 +189,18 @@ def odd_one_out(
     repeats = len(logs)
     if repeats < 2:
         return -1, 1.0
-    found = []
-    for one in range(repeats):
-        others = np.delete(logs, one, axis=0)
+    odd = []
+    for repeat in range(repeats):
+        others = np.delete(logs, repeat, axis=0)
         middle = np.median(others, axis=0)
-        deviation = logs[one] - middle
+        deviation = logs[repeat] - middle
         scatter = np.sqrt((1.0 + 1.5 / (repeats - 1)) / np.maximum(weights, 1.0))
         # where the others disagree as much among themselves, this one is not the odd one
         apart = np.abs(others - middle).max(axis=0)
         real = np.abs(deviation) > np.maximum(certainty * scatter, 2.0 * apart)
-        found.append(np.abs(deviation)[real].max(initial=0.0))
-    worst = int(np.argmax(found))
-    if repeats == 2 and found[worst] > 0:
+        odd.append(np.abs(deviation)[real].max(initial=0.0))
+    worst = int(np.argmax(odd))
+    if repeats == 2 and odd[worst] > 0:
         worst = int(np.argmax(logs.sum(axis=1)))
-    largest = float(np.exp(min(max(found), 700.0)))
+    largest = float(np.exp(min(max(odd), 700.0)))
     return (worst, largest) if largest > factor else (-1, largest)

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.errors import shown
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import schema, signals, timing
-from tribolab.qc.flags import FAIL, GOOD, SUSPECT
+from tribolab.qc.flags import FAIL, GOOD, SUSPECT, uniform
 from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
 from tribolab.words import Count
@@ -63,12 +64,14 @@ def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
 
 def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     time = subject.time
-    flags = np.full(time.size, GOOD, np.int8)
+    cuts = []
     for part in subject.slices if subject.sliding else []:
         cut = timing.rate_change(time[part], limits["factor"])
         if cut is not None:
-            flags[part.start + cut] = SUSPECT
-    if (flags == SUSPECT).any():
+            cuts.append(part.start + cut)
+    if cuts:
+        flags = np.full(time.size, GOOD, np.int8)
+        flags[cuts] = SUSPECT
         text = "the sampling rate changes within a segment {count:time|times}, {where}"
         return [sample_result("time", flags, time, text)]
     places = timing.rate_changes(time, limits["factor"])
@@ -76,7 +79,7 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     if places.size:
         text = f"the sampling rate changes {Count(places.size):time|times}"
         text += f", never within a trimmed segment: {where}" + (" ..." if places.size > 5 else "")
-    seen = places.size > 0
+    seen, flags = places.size > 0, uniform(time.size, GOOD)
     return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
 
@@ -153,13 +156,13 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in subject.force_signals.items():
-        step, noise = signals.quantisation_step(values), subject.noise(name)
+        step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:
             text = "values do not repeat: no step to be seen"
             results.append(Result("pass", name, text, 0.0))
             continue
-        loaded = values[subject.in_segments] if subject.in_segments.any() else values
-        typical = float(np.nanmedian(np.abs(loaded)))
+        loaded = np.abs(values[subject.in_segments] if subject.in_segments.any() else values)
+        typical = float(np.nanmedian(loaded, overwrite_input=True))
         ratio = step / typical if typical > 0 else float("inf")
         coarse = step > limits["steps"] * max(noise, 1e-300) and ratio > limits["share"]
         text = (

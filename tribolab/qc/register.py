@@ -113,7 +113,7 @@ def resolve_limits(
     return resolved
 
 
-def examine(
+def results_of_checks(
     checks: Mapping[str, Check],
     subject: Any,
     limits: Mapping[str, Mapping[str, float]],
@@ -126,21 +126,21 @@ def examine(
     dict
         The results by name of the check, at least one for each check.
     """
-    found: dict[str, list[Result]] = {}
+    results: dict[str, list[Result]] = {}
     for name, check in checks.items():
         if name in skip:
-            found[name] = [Result("skipped", "", "switched off in the settings")]
+            results[name] = [Result("skipped", "", "switched off in the settings")]
             continue
         try:
-            found[name] = check.examine(subject, limits[name]) or [
+            results[name] = check.examine(subject, limits[name]) or [
                 Result("skipped", "", "no signal here that it looks at")
             ]
         except Skip as why:
-            found[name] = [Result("skipped", "", str(why))]
+            results[name] = [Result("skipped", "", str(why))]
         except Exception as crash:  # any crash becomes a row of status "error", exit code 3
             text = f"the check itself crashed: {type(crash).__name__}: {crash}"
-            found[name] = [Result("error", "", text)]
-    return found
+            results[name] = [Result("error", "", text)]
+    return results
 
 
 def sample_result(

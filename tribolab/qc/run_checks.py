@@ -10,10 +10,10 @@ import xarray as xr
 
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.qc.findings import Findings
-from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine
+from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine, uniform
 from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
-from tribolab.qc.register import Check, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
@@ -103,32 +103,42 @@ def check_run(
         if contact_width is None
         else to_si(contact_width, "m", name="contact_width"),
     )
-    found = _examined(examine(checks, subject, resolved, tuple(skip)))
-    results = tuple((checks[name], result) for name, rows in found.items() for result in rows)
+    answers = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
+    results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()}
     flagged = run
+    # what is wrong with the time is wrong with every signal; that the time is right says nothing
+    # of a signal's value
+    of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
     for variable in subject.signals:
         flags: dict[str, list[np.ndarray]] = {}
-        for check, result in results:
-            if result.flags is None or result.variable not in (variable, "time"):
-                continue
-            values = result.flags
-            if result.variable == "time":
-                # what is wrong with the time is wrong with every signal; that the time is right
-                # says nothing of a signal's value
-                values = np.where(values == GOOD, NOT_EVALUATED, values)
+        for check, values in (*_flags_on(results, variable), *of_time):
             flags.setdefault(check.name, []).append(values)
         flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
-def _examined(found: dict[str, list[Result]]) -> dict[str, list[Result]]:
+def _flags_on(
+    results: tuple[tuple[Check, Result], ...], variable: str
+) -> list[tuple[Check, np.ndarray]]:
+    return [(c, r.flags) for c, r in results if r.flags is not None and r.variable == variable]
+
+
+def _objections(flags: np.ndarray) -> np.ndarray:
+    """Leave of flags what is not good."""
+    good = flags == GOOD
+    if good.all():
+        return uniform(flags.shape, NOT_EVALUATED)
+    return np.where(good, np.int8(NOT_EVALUATED), flags)
+
+
+def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
     """Object where every other check was skipped: that segments were found says nothing."""
-    others = [result for name, rows in found.items() if name != SEGMENTS for result in rows]
-    own = found.get(SEGMENTS, [])
+    others = [result for name, rows in results.items() if name != SEGMENTS for result in rows]
+    own = results.get(SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
-        return found
-    return found | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
+        return results
+    return results | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
 
 
 def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:

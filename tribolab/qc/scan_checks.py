@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
+from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import profiles, signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
-from tribolab.qc.register import Check, Limit, Result, examine, resolve_limits
+from tribolab.qc.register import Check, Limit, Result, resolve_limits, results_of_checks
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
 from tribolab.surface.level import level_map
@@ -75,8 +76,8 @@ def check_scans(
     resolved = resolve_limits(SCAN_CHECKS, limits or {})
     given = [results] if isinstance(results, xr.Dataset) else list(results or ())
     subject = ScanSubject(scans, given)
-    found = examine(SCAN_CHECKS, subject, resolved, tuple(skip))
-    listed = tuple((SCAN_CHECKS[name], result) for name, rows in found.items() for result in rows)
+    answers = results_of_checks(SCAN_CHECKS, subject, resolved, tuple(skip))
+    listed = tuple((SCAN_CHECKS[name], result) for name, rows in answers.items() for result in rows)
     flags = {
         check.name: subject.to_shape(result.flags)
         for check, result in listed
@@ -155,18 +156,17 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         results.append(Result("skipped", "tilt", text))
     else:
         tilts = np.abs([float(profile.form_tilt) for profile in flat])
-        row, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
+        steepest, angle = int(np.argmax(tilts)), float(np.arctan(tilts.max()))
         status = "fail" if angle > limits["fail"] else "pass"
         status = "suspect" if limits["tilt"] < angle <= limits["fail"] else status
-        text = (
-            f"the tilt is {np.degrees(angle):.3g} deg in the middle of {subject.profile_names[row]}"
-        )
+        where = subject.profile_names[steepest]
+        text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {where}"
         results.append(Result(status, "tilt", text, angle, "rad"))
     share, digits = [], []
     for row, profile in zip(subject.filled, flat, strict=True):
         whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
         share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
-        step = signals.quantisation_step(row.height.values)
+        step = quantisation_step(row.height.values)
         digits.append(float(profile.height.std()) / step if step > 0 else np.inf)
     fewest = min(digits)
     status = "suspect" if fewest < limits["digits"] else "pass"
@@ -229,7 +229,7 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     spectra = subject.spectra
     if subject.is_map or len(subject.rows) < 2 or len(spectra) < 2:
         return [Result("skipped", "height", "one scan: nothing to compare it with")]
-    every = np.stack([np.log(one.psd_1d.values) for one in spectra])
+    every = np.stack([np.log(spectrum.psd_1d.values) for spectrum in spectra])
     counts = spectra[0].independent_values.values
     logs, weights = profiles.pooled(every, counts, limits["values"])
     if not weights.size:

@@ -46,17 +46,17 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         if not stated or np.isnan(stated).all():
             continue
         is_attr = subject.stated(f"{name}_m")
-        found = np.broadcast_to(is_attr if is_attr else [real[name]], len(stated))
+        stated_ones = np.broadcast_to(is_attr if is_attr else [real[name]], len(stated))
         # n points are n - 1 steps: a length of one step more is the same length
         allowance = real["pitch"] if name == "length" else 0.0
-        apart = np.maximum(np.abs(np.array(stated) - found) - allowance, 0.0) / found
+        apart = np.maximum(np.abs(np.array(stated) - stated_ones) - allowance, 0.0) / stated_ones
         row = int(np.nanargmax(apart))
         value = float(apart[row])
         status = "pass" if value <= limits["suspect"] else "suspect"
         status = "fail" if value > limits["fail"] else status
         text = (
             f"the file states a {name} of {stated[row] * size:.6g} {unit}, its positions say "
-            f"{found[row] * size:.6g} {unit}"
+            f"{stated_ones[row] * size:.6g} {unit}"
         )
         results.append(Result(status, name, text, value))
     if not results and attrs.get("stated_length_m") is None:
@@ -81,14 +81,14 @@ def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], floa
 
 def _ours(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
     """Roughness as it may have been computed: filtered (with the cut-off or ours), and levelled."""
-    found = []
+    parameters = []
     for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
         try:
             values = roughness_parameters(profile, lambda_c=cutoff)
         except AnalysisError:  # too short for two cut-offs
             continue
-        found.append({name: float(values[name]) for name in _COMPARED})
-    return found
+        parameters.append({name: float(values[name]) for name in _COMPARED})
+    return parameters
 
 
 def not_computed(results: xr.Dataset) -> Result | None:
@@ -116,12 +116,12 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     ours = [_ours(profile, cut) for profile in profiles]
     for number, (source, values, cut) in enumerate(sets):
         alone = len(sets) == len(profiles) == len(subject.rows)  # one set for each profile
-        candidates = ours[number] if alone else [one for many in ours for one in many]
+        candidates = ours[number] if alone else [parameters for many in ours for parameters in many]
         for name, value in values.items():
-            found = [one[name] for one in candidates if one[name] > 0]
-            if not found or not np.isfinite(value) or value <= 0:
+            computed = [parameters[name] for parameters in candidates if parameters[name] > 0]
+            if not computed or not np.isfinite(value) or value <= 0:
                 continue
-            closest = min(found, key=lambda one: abs(np.log(one / value)))
+            closest = min(computed, key=lambda own: abs(np.log(own / value)))
             apart = float(np.exp(abs(np.log(closest / value)))) - 1.0
             grave = not np.isnan(cut) and apart > limits["fail"]
             grave = grave or apart > limits["unknown_filter"]

@@ -59,12 +59,12 @@ def check_scan_set(
     ['pass', 'pass', 'fail']
     """
     given = results or [()] * len(scans)
-    found = [
+    findings = [
         check_scans(scan, limits=limits, skip=skip, results=list(own))
         for scan, own in zip(scans, given, strict=True)
     ]
     if len(scans) < 2 or _REPEATS in skip:
-        return found
+        return findings
     shapes = [_shape(scan) for scan in scans]
     usual = Counter(shapes).most_common(1)[0][0]
     alike = [number for number, shape in enumerate(shapes) if shape == usual]
@@ -74,7 +74,7 @@ def check_scan_set(
     }
     if len(alike) > 1:
         verdicts.update(_repeats([scans[number] for number in alike], alike, limits, skip))
-    return [_with(one, verdicts[number]) for number, one in enumerate(found)]
+    return [_with(finding, verdicts[number]) for number, finding in enumerate(findings)]
 
 
 def check_results(results: xr.Dataset) -> Findings:
@@ -91,9 +91,9 @@ def check_results(results: xr.Dataset) -> Findings:
         Of the check "results" only: which values the instrument could not compute.
     """
     text = "the instrument could compute all of its values; there is no profile to compare with"
-    found = not_computed(results) or Result("pass", "results", text)
+    result = not_computed(results) or Result("pass", "results", text)
     name = str(results.attrs.get("source", "results"))
-    return Findings(name, ((SCAN_CHECKS["results"], found),))
+    return Findings(name, ((SCAN_CHECKS["results"], result),))
 
 
 def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
@@ -128,9 +128,9 @@ def _repeats(
     return {number: said if n == odd else right for n, number in enumerate(numbers)}
 
 
-def _with(found: Findings, repeats: Result) -> Findings:
+def _with(findings: Findings, repeats: Result) -> Findings:
     """Put the verdict on the repeats where a scan alone had none."""
     rows = tuple(
-        (check, repeats if check.name == _REPEATS else result) for check, result in found.results
+        (check, repeats if check.name == _REPEATS else result) for check, result in findings.results
     )
-    return Findings(found.name, rows, found.flagged, found.limits)
+    return Findings(findings.name, rows, findings.flagged, findings.limits)

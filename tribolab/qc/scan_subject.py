@@ -124,6 +124,6 @@ class ScanSubject:
         for profile in profiles:
             if profile.sizes["x"] < 256:
                 return []
-            one = profile.drop_vars(["form_tilt", "form_curvature", "dropout"], errors="ignore")
-            spectra.append(psd_1d(one.expand_dims("scan"), form="none", tip_radius=radius))
+            bare = profile.drop_vars(["form_tilt", "form_curvature", "dropout"], errors="ignore")
+            spectra.append(psd_1d(bare.expand_dims("scan"), form="none", tip_radius=radius))
         return spectra

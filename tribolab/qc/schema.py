@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.io.tables.schema import load_schema
-from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
+from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.quantities import QUANTITIES
 
 FRICTION = ("friction_force", "friction_coefficient", "shear_stress")
@@ -39,19 +39,19 @@ def ranges() -> Mapping[str, Range]:
     >>> ranges()["temperature"].low
     70.0
     """
-    found = {}
+    limits = {}
     for field in load_schema("run")["fields"]:
         if "reason" not in field:  # time and the numbers of steps have checks of their own
             continue
         believed, possible = field["constraints"], field.get("possible", {})
-        found[field["name"]] = Range(
+        limits[field["name"]] = Range(
             float(believed["minimum"]),
             float(believed["maximum"]),
             float(possible.get("minimum", "-inf")),
             float(possible.get("maximum", "inf")),
             field["reason"],
         )
-    return found
+    return limits
 
 
 def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
@@ -62,23 +62,24 @@ def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
     >>> in_range(np.array([293.0, 20.0, -1.0, np.nan]), ranges()["temperature"])
     array([1, 3, 4, 2], dtype=int8)
     """
+    if not values.size or (values.min() >= limits.low and values.max() <= limits.high):
+        return uniform(values.shape, GOOD)
     flags = np.full(values.shape, GOOD, np.int8)
-    if values.size and not (values.min() >= limits.low and values.max() <= limits.high):
-        flags[(values < limits.low) | (values > limits.high)] = SUSPECT
-        flags[(values < limits.lowest) | (values > limits.highest)] = FAIL
-        flags[np.isnan(values)] = NOT_EVALUATED
+    flags[(values < limits.low) | (values > limits.high)] = SUSPECT
+    flags[(values < limits.lowest) | (values > limits.highest)] = FAIL
+    flags[np.isnan(values)] = NOT_EVALUATED
     return flags
 
 
 def wrong_units(run: xr.Dataset) -> dict[str, str]:
     """Variables whose unit is not the one of the dictionary of quantities, and that unit."""
-    found = {}
+    wrong = {}
     for name, variable in run.variables.items():
         known = QUANTITIES.get(str(name))
         unit = variable.attrs.get("units")
         if known is not None and unit is not None and unit != known.unit:
-            found[str(name)] = str(unit)
-    return found
+            wrong[str(name)] = str(unit)
+    return wrong
 
 
 def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
@@ -109,10 +110,12 @@ def pulled(normal_force: np.ndarray) -> float:
     Loaded is where its magnitude is above a tenth of the largest (99th percentile); adhesion may
     pull for a moment, but no run slides so.
     """
-    size = np.abs(normal_force[np.isfinite(normal_force)])
-    if size.size == 0:
+    known = np.isfinite(normal_force)
+    known = normal_force if known.all() else normal_force[known]
+    if known.size == 0:
         return 0.0
-    threshold = 0.1 * float(np.quantile(size[:: max(1, size.size // 100_000)], 0.99))
-    loaded = np.abs(normal_force) > threshold
-    count = int(loaded.sum())
-    return float((normal_force < -threshold).sum() / count) if count else 0.0
+    some = np.abs(known[:: max(1, known.size // 100_000)])
+    threshold = 0.1 * float(np.quantile(some, 0.99))
+    pulled = int((normal_force < -threshold).sum())
+    count = pulled + int((normal_force > threshold).sum())
+    return pulled / count if count else 0.0

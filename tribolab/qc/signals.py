@@ -1,7 +1,7 @@
 """Checks on one sampled signal: missing, stuck, saturated, quantised, spiked.
 
 Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`). None
-changes a sample. All are single passes of whole-array operations.
+changes a sample. All are passes of whole-array operations, over long records piece by piece.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT
+from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
+from tribolab.qc.pieces import PIECE, pieces
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -20,7 +21,10 @@ def missing(values: np.ndarray) -> np.ndarray:
     >>> missing(np.array([1.0, np.nan]))
     array([1, 9], dtype=int8)
     """
-    return np.where(np.isnan(values), MISSING, GOOD).astype(np.int8)
+    unknown = np.isnan(values)
+    if not unknown.any():
+        return uniform(values.shape, GOOD)
+    return np.where(unknown, np.int8(MISSING), np.int8(GOOD))
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
@@ -48,37 +52,56 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
     flags = np.full(values.size, NOT_EVALUATED, np.int8)
     if values.size < 16:
         return flags
-    step = np.diff(values)
+    levels, length = _noise_levels(values)
+    least = 0.3 * quantisation_step(values)
+    for start, stop in pieces(2, values.size - 2):
+        inner = flags[start:stop]
+        step = np.diff(values[start - 2 : stop + 2])
+        height = _height(step)
+        block = np.minimum(np.arange(start, stop) // length, levels.size - 1)
+        scale = np.maximum(levels[block], least)
+        back = np.abs(step[1:-2] + step[2:-1]) < 0.5 * height
+        inner[~np.isnan(height)] = GOOD
+        inner[(height > threshold * scale) & (height > 0) & back] = SUSPECT
+    return flags
+
+
+def _height(step: np.ndarray) -> np.ndarray:
+    """Height of each sample but two at both ends, from the steps between the samples."""
     bend = np.diff(step)
     # left of sample i: x[i] - x[i-1], and x[i] - (2 x[i-1] - x[i-2]); right likewise
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
-    height = np.maximum(upward, -downward)
-    scale = np.maximum(_local_noise(values)[2:-2], 0.3 * quantisation_step(values))
-    back = np.abs(step[1:-2] + step[2:-1]) < 0.5 * height
-    inner = flags[2:-2]
-    inner[~np.isnan(height)] = GOOD
-    inner[(height > threshold * scale) & (height > 0) & back] = SUSPECT
-    return flags
+    return np.maximum(upward, -downward)
 
 
-def _local_noise(values: np.ndarray, block: int = 512) -> np.ndarray:
-    """Noise level of each block, at least that of the quieter half of the record."""
-    second = np.abs(np.diff(values, 2, prepend=values[:1], append=values[-1:]))
-    second = np.nan_to_num(second)
+def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int]:
+    """Noise level of each block, at least that of the quieter half of the record; its length.
+
+    What is left over at the end belongs to the last block.
+    """
     blocks = max(1, values.size // block)
     length = values.size // blocks
-    levels = np.median(second[: blocks * length].reshape(blocks, length), axis=1)
-    levels = np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0))
-    return np.repeat(levels, np.diff(np.append(np.arange(blocks) * length, values.size)))
+    levels = np.empty(blocks)
+    for first, last in pieces(0, blocks, max(1, PIECE // length)):
+        start, stop = first * length, last * length
+        part = values[max(start - 1, 0) : stop + 1]
+        ends = {"prepend": values[:1]} if start == 0 else {}
+        ends |= {"append": values[-1:]} if stop == values.size else {}
+        second = np.nan_to_num(np.abs(np.diff(part, 2, **ends)))
+        levels[first:last] = np.median(second.reshape(-1, length), axis=1)
+    return np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0)), length
 
 
 def _runs_of_equal(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First index and length of every stretch of identical values."""
-    change = np.flatnonzero(values[1:] != values[:-1]) + 1
-    first = np.concatenate([[0], change])
-    return first, np.diff(np.append(first, values.size))
+    kind = np.int32 if values.size < 2**31 else np.int64
+    change = np.flatnonzero(values[1:] != values[:-1]).astype(kind)
+    edges = np.empty(change.size + 2, kind)
+    edges[0], edges[-1] = 0, values.size
+    np.add(change, 1, out=edges[1:-1])
+    return edges[:-1], np.diff(edges)
 
 
 def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
@@ -104,22 +127,22 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     With r the share of equal neighbours (the longest stretch left out), a stretch of k equal
     values appears somewhere among n samples with a probability of about n r^(k-1).
     """
-    flags = np.full(values.size, GOOD, np.int8)
     if values.size < 4 * shortest:
-        flags[:] = NOT_EVALUATED
-        return flags
+        return uniform(values.size, NOT_EVALUATED)
     first, length = _runs_of_equal(values)
-    longest = length.max()
+    longest = int(length.max())
     others = max(values.size - longest, 1)
     if length.size == 1:
-        flags[:] = SUSPECT  # one value from start to end
-        return flags
+        return uniform(values.size, SUSPECT)  # one value from start to end
     # a signal quantised more coarsely than its noise repeats values in health, too: what most
     # stretches do sets what is usual
     usual = float(np.quantile(length, 0.99))
     repeat = max((others - (length.size - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
     bad = np.flatnonzero(length >= max(shortest, allowed))
+    if not bad.size:
+        return uniform(values.size, GOOD)
+    flags = np.full(values.size, GOOD, np.int8)
     for index in bad:  # a loop over stuck stretches, few by their definition
         flags[first[index] : first[index] + length[index]] = SUSPECT
     return flags
@@ -145,19 +168,21 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     ndarray
         suspect at saturated samples, good elsewhere.
     """
-    flags = np.full(values.size, GOOD, np.int8)
-    known = values[~np.isnan(values)]
-    if known.size < 32 or known.min() == known.max():
-        flags[:] = NOT_EVALUATED
-        return flags
+    known = values.size - int(np.isnan(values).sum())
+    if known < 32 or np.nanmin(values) == np.nanmax(values):
+        return uniform(values.size, NOT_EVALUATED)
     step = 1.5 * quantisation_step(values)
-    for end, sign in ((known.max(), 1.0), (known.min(), -1.0)):
+    cut = np.zeros(values.size, bool)
+    for end, sign in ((np.nanmax(values), 1.0), (np.nanmin(values), -1.0)):
         at_end = values == end
-        count = int(at_end.sum())
-        depth = sign * (end - known)
-        below = int(((depth > 0) & (depth <= step)).sum())
+        count, below = int(at_end.sum()), 0
+        for start, stop in pieces(0, values.size):
+            depth = sign * (end - values[start:stop])
+            below += int(((depth > 0) & (depth <= step)).sum())
         in_a_row = bool((at_end[1:] & at_end[:-1]).any())
         enough = max(fewest, excess * below + 5 * np.sqrt(below))
         if count >= enough and (in_a_row or step == 0):
-            flags[at_end] = SUSPECT
-    return flags
+            cut |= at_end
+    if not cut.any():
+        return uniform(values.size, GOOD)
+    return np.where(cut, np.int8(SUSPECT), np.int8(GOOD))

@@ -26,8 +26,8 @@ def _signal(subject: RunSubject) -> str:
 
 
 def _hum(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    found = [line for line in subject.lines if line.mains]
-    return _strongest(subject, found, limits, "mains hum")
+    hum = [line for line in subject.lines if line.mains]
+    return _strongest(subject, hum, limits, "mains hum")
 
 
 def _resonance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

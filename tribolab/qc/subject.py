@@ -108,8 +108,8 @@ class RunSubject:
     @property
     def sliding(self) -> bool:
         """Whether there is any segment."""
-        found = self._found_segments
-        return not isinstance(found, Skip) and found.sizes["segment"] > 0
+        segments = self._found_segments
+        return not isinstance(segments, Skip) and segments.sizes["segment"] > 0
 
     @cached_property
     def slices(self) -> list[slice]:
@@ -196,7 +196,8 @@ class RunSubject:
             raise Skip(f"{name} was not recorded")
         if "normal_force" not in self.signals:
             raise Skip("no normal force was recorded that would show a rest without load")
-        low = np.abs(self.signals["normal_force"]) < 0.10 * self.typical_normal_force
+        force, light = self.signals["normal_force"], 0.10 * self.typical_normal_force
+        low = (force < light) & (force > -light)
         low &= ~self.in_segments
         edges = np.flatnonzero(np.diff(low.astype(np.int8), prepend=0, append=0))
         parts = [self.signals[name][a:b] for a, b in edges.reshape(-1, 2) if b - a >= 20]
@@ -252,13 +253,13 @@ class RunSubject:
         if self.friction_signal is None:
             raise Skip("no friction was recorded")
         values = self.signals[self.friction_signal]
-        found = [
+        significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
             for number, part in enumerate(self.slices)
         ]
-        if all(lines is None for lines in found):
+        if all(lines is None for lines in significant):
             raise Skip("sampled too slowly or too shortly for a spectrum")
-        return [line for lines in found for line in lines or []]
+        return [line for lines in significant for line in lines or []]
 
     def unit(self, name: str) -> str:
         """Return the unit of a variable as text, empty for pure numbers."""

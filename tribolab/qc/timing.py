@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
+from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
+from tribolab.qc.pieces import PIECE, pieces
 
 _BLOCK = 64  # samples over which a sampling interval is called local
 
@@ -30,8 +31,11 @@ def time_order(time: np.ndarray) -> np.ndarray:
     >>> time_order(np.array([0.0, 1.0, 1.0, 2.0]))
     array([1, 1, 4, 1], dtype=int8)
     """
+    forward = time[1:] > time[:-1]
+    if forward.all():
+        return uniform(time.size, GOOD)
     flags = np.full(time.size, GOOD, np.int8)
-    flags[1:][~(np.diff(time) > 0)] = FAIL
+    flags[1:][~forward] = FAIL
     return flags
 
 
@@ -62,15 +66,31 @@ def time_gaps(
     """
     if time.size < 8:
         return np.full(time.size, NOT_EVALUATED, np.int8)
-    interval = np.diff(time)
-    three = _middle(interval[:-2], interval[1:-1], interval[2:])
-    before = np.concatenate([np.zeros(3), three[:-1]])
-    after = np.concatenate([three[1:], np.zeros(3)])
+    late = [
+        start + np.flatnonzero(_late(time, start, stop, suspect))
+        for start, stop in pieces(0, time.size - 1)
+    ]
+    after = np.concatenate(late) + 1
+    if not after.size:
+        return uniform(time.size, GOOD)
     flags = np.full(time.size, GOOD, np.int8)
-    flags[1:][interval > suspect * np.maximum(before, after)] = SUSPECT
+    flags[after] = SUSPECT
     if pauses is not None:
         flags[pauses] = GOOD
     return flags
+
+
+def _late(time: np.ndarray, start: int, stop: int, longest: float) -> np.ndarray:
+    """Which of the intervals from `start` to `stop` are longer than those around them."""
+    count = time.size - 1
+    low, high = max(start - 3, 0), min(stop + 3, count)
+    interval = np.diff(time[low : high + 1])
+    three = _middle(interval[:-2], interval[1:-1], interval[2:])
+    before, after = np.zeros(stop - start), np.zeros(stop - start)
+    first, last = min(max(start, 3), stop), max(min(stop, count - 3), start)
+    before[first - start :] = three[first - 3 - low : stop - 3 - low]
+    after[: last - start] = three[start + 1 - low : last + 1 - low]
+    return interval[start - low : stop - low] > longest * np.maximum(before, after)
 
 
 def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
@@ -107,22 +127,30 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     """
     if time.size < _BLOCK:
         return np.full(time.size, NOT_EVALUATED, np.int8)
-    interval = np.diff(time)
-    both = interval[1:] + interval[:-1]
-    odd = np.abs(np.diff(interval)) / np.where(both > 0, both / 2, np.inf)
-    scatter = _by_block(odd) / (0.6745 * np.sqrt(2))
+    # a block of changes of the interval: 64 of them, and two samples more
+    changes = time.size - 2
+    blocks = max(1, changes // _BLOCK)
+    edges = np.linspace(0, changes, blocks + 1).astype(int)
+    length = changes // blocks
+    scatter = np.empty(blocks)
+    for first, last in pieces(0, blocks, max(1, PIECE // length)):
+        start = edges[first]
+        odd = _odd(time[start : edges[last - 1] + length + 2])
+        whole = np.lib.stride_tricks.sliding_window_view(odd, length)[edges[first:last] - start]
+        scatter[first:last] = np.median(whole, axis=1)
+    bad = scatter / (0.6745 * np.sqrt(2)) > suspect
+    if not bad.any():
+        return uniform(time.size, GOOD)
     flags = np.full(time.size, GOOD, np.int8)
-    flags[1:-1][scatter > suspect] = SUSPECT
+    flags[1:-1][np.repeat(bad, np.diff(edges))] = SUSPECT
     return flags
 
 
-def _by_block(values: np.ndarray) -> np.ndarray:
-    """Return the median of each block of samples, repeated to the length of the values."""
-    blocks = max(1, values.size // _BLOCK)
-    edges = np.linspace(0, values.size, blocks + 1).astype(int)
-    length = values.size // blocks
-    whole = np.lib.stride_tricks.sliding_window_view(values, length)[edges[:-1]]
-    return np.repeat(np.median(whole, axis=1), np.diff(edges))
+def _odd(time: np.ndarray) -> np.ndarray:
+    """Change of the interval at each sample but the first and the last, over the interval."""
+    interval = np.diff(time)
+    both = interval[1:] + interval[:-1]
+    return np.abs(np.diff(interval)) / np.where(both > 0, both / 2, np.inf)
 
 
 def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
@@ -181,17 +209,19 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     """
     if time.size <= 2 * stretch:
         return np.zeros(0, dtype=int)
-    interval = np.diff(time)
-    blocks = interval.size // stretch
-    level = np.median(interval[: blocks * stretch].reshape(blocks, stretch), axis=1)
+    blocks = (time.size - 1) // stretch
+    level = np.empty(blocks)
+    for first, last in pieces(0, blocks, max(1, PIECE // stretch)):
+        interval = np.diff(time[first * stretch : last * stretch + 1])
+        level[first:last] = np.median(interval.reshape(-1, stretch), axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
     # the block that holds the change may have any median: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
     first = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
-    found = []
+    changes = []
     for block in first:  # a loop over changes of the rate, few by their nature
         start = block * stretch
         cut = rate_change(time[start : start + 3 * stretch + 1], factor)
         if cut is not None:
-            found.append(start + cut)
-    return np.array(found, dtype=int)
+            changes.append(start + cut)
+    return np.array(changes, dtype=int)

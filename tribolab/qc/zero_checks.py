@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
+from tribolab.friction.zero.parts import Doubt
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.subject import RunSubject
 
@@ -31,9 +31,9 @@ def _signal(subject: RunSubject) -> str:
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
     """Turn what the analysis was not sure of into results; no single sample is to blame."""
-    found: list[dict[str, Any]] = list(subject.friction.attrs.get("zero_doubts", []))
+    doubts: list[Doubt] = list(subject.friction.attrs.get("zero_doubts", []))
     results = []
-    for doubt in found:
+    for doubt in doubts:
         if doubt["check"] != check:
             continue
         which = [int(i) for i in doubt["segments"]]

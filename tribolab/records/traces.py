@@ -187,14 +187,14 @@ def _signals(
         known = quantity(name)
         # speeds span decades: packed as they are drawn, linear only below the slowest segment
         below = _slowest(segments) if name in ("sliding_velocity", "set_speed") else None
-        levels = values if below is None else np.arcsinh(values / below)
+        levels = values[chosen] if below is None else np.arcsinh(values[chosen] / below)
         packed.append(
             {
                 "name": name,
                 "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
-                **packed_points(clock.place[chosen], levels[chosen], deflate=deflate),
+                **packed_points(clock.place[chosen], levels, deflate=deflate),
             }
         )
     return {

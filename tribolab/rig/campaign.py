@@ -24,6 +24,7 @@ from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
+from tribolab.rig.scan_faults import ScanFault
 from tribolab.studies import xu2026
 
 Law = Callable[[np.ndarray], np.ndarray]
@@ -184,22 +185,24 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
     """Give each fault to the run, or the surface, that has the fewest it can happen in."""
     for name in faults:
         fault = fault_of_campaign(name)
-        of_run = isinstance(fault, Fault)
-        able = [
-            k
-            for k, job in enumerate(work)
-            if bool(job.number) == of_run
-            and (not of_run or fault.suits(job.condition.surface, job.condition.medium))
-        ]
+        able = [k for k, job in enumerate(work) if _can_have(job, fault)]
         if not able:
+            where = f"{fault.surface} {fault.medium} only" if isinstance(fault, Fault) else "scans"
             raise ConfigError(
-                f"fault '{name}' happens on {fault.surface} {fault.medium} only, "
-                "and the campaign has no such run"
+                f"fault '{name}' happens on {where}, and the campaign has no such run"
             )
         k = min(able, key=lambda k: len(work[k].faults))
-        n_scans = work[k].scans if of_run else max(work[k].scans, fault.fewest)
+        fewest = fault.fewest if isinstance(fault, ScanFault) else 0
+        n_scans = max(work[k].scans, fewest)
         work[k] = replace(work[k], faults=(*work[k].faults, name), scans=n_scans)
     return work
+
+
+def _can_have(job: _Job, fault: Fault | ScanFault) -> bool:
+    """Whether a fault can happen in a run, or to the scans of a surface (job number 0)."""
+    if isinstance(fault, ScanFault):
+        return not job.number
+    return bool(job.number) and fault.suits(job.condition.surface, job.condition.medium)
 
 
 def _date(made: int) -> dt.datetime:

@@ -116,7 +116,11 @@ _ALL = (
         strikes.time_back,
     ),
     Fault(
-        "gaps", "The logger loses three stretches of seconds.", "suspect", "time_gaps", strikes.gaps
+        "gaps",
+        "The logger loses three stretches of seconds.",
+        "suspect",
+        "time_gaps",
+        strikes.lose_stretches,
     ),
     Fault(
         "jitter",
@@ -152,17 +156,21 @@ _ALL = (
         "The amplifier's range ends below the largest friction.",
         "fail",
         "saturation",
-        strikes.saturation,
+        strikes.saturate,
     ),
     Fault(
         "coarse",
         "The converter resolves 9 bits of its range.",
         "suspect",
         "quantisation",
-        strikes.coarse,
+        strikes.coarse_digits,
     ),
     Fault(
-        "spikes", "A switch nearby puts spikes on the force.", "suspect", "spikes", strikes.spikes
+        "spikes",
+        "A switch nearby puts spikes on the force.",
+        "suspect",
+        "spikes",
+        strikes.add_spikes,
     ),
     Fault(
         "zero_offset",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -44,7 +43,7 @@ def write_faulty_scans(
     faults: Sequence[str],
     folder: Path,
     rng: int | np.random.Generator = 0,
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, dict[str, list[dict[str, str]]]]:
     """Write simulated scans with faults in them, as the stylus instrument exports them.
 
     Parameters
@@ -68,7 +67,8 @@ def write_faulty_scans(
     struck = exported(scans)
     # the instrument's own results stand in the files only where they are what is wrong
     results = any(SCAN_FAULTS_BY_NAME[name].check == "results" for name in faults)
-    files, facts = _files(struck, results), {}
+    files = _files(struck, results)
+    facts: dict[str, dict[str, list[dict[str, str]]]] = {}
     for name in faults:
         fault = SCAN_FAULTS_BY_NAME[name]
         struck = fault.strike(struck, rng)
@@ -88,7 +88,7 @@ def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
     if "recorded_x" in scans.coords:  # the traverse wavered
         places = scans.recorded_x.values
         x, heights = places, [np.interp(places, x, row) for row in heights]
-    found = {name: attrs[f"instrument_{name}_m"].split("; ") for name in ("Ra", "Rq")}
+    stated = {name: attrs[f"instrument_{name}_m"].split("; ") for name in ("Ra", "Rq")}
     return {
         str(file): scan_file(
             x,
@@ -96,7 +96,7 @@ def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
             tip_radius=attrs["tip_radius_m"],
             pitch=attrs["stated_pitch_m"],
             length=attrs["stated_length_m"],
-            results={name: float(values[row]) for name, values in found.items()} if results else {},
+            results={name: float(values[row]) for name, values in stated.items() if results},
         )
         for row, (file, height) in enumerate(zip(scans.file.values, heights, strict=True))
     }

@@ -154,9 +154,9 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
     return stamp(xr.Dataset(data, {"time": time}))
 
 
-def _named(thing: Any) -> dict[str, Any]:
+def _named(thing: object) -> dict[str, Any]:
     """Return parameters of a law for the record; a bare function has its name only."""
-    values = asdict(thing) if is_dataclass(thing) else {}
+    values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
     values = {k: v for k, v in values.items() if not isinstance(v, tuple)}  # tables follow
     finite = {k: v if isinstance(v, str) or np.isfinite(v) else None for k, v in values.items()}
     return {"kind": getattr(thing, "__name__", type(thing).__name__), **finite}

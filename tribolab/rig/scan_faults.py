@@ -64,7 +64,7 @@ def exported(scans: xr.Dataset) -> xr.Dataset:
     """
     tool = xu2026.profilometer
     data = scans[["height"]].rename({scans.height.dims[0]: "scan"})
-    found = roughness_parameters(remove_form(data, "circle"), lambda_c="auto")
+    roughness = roughness_parameters(remove_form(data, "circle"), lambda_c="auto")
     name = str(scans.attrs["surface"]).lower()
     x = data.x.values
     length, pitch = float(x[-1] - x[0]), float(x[-1] - x[0]) / (x.size - 1)
@@ -81,12 +81,14 @@ def exported(scans: xr.Dataset) -> xr.Dataset:
         stated_length_m=length,
         tip_radius_m=tool.tip_radius,
         x_unevenness=0.0,
-        instrument_Ra_m=_joined(found.Ra.values),
-        instrument_Rq_m=_joined(found.Rq.values),
+        instrument_Ra_m=_joined(roughness.Ra.values),
+        instrument_Rq_m=_joined(roughness.Rq.values),
     )
 
 
-def strike(scans: xr.Dataset, faults: str | Iterable[str], rng: int | np.random.Generator = 0):
+def strike(
+    scans: xr.Dataset, faults: str | Iterable[str], rng: int | np.random.Generator = 0
+) -> xr.Dataset:
     """Return exported scans with faults in them.
 
     Parameters

@@ -74,7 +74,8 @@ def make_schedule(protocol: Protocol) -> Schedule:
     """
     p = protocol
     # duration, acceleration, load at start and stop, set speed, stroke, sliding
-    rows = [(p.unloaded_rest, 0, 0, 0, 0, -1, -1), (p.loading, 0, 0, 1, 0, -1, -1)]
+    rows: list[tuple[float, ...]] = [(p.unloaded_rest, 0, 0, 0, 0, -1, -1)]
+    rows.append((p.loading, 0, 0, 1, 0, -1, -1))
     rows.append((p.loaded_rest, 0, 1, 1, 0, -1, -1))
     velocities = [0.0, 0.0, 0.0]
     stroke = -1

@@ -19,7 +19,7 @@ _FINE = 20_000  # points per segment for the averages that the truth states
 
 
 @dataclass(frozen=True)
-class Stroke:
+class StrokeFriction:
     """Friction along one stroke, at the distance [m] slid since it began; positive is resistance.
 
     Parameters
@@ -69,7 +69,7 @@ class Signals:
     """
 
     schedule: Schedule
-    strokes: tuple[Stroke, ...]
+    strokes: tuple[StrokeFriction, ...]
     normal_force: float
     load_error: Callable[[np.ndarray], np.ndarray]
     truth: pd.DataFrame
@@ -138,7 +138,7 @@ def make_signals(
         stick-slip and fluctuation happen to leave over.
     """
     slide = np.flatnonzero(schedule.sliding == 1)
-    strokes: list[Stroke] = []
+    strokes: list[StrokeFriction] = []
     rows = []
     left = 0.0  # signed friction at the end of the last rest
     for k, phase in enumerate(slide):
@@ -150,7 +150,7 @@ def make_signals(
         # the middle of the small steps of the constant-speed part, from the stroke's start
         fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
         ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
-        stroke = Stroke(level, length, ripple, held=left * direction, protocol=protocol)
+        stroke = StrokeFriction(level, length, ripple, held=left * direction, protocol=protocol)
         strokes.append(stroke)
         last = direction * float(stroke(np.array([length]))[0])
         left = last * float(_relaxed(protocol, protocol.rest))

@@ -32,7 +32,8 @@ class SimulatedRun:
 
     Examples
     --------
-    >>> from tribolab.rig.parameters import Protocol
+    >>> from tribolab.rig.parameters import Protocol, Rig
+    >>> from tribolab.rig.runs import simulate_run
     >>> made = simulate_run("Sb-S", "dry", rig=Rig(Protocol(speeds=(1e-4,))))
     >>> sorted(made.force_log.data_vars), made.segments.direction.tolist()
     (['friction_force', 'normal_force'], [1, -1])

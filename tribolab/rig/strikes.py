@@ -87,7 +87,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _retimed(run, time, {"row": row})
 
 
-def gaps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Drop three stretches of the force log."""
     time = run.force_log.time.values
     starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
@@ -135,7 +135,7 @@ def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _force(run, values, {"row": row, "samples": length})
 
 
-def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def saturate(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Cut the friction force off at both ends of a range."""
     highest = float(np.abs(run.noise_free.friction_force.values).max())
     limit = float(rng.uniform(0.6, 0.8)) * highest
@@ -143,14 +143,14 @@ def saturation(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     return _force(run, values, {"limit_N": limit})
 
 
-def coarse(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def coarse_digits(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Round the friction force to 9 bits of the range."""
     step = 1000 / 2**9
     values = np.round(run.force_log.friction_force.values / step) * step
     return _force(run, values, {"step_N": step})
 
 
-def spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
+def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Add single samples that stand far out."""
     values = run.force_log.friction_force.values.copy()
     rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))
@@ -297,9 +297,10 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     if slip.empty:
         raise ConfigError("fault 'slow_logger' needs a speed at which there is strong stick-slip")
     interval = _interval(run)
-    period = slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]
+    period = (slip["stick_slip_wavelength_m"] / slip["sliding_speed_m_s"]).to_numpy(dtype=float)
     per_period = [
-        float(p / np.median(interval[_rows(run, stroke)])) for stroke, p in period.items()
+        float(p / np.median(interval[_rows(run, stroke)]))
+        for stroke, p in zip(slip.index.to_numpy(dtype=int), period, strict=True)
     ]
     wanted = float(rng.uniform(3.0, 5.0))  # samples in the fastest period
     every = max(2, round(min(per_period) / wanted))
@@ -335,8 +336,9 @@ def ramps(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     low = float(rng.uniform(0.1, 0.3))
     motion, shift = run.motion_log, float(run.facts["clock_shift_s"])
     time, velocity = motion.time.values + shift, motion.sliding_velocity.values.copy()
-    for row in run.segments.itertuples():
-        inside = (time >= row.start_s) & (time <= row.stop_s)
-        share = (time[inside] - row.start_s) / (row.stop_s - row.start_s)
+    segments = run.segments[["start_s", "stop_s"]].to_numpy(dtype=float)
+    for start, stop in segments:
+        inside = (time >= start) & (time <= stop)
+        share = (time[inside] - start) / (stop - start)
         velocity[inside] *= low + 2 * (1 - low) * share
     return run.force_log, motion.assign(sliding_velocity=("time", velocity)), {"lowest": low}

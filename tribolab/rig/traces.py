@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -90,7 +92,9 @@ def simulate_trace(
     return stamp(xr.Dataset(data, {"time": time}), form=form, **truth)
 
 
-def _truth(wave, length: float, wavelength: float) -> dict[str, float]:
+def _truth(
+    wave: Callable[[np.ndarray], np.ndarray], length: float, wavelength: float
+) -> dict[str, float]:
     """Mean distance between the peaks, and mean drop behind them, of the wave without noise."""
     place = np.linspace(0, length, int(_FINE * length / wavelength))
     values = wave(place)

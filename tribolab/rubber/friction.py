@@ -137,7 +137,7 @@ def _solved(
 
 
 def _outside(
-    found: tuple[np.ndarray, ...],
+    forces: tuple[np.ndarray, ...],
     other: tuple[np.ndarray, ...],
     speed: xr.DataArray,
     modulus: TabulatedModulus,
@@ -147,9 +147,9 @@ def _outside(
     An error only if no speed is inside the second limit: a curve may have ends that are not sure.
     """
     share = np.zeros(np.atleast_1d(speed.values).size)
-    for one, two in zip(found, other, strict=True):
-        largest = np.maximum(np.abs(one), np.abs(two))
-        apart = np.divide(np.abs(one - two), largest, out=np.zeros_like(one), where=largest > 0)
+    for force, two in zip(forces, other, strict=True):
+        largest = np.maximum(np.abs(force), np.abs(two))
+        apart = np.divide(np.abs(force - two), largest, out=np.zeros_like(force), where=largest > 0)
         share = np.maximum(share, apart.reshape(-1, share.size).max(axis=0))
     limit, speeds = LIMITS["frequency"], np.atleast_1d(speed.values)
     ends = modulus.angular_frequency[[0, -1]]

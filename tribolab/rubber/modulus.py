@@ -150,7 +150,7 @@ class _Continued:
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
         """Complex modulus [Pa] at angular frequencies [rad/s] (any shape)."""
         size, table = np.abs(np.asarray(angular_frequency, dtype=float)), self.table
-        nodes, found = np.log(table.angular_frequency), []
+        nodes, moduli = np.log(table.angular_frequency), []
         with np.errstate(divide="ignore"):
             at = np.log(size)
         for values in (table.storage, np.maximum(table.loss, 1e-6 * table.storage)):
@@ -164,8 +164,8 @@ class _Continued:
                 slope = float(np.clip(np.polyfit(nodes[near], logs[near], 1)[0], 0.0, 1.0))
                 beyond = at < nodes[0] if end == 0 else at > nodes[-1]
                 inside = np.where(beyond, logs[end] + slope * (at - nodes[end]), inside)
-            found.append(np.minimum(np.exp(inside), max(_GLASS, float(values.max()))))
-        return found[0] + 1j * np.sign(angular_frequency) * found[1]
+            moduli.append(np.minimum(np.exp(inside), max(_GLASS, float(values.max()))))
+        return moduli[0] + 1j * np.sign(angular_frequency) * moduli[1]
 
 
 _DECADE = np.log(10.0)
@@ -273,13 +273,14 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
         raise ReadError(f"{path}: there is no such file")
     if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
         try:
-            sheets = pd.read_excel(path, sheet_name=sheet, dtype=object, engine="calamine")
+            wanted = None if sheet is None else [sheet]
+            sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
         except ImportError as error:
             raise ReadError(
                 f"{path.name}: spreadsheets need the package python-calamine; install it, or "
                 "save the table as .csv"
             ) from error
-        tables = list(sheets.values()) if sheet is None else [sheets]
+        tables = list(sheets.values())
     else:
         tables = [_text_table(path)]
     for table in tables:

@@ -63,7 +63,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     rounded one, on the stand-in spectra of `tribolab.studies.xu2026`.
     """
     theory = Theory()
-    found = []
+    compared = []
     for row in rows:
         if row.quantity not in _COMPUTE:
             hint = nearest(row.quantity, _COMPUTE)
@@ -71,7 +71,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
         computed = _COMPUTE[row.quantity](row, theory)
         own = _OWN[row.quantity](row) if row.quantity in _OWN else None
         verdict = judge(row, computed, own)
-        found.append(
+        compared.append(
             {
                 "quantity": row.quantity,
                 "surface": row.surface,
@@ -81,7 +81,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
                 "note": verdict.note,
             }
         )
-    return pd.DataFrame(found, columns=COLUMNS)
+    return pd.DataFrame(compared, columns=COLUMNS)
 
 
 def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | float]:

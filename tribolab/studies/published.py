@@ -65,7 +65,7 @@ class Published:
     @property
     def relation(self) -> str:
         """The words before the number: ``""``, ``"about"``, ``"at most"``, ``">"``, ``"below"``."""
-        return self.text[: _NUMBER.search(self.text).start()].strip()
+        return self.text[: self._number.start()].strip()
 
     @property
     def si(self) -> float:
@@ -75,14 +75,20 @@ class Published:
     @property
     def ends(self) -> tuple[float, float]:
         """The ends of a range in SI; of a single number twice the same."""
-        found = [float(match[0]) * self._scale for match in _NUMBER.finditer(self.text)]
-        return min(found), max(found)
+        numbers = [float(match[0]) * self._scale for match in _NUMBER.finditer(self.text)]
+        return min(numbers), max(numbers)
 
     @property
     def last_digit(self) -> float:
         """One unit of the last digit that is printed, in SI."""
-        match = _NUMBER.search(self.text)
+        match = self._number
         return 10.0 ** (int(match[2] or 0) - len(match[1] or "")) * self._scale
+
+    @property
+    def _number(self) -> re.Match[str]:
+        match = _NUMBER.search(self.text)
+        assert match is not None  # a text without a number is refused when the row is made
+        return match
 
     @property
     def _scale(self) -> float:

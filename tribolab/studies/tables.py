@@ -88,12 +88,14 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
     over, rest, loaded = [], [], []
     names = ["contact_area_ratio", "contact_area_ratio_no_adhesion", "area_enhancement"]
     for gamma in MEDIA.values():
-        found = adhesion(pressures, psd, modulus, gamma)
-        over.append(found[names].isel(pressure=slice(1 + forces.size, None)))
-        rest.append(found[["effective_work_of_adhesion"]].isel(pressure=0, drop=True))
-        loaded.append(found[names].isel(pressure=slice(1, 1 + forces.size)))
+        contact = adhesion(pressures, psd, modulus, gamma)
+        over.append(contact[names].isel(pressure=slice(1 + forces.size, None)))
+        rest.append(contact[["effective_work_of_adhesion"]].isel(pressure=0, drop=True))
+        loaded.append(contact[names].isel(pressure=slice(1, 1 + forces.size)))
     media = xr.DataArray(list(MEDIA), dims="medium", name="medium")
-    parts = [xr.concat(one, media, combine_attrs="drop_conflicts") for one in (over, rest, loaded)]
+    parts = [
+        xr.concat(both, media, combine_attrs="drop_conflicts") for both in (over, rest, loaded)
+    ]
     # a pressure stands for its load here, so that loads keep their order and their name
     loads = parts[2].rename(pressure="load").assign_coords(load=forces / xu2026.contact.length)
     loads = loads.assign(pressure=("load", at_loads), normal_force=("load", forces))
@@ -152,11 +154,11 @@ def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
     from tribolab.lubrication.stribeck import film_profile
     from tribolab.quantities import stamp
 
-    found = [
+    profiles = [
         film_profile(xu2026.contact, psd, xu2026.system.viscosity, load, v)
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")
         for v in PROFILE_SPEEDS
     ]
-    return stamp(xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts"))
+    return stamp(xr.concat(profiles, "sliding_speed", combine_attrs="drop_conflicts"))

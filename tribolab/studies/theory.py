@@ -33,6 +33,16 @@ _WORK = re.compile(r"w = ([\d.]+) J/m2")
 _OTHER_PRESSURE = 1e5  # Pa, Sec. 7
 
 
+def _stated(pattern: re.Pattern[str], row: Published) -> float:
+    """Return the number that a condition states."""
+    match = pattern.search(row.condition)
+    if match is None:
+        raise AnalysisError(
+            f"published {row.quantity}: '{pattern.pattern}' is not in '{row.condition}'"
+        )
+    return float(match[1])
+
+
 class Theory:
     """The reference system computed: Hertz, JKR, Persson contact, adhesion, rubber, lubrication.
 
@@ -65,7 +75,7 @@ class Theory:
         try:
             return float(hertz_mean_pressure(self.load(row), self._contact))
         except AnalysisError:
-            return 1e6 * float(_PRESSURE.search(row.condition)[1])
+            return 1e6 * _stated(_PRESSURE, row)
 
     def medium(self, row: Published) -> str:
         """Medium of a condition with adhesion, "" without."""
@@ -83,7 +93,7 @@ class Theory:
 
     def jkr_half_width(self, row: Published) -> float:
         """Half-width [m], Eq. (15), with the work of adhesion of the condition."""
-        work = float(_WORK.search(row.condition)[1])
+        work = _stated(_WORK, row)
         return float(jkr_half_width(self.load(row), self._contact, work))
 
     def roughness(self, surface: str) -> float:
@@ -120,8 +130,8 @@ class Theory:
     def macroscopic_work(self, surface: str, medium: str) -> float:
         """gamma_eff(1) [J/m2] as the load vanishes."""
         work = self._published_work(medium)
-        found = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
-        return float(found.macroscopic_work_of_adhesion)
+        macroscopic = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
+        return float(macroscopic.macroscopic_work_of_adhesion)
 
     def viscoelastic_friction(self) -> dict[str, float]:
         """Largest mu_visc of each surface at the speeds of the paper; Smooth in full contact."""
@@ -129,11 +139,11 @@ class Theory:
         largest = {}
         for name in xu2026.surfaces:
             full = name == "Smooth"  # adhesion nearly completes that contact (Sec. 6)
-            found = viscoelastic_friction(
+            friction = viscoelastic_friction(
                 speeds, self._pressures[0], xu2026.psd(name), PDMS_STAND_IN, complete_contact=full
             )
             label = f"{name} (complete contact)" if full else name
-            largest[label] = float(found.friction_coefficient.max())
+            largest[label] = float(friction.friction_coefficient.max())
         return largest
 
     def line(self, row: Published) -> tuple[float, float]:
@@ -147,14 +157,14 @@ class Theory:
 
     def flow_stops(self, level: float) -> list[float]:
         """Mean separation over h_rms of each surface where phi_p falls below a level."""
-        found = []
+        stops = []
         for name in xu2026.surfaces:
             factors = flow_factors(xu2026.psd(name))
             closed, height = factors.percolation_separation, factors.rms_roughness
             u = closed + height * np.geomspace(1e-4, 1.0, 2000)
             above = u[factors.at(u).phi_p > level]
-            found.append(float(above[0] if level > 0 else closed) / height)
-        return found
+            stops.append(float(above[0] if level > 0 else closed) / height)
+        return stops
 
     def boundary_onset(self, row: Published, share: float) -> float:
         """Speed [m/s] at which friction has fallen to a share of that of the dry contact."""
@@ -171,18 +181,18 @@ class Theory:
 
     def _adhesion(self, surface: str, medium: str) -> tuple[np.ndarray, np.ndarray]:
         work = self._published_work(medium)
-        found = adhesion(self._pressures, xu2026.psd(surface), self._modulus, work)
-        return found.contact_area_ratio.values, found.area_enhancement.values
+        contact = adhesion(self._pressures, xu2026.psd(surface), self._modulus, work)
+        return contact.contact_area_ratio.values, contact.area_enhancement.values
 
     def _line(self, surface: str, load: float) -> tuple[float, float]:
-        found = rough_line_contact(load, self._contact, xu2026.psd(surface))
-        return float(found.max_pressure), float(found.contact_width)
+        line = rough_line_contact(load, self._contact, xu2026.psd(surface))
+        return float(line.max_pressure), float(line.contact_width)
 
     def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
         """Low speeds [m/s] and friction there over that of the dry contact."""
         speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
         stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
         eta = xu2026.system.viscosity
-        found = stribeck_curve(self._contact, xu2026.psd(surface), eta, load, stress, speed)
-        friction = found.friction_coefficient.values
+        curve = stribeck_curve(self._contact, xu2026.psd(surface), eta, load, stress, speed)
+        friction = curve.friction_coefficient.values
         return speed[1:], friction[1:] / friction[0]

@@ -32,7 +32,7 @@ STAND_IN = (
 
 
 @dataclass(frozen=True)
-class System:
+class ReferenceSystem:
     """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
 
     Parameters
@@ -50,7 +50,7 @@ class System:
 
     Examples
     --------
-    >>> f"{System().nominal_pressure(31.0) / 1e3:.1f} kPa"
+    >>> f"{ReferenceSystem().nominal_pressure(31.0) / 1e3:.1f} kPa"
     '41.7 kPa'
     """
 
@@ -136,7 +136,7 @@ class Surface:
     shear_stress: tuple[tuple[float, float], ...]
 
 
-system = System()
+system = ReferenceSystem()
 profilometer = Profilometer()
 contact = LineContact(system.radius, system.length, system.youngs_modulus, system.poisson_ratio)
 

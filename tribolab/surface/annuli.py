@@ -55,24 +55,24 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
     weight = np.where(near, relative**-2.0, 0.0)
     x = np.log(q) - np.average(np.log(q), weights=weight)
     tail = weight * x / np.sum(weight * x**2)
-    weights = np.gradient(np.eye(q.size), np.log(q), axis=0)
+    weights = np.asarray(np.gradient(np.eye(q.size), np.log(q), axis=0))
     weights[-1] = tail
     edges = np.append(profile.wavenumber_low.values, profile.wavenumber_high.values[-1])
     offset = float(tail @ np.log(c / power))
     typical = smooth(q, c, relative, fitted.law)
-    found, behind = (
+    measured, behind = (
         PowerLaws(edges, p, weights @ np.log(level), weights, tail, offset)
         for p, level in ((power, c), (power * typical / c, typical))
     )
-    return found, behind, relative
+    return measured, behind, relative
 
 
-def join(found: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
+def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
     """Join neighbouring annuli until each is known well enough.
 
     Parameters
     ----------
-    found
+    measured
         Annuli with their sensitivities to the bins of C_1D.
     behind
         Those of the smooth spectrum behind C_1D, over the same edges.
@@ -92,9 +92,9 @@ def join(found: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, n
     judged by its own power, joining would stop where that happens to be high, which put 20 % on
     the lowest annulus and made its error too small.
     """
-    ends, first, number = [0], 0, found.power.size
+    ends, first, number = [0], 0, measured.power.size
     while first < number:
-        typical, power = (np.cumsum(one.power[first:]) for one in (behind, found))
+        typical, power = np.cumsum(behind.power[first:]), np.cumsum(measured.power[first:])
         rows = np.cumsum(behind.sensitivity[first:], axis=0) * relative
         known = (typical > 0) & (power > 0)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -110,8 +110,8 @@ def join(found: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, n
             function="psd_2d",
         )
     ends[-1] = number  # what is left at the end has no power of its own
-    joined, typical = (_joined(one, ends) for one in (found, behind))
-    error = np.sqrt(((typical.sensitivity * relative) ** 2).sum(1)) / np.abs(typical.power)
+    joined, smoothed = _joined(measured, ends), _joined(behind, ends)
+    error = np.sqrt(((smoothed.sensitivity * relative) ** 2).sum(1)) / np.abs(smoothed.power)
     return joined, error
 
 
@@ -194,7 +194,7 @@ def _balanced(
     return c * np.exp(brentq(excess, -most, most, xtol=1e-12 * most, rtol=1e-12) * error**2)
 
 
-def spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
+def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
     """Put the annuli on nodes, with their band.
 
     What the power laws between the nodes hold more or less than the annuli, at most some per

@@ -65,13 +65,13 @@ def psd_2d_of_map(
             cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
             function="psd_2d",
         )
-    refuse_level("psd_2d", scan, [level_map(one) for one in height])
+    refuse_level("psd_2d", scan, [level_map(row) for row in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     taper = np.outer(window(size[0]), window(size[1]))
     power, whole = np.zeros(size), 0.0
-    for one in height:  # one transform at a time: maps are large
-        power += np.abs(np.fft.fft2(one * taper)) ** 2 / len(height)
-        whole += float(np.mean((one * taper) ** 2)) / len(height)
+    for row in height:  # one transform at a time: maps are large
+        power += np.abs(np.fft.fft2(row * taper)) ** 2 / len(height)
+        whole += float(np.mean((row * taper) ** 2)) / len(height)
     scale = steps[0] * steps[1] / (4 * np.pi**2 * taper.size)
     ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)

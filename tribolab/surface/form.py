@@ -123,7 +123,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
         )
     order = FORMS[form]
     order = degree if order is None else order
-    attrs = {"form_removed": form, "form_order": order}
+    attrs: dict[str, str | float] = {"form_removed": form, "form_order": order}
     if "y" in scans.height.dims:
         if form == "circle":
             raise AnalysisError(
@@ -202,13 +202,13 @@ def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
 def _polynomial(
     rows: np.ndarray, x: np.ndarray, scale: float, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    found = _least_squares(rows, basis)
+    fitted = _least_squares(rows, basis)
     derivative = np.polynomial.legendre.legder
-    terms = found.T
+    terms = fitted.T
     tilt = np.polynomial.legendre.legval(0.0, derivative(terms)) / scale
     bend = np.polynomial.legendre.legval(0.0, derivative(terms, 2)) / scale**2
-    tilt, bend = np.broadcast_to(tilt, len(rows)), np.broadcast_to(bend, len(rows))
-    return rows - found @ basis.T, np.stack([tilt, bend], axis=-1)
+    both = [np.broadcast_to(tilt, len(rows)), np.broadcast_to(bend, len(rows))]
+    return rows - fitted @ basis.T, np.stack(both, axis=-1)
 
 
 def _circle(

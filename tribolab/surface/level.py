@@ -37,7 +37,7 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
     [True, False]
     """
     largest, left = (
-        np.where(np.isfinite(one), np.abs(one), 0.0).max(axis=-1) for one in (heights, deviation)
+        np.where(np.isfinite(z), np.abs(z), 0.0).max(axis=-1) for z in (heights, deviation)
     )
     return (left <= ROUNDING * largest) & np.isfinite(deviation).any(axis=-1)
 
@@ -53,12 +53,12 @@ def level_rows(height: np.ndarray) -> np.ndarray:
     rows, points = height.shape
     way = np.linspace(0.0, 1.0, points)
     step = max(1, _CHUNK // points)
-    found = np.zeros(rows, dtype=bool)
+    level = np.zeros(rows, dtype=bool)
     for first in range(0, rows, step):
         part = np.asarray(height[first : first + step], dtype=float)
         chord = part[:, :1] + (part[:, -1:] - part[:, :1]) * way
-        found[first : first + step] = rounding_only(part - chord, part)
-    return found
+        level[first : first + step] = rounding_only(part - chord, part)
+    return level
 
 
 def level_map(height: np.ndarray) -> bool:

@@ -9,7 +9,7 @@ from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
 from tribolab.quantities import stamp
 from tribolab.surface import abel
-from tribolab.surface.annuli import bins_of, confidence_band, join, spectrum
+from tribolab.surface.annuli import annular_spectrum, bins_of, confidence_band, join
 from tribolab.surface.areal import psd_2d_of_map
 from tribolab.surface.binning import log_bins, shape, window
 from tribolab.surface.form import remove_form, removed_order
@@ -211,9 +211,9 @@ def psd_2d(
     bins, behind, relative = bins_of(profile, fitted)
     annuli, error = join(abel.invert(bins), abel.invert(behind), relative)
     inherited = _inherited(scans, "2D power spectrum by the inverse Abel transform")
-    found = spectrum(annuli, error, fitted)
+    result = annular_spectrum(annuli, error, fitted)
     return stamp(
-        found.assign_attrs({**inherited, **found.attrs, "convention": "<h^2> = 2 pi int q C dq"})
+        result.assign_attrs({**inherited, **result.attrs, "convention": "<h^2> = 2 pi int q C dq"})
     )
 
 

@@ -100,10 +100,10 @@ def trusted_band(
     if "lambda_c_m" in scans.attrs:
         passed = -np.log(1 - np.sqrt(1 - _FILTER_LOSS))
         lows["lambda_c"] = float(np.sqrt(passed / _GAUSS) / scans.attrs["lambda_c_m"])
-    low_by, high_by = max(lows, key=lows.get), min(highs, key=highs.get)
+    low_by, high_by = max(lows, key=lambda by: lows[by]), min(highs, key=lambda by: highs[by])
     low, high = lows[low_by], highs[high_by]
     trusted = (left >= low * (1 - 1e-9)) & (right <= high * (1 + 1e-9))
-    attrs = {
+    attrs: dict[str, float | str] = {
         "trusted_low_1_m": float(left[trusted].min()) if trusted.any() else low,
         "trusted_high_1_m": float(right[trusted].max()) if trusted.any() else high,
         "trusted_low_limited_by": low_by,

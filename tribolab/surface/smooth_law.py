@@ -75,10 +75,12 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
         least_squares(residual, (start, 0.8), bounds=bounds, x_scale=(1.0, 0.3))
         for start in ends[0] + np.array(_STARTS) * np.diff(ends)
     ]
-    best = min(tried, key=lambda one: one.cost)
+    best = min(tried, key=lambda fit: fit.cost)
     plateau = float(np.exp(np.average(off(best.x), weights=weights)))
     growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))  # where the surface is another
-    return FittedLaw(law(*best.x, plateau), growth * np.linalg.pinv(best.jac.T @ best.jac))
+    rolloff, hurst = best.x
+    jacobian = np.asarray(best.jac)
+    return FittedLaw(law(rolloff, hurst, plateau), growth * np.linalg.pinv(jacobian.T @ jacobian))
 
 
 def smooth(

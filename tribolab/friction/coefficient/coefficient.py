@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.coefficient.steadiness import judged
-from tribolab.friction.statistics import NOTHING, Estimate, describe, student_remark
+from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
@@ -171,19 +171,19 @@ def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.n
     return np.array(means, dtype=float)
 
 
-def _column(found: list[Estimate], name: str) -> np.ndarray:
-    return np.array([getattr(one, name) for one in found], dtype=float)
+def _column(estimates: list[Estimate], name: str) -> np.ndarray:
+    return np.array([getattr(estimate, name) for estimate in estimates], dtype=float)
 
 
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
-    forces = [describe(time[s], force[s]) for s in parts]
+    forces = [estimate_of(time[s], force[s]) for s in parts]
     means = _column(forces, "mean")
     loads, load = [], np.nan
     if "normal_force" in run:
         normal = run["normal_force"].values
-        loads = [describe(time[s], normal[s]) for s in parts]
+        loads = [estimate_of(time[s], normal[s]) for s in parts]
         pressed = _column(loads, "mean")
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
@@ -207,12 +207,12 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         "pair": pair,
     }
     if not loads:
-        empty = [one.samples == 0 for one in forces]
-        few = np.array([student_remark(one.effective_samples) for one in forces], dtype=object)
-        remarks = np.where(empty, "no samples that are numbers", few).astype(object)
+        empty = [force.samples == 0 for force in forces]
+        few = np.array([student_remark(force.effective_samples) for force in forces], dtype=object)
+        told = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
-        return _table(data, remarks, zero)
+        return _table(data, told, zero)
 
     ratios, remarks = [], []
     for i, s in enumerate(parts):
@@ -262,20 +262,20 @@ def _ratio(
     lost = 1 - np.count_nonzero(pressed) / normal.size
     if lost > LOST:
         return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
-    found = describe(time[pressed], force[pressed] / normal[pressed])
-    if found.samples == 0:
-        return found, "friction force is not a number"
+    estimate = estimate_of(time[pressed], force[pressed] / normal[pressed])
+    if estimate.samples == 0:
+        return estimate, "friction force is not a number"
     left = normal.size - int(np.count_nonzero(pressed))
     said = [f"{left} samples without contact left out"] if left else []
-    return found, "; ".join([*said, *filter(None, [student_remark(found.effective_samples)])])
+    return estimate, "; ".join([*said, *filter(None, [student_remark(estimate.effective_samples)])])
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    found = [describe(time[s], ratio[s]) for s in parts]
-    means, own = _column(found, "mean"), _column(found, "sem")
+    estimates = [estimate_of(time[s], ratio[s]) for s in parts]
+    means, own = _column(estimates, "mean"), _column(estimates, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(
         run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
@@ -283,22 +283,22 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     turn = signs.sign * signs.unfold
     data = {
         "friction_coefficient": turn * means - signs.sign * zero.value,
-        "friction_coefficient_std": _column(found, "std"),
+        "friction_coefficient_std": _column(estimates, "std"),
         "friction_coefficient_sem": zero.error(own),
         "friction_coefficient_offset": zero.value,
         "pair": pair,
-        **_memory(found),
-        "trend": turn * _column(found, "trend"),
-        "trend_change": turn * _column(found, "trend_change"),
+        **_memory(estimates),
+        "trend": turn * _column(estimates, "trend"),
+        "trend_change": turn * _column(estimates, "trend_change"),
     }
-    few = np.array([student_remark(one.effective_samples) for one in found], dtype=object)
-    remarks = np.where(_column(found, "samples") == 0, "no samples that are numbers", few)
+    few = np.array([student_remark(e.effective_samples) for e in estimates], dtype=object)
+    remarks = np.where(_column(estimates, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), zero)
 
 
-def _memory(found: list[Estimate]) -> dict[str, np.ndarray]:
+def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
     names = ("effective_samples", "autocorrelation_time", "trend_p_value")
-    return {name: _column(found, name) for name in names}
+    return {name: _column(estimates, name) for name in names}
 
 
 def _table(data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference) -> xr.Dataset:

@@ -72,8 +72,8 @@ def repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
     (0.01, 2)
     """
     squares, freedom = 0.0, 0
-    for one in levels:
-        known = np.asarray(one, dtype=float)
+    for level in levels:
+        known = np.asarray(level, dtype=float)
         known = known[np.isfinite(known)]
         if known.size > 1:
             squares += float(np.sum((known - known.mean()) ** 2))

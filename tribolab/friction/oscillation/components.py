@@ -49,13 +49,13 @@ def components(seen: Survey) -> tuple[Component, ...]:
     ----------
     .. [1] Stratonovich (1967), Topics in the Theory of Random Noise, vol. 2.
     """
-    found: list[Component] = []
+    lines: list[Component] = []
     strongest = 0.0
     whole, taken = seen, np.zeros(seen.fine.frequency.size, bool)
     core = taken.copy()
     for _ in range(4 * MOST):
         strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
-        if not strong.any() or len(found) == MOST:
+        if not strong.any() or len(lines) == MOST:
             break
         top = int(np.argmax(strong))
         stop = seen.first[top + 1] if top + 1 < seen.first.size else seen.fine.frequency.size
@@ -63,21 +63,21 @@ def components(seen: Survey) -> tuple[Component, ...]:
         level = np.interp(seen.fine.frequency, seen.middle, seen.background)
         frequency, error, powers = gather(seen.fine, level, at)
         own = float(powers[0])
-        narrow = not found or _stands_out(whole, core, at)
+        narrow = not lines or _stands_out(whole, core, at)
         spread = _spread(seen, level, frequency)
         near = np.abs(seen.fine.frequency / frequency - 1) < 0.15
         near[seen.first[top] : stop] = True
         if narrow and own > _LEAST * strongest:
             swing = float(np.sqrt(8 * own))
             alarm = float(max(seen.chance[top], seen.rise[top]))
-            found.append(Component(frequency, error, swing, alarm))
+            lines.append(Component(frequency, error, swing, alarm))
             strongest = max(strongest, own)
             near |= _harmonics(seen, level, frequency, own, spread)
             core |= _line(whole, at)
         taken |= near
         seen = seen.without(taken)
-    found.sort(key=lambda line: -line.swing)
-    return tuple(found if _hold(whole, core, found) else found[:1])
+    lines.sort(key=lambda line: -line.swing)
+    return tuple(lines if _hold(whole, core, lines) else lines[:1])
 
 
 def _line(seen: Survey, at: int) -> np.ndarray:
@@ -86,14 +86,14 @@ def _line(seen: Survey, at: int) -> np.ndarray:
     return np.abs(f - f[at]) <= max(_WIDTH * f[at], 2.01 * seen.fine.width[at])
 
 
-def _hold(seen: Survey, core: np.ndarray, found: list[Component]) -> bool:
+def _hold(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
     """Whether narrow lines hold most of the power where they lie."""
-    if len(found) < 2:
+    if len(lines) < 2:
         return True
     f = seen.fine.frequency
     level = np.interp(f, seen.middle, seen.background)
     excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
-    own = [line.frequency for line in found]
+    own = [line.frequency for line in lines]
     around = (f > min(own) / _AROUND[1]) & (f < max(own) * _AROUND[1])
     return bool(excess[core].sum() > _MOSTLY * excess[around].sum())
 

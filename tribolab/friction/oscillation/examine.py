@@ -12,9 +12,9 @@ from tribolab.friction.oscillation.few_periods import slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
-from tribolab.friction.oscillation.periods import ALIKE, Verdict, at_odds, verdict
+from tribolab.friction.oscillation.periods import ALIKE, PeriodVerdict, at_odds, period_verdict
 from tribolab.friction.oscillation.regularity import KINDS, Regularity, regularity, scatter
-from tribolab.friction.oscillation.spectra import Record, coarse, make_record
+from tribolab.friction.oscillation.spectra import Record, coarsened, make_record
 from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
 from tribolab.friction.oscillation.waveform import (
     Waveform,
@@ -57,7 +57,7 @@ class Examined(NamedTuple):
     waveform: Waveform
     regularity: Regularity
     probability: np.ndarray
-    verdict: Verdict
+    verdict: PeriodVerdict
     lines: tuple[Component, ...]
     hysteresis: float
     sample_noise: float
@@ -75,7 +75,7 @@ class View(NamedTuple):
     regularity: Regularity
 
 
-def examine(
+def examine_record(
     time: np.ndarray, values: np.ndarray, limits: Limits = DEFAULT, *, force: bool = False
 ) -> Examined | str:
     """Look at one record; text where there is nothing to see, saying why.
@@ -113,7 +113,7 @@ def examine(
         events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
     lines = components(surveyed)
     slow = slow_wave(record)
-    seen = verdict(probability, found, view.regularity, slow, lines, surveyed.duration)
+    seen = period_verdict(probability, found, view.regularity, slow, lines, surveyed.duration)
     return Examined(
         found, events, form, view.regularity, probability, seen, lines,
         view.hysteresis, noise, spikes / n, force,
@@ -158,19 +158,19 @@ def _without_drift(record: Record, frequency: float) -> Record:
     return record._replace(values=record.values - drift)
 
 
-def _beside_wander(record: Record, found: Oscillation) -> Record | None:
+def _beside_wander(record: Record, oscillation: Oscillation) -> Record | None:
     """Take the mean over one period off; None where there is hardly a wander.
 
     A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
     period is lost at either end.
     """
-    size = int(round(1 / (found.frequency * record.spacing)))
+    size = int(round(1 / (oscillation.frequency * record.spacing)))
     n = record.values.size
     if not 2 <= size <= n / WANDERS or not record.even:
         return None
     sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
     mean = (sums[size:] - sums[:-size]) / size
-    if np.std(mean) < WANDER * found.swing:
+    if np.std(mean) < WANDER * oscillation.swing:
         return None
     first = size // 2
     part = slice(first, first + mean.size)
@@ -178,19 +178,21 @@ def _beside_wander(record: Record, found: Oscillation) -> Record | None:
 
 
 def _view(
-    record: Record, found: Oscillation, noise: float, limits: Limits, fewest: int = PER_PERIOD
+    record: Record, oscillation: Oscillation, noise: float, limits: Limits, fewest: int = PER_PERIOD
 ) -> View:
     """Seek the cycles of an oscillation at the scale of its period."""
-    most = int(1 / (found.frequency * fewest * record.spacing))
+    most = int(1 / (oscillation.frequency * fewest * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
-    wanted = min(QUIET * noise / max(found.swing, 1e-300), 1e6) ** 2
+    wanted = min(QUIET * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     first = slice(MOST * size)
-    part = coarse(Record(record.time[first], record.values[first], *record[2:]), size)
-    part = _without_drift(part, found.frequency)
+    part = coarsened(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = _without_drift(part, oscillation.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
-        limits.hysteresis * found.swing, limits.noise_levels * noise / np.sqrt(size), STEPS * step
+        limits.hysteresis * oscillation.swing,
+        limits.noise_levels * noise / np.sqrt(size),
+        STEPS * step,
     )
     events = find_events(part.time, part.values, hysteresis)
     if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
@@ -204,7 +206,7 @@ def _view(
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
     else:
         seen = regularity(part, events)
-    return View(found, part, events, hysteresis, seen)
+    return View(oscillation, part, events, hysteresis, seen)
 
 
 def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray) -> float:
@@ -220,7 +222,7 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
         last = int(view.record.values.size * round(view.record.spacing / record.spacing))
         part = Record(record.time[:last], record.values[:last], *record[2:])
-        drop = means(coarse(part, finer), events) if means else np.nan
+        drop = means(coarsened(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off

@@ -37,7 +37,7 @@ def find_mains(record: Record) -> tuple[Mains, ...]:
     if not record.even or rate < _SAMPLED or n < 256:
         return ()
     frequency, amplitude = amplitude_spectrum(record.time[:LONGEST], record.values[:LONGEST])
-    found = []
+    harmonics = []
     for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
         reach = _GRID * true / 50 + frequency[1]
         near = np.flatnonzero(np.abs(frequency - true) <= reach)
@@ -47,7 +47,7 @@ def find_mains(record: Record) -> tuple[Mains, ...]:
         at = near[np.argmax(amplitude[near])]
         usual = np.median(amplitude[around] ** 2) / np.log(2)
         if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
-            found.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
+            harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
     # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
-    names = {line.name for line in found}
-    return tuple(line for line in found if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)
+    names = {line.name for line in harmonics}
+    return tuple(line for line in harmonics if f"{_FUNDAMENTAL[line.name]:g} Hz" in names)

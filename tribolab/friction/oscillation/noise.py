@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 _LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
+_PIECE = 1 << 17  # values that are worked on at a time
 
 
 def quantisation_step(values: np.ndarray) -> float:
@@ -15,7 +16,7 @@ def quantisation_step(values: np.ndarray) -> float:
     A digitised signal takes few different values. Where more than half of the values are
     different, no step can be told from the numbers and none is claimed.
     """
-    values = values[~np.isnan(values)]
+    values = _known(values)
     if values.size < 32:
         return 0.0
     sample = values[:: max(1, values.size // _LARGEST_SAMPLE)]
@@ -36,8 +37,19 @@ def noise_level(values: np.ndarray) -> float:
     From second differences, which a drift or a slow wave leaves near zero: their median
     absolute deviation over 0.6745 sqrt(6).
     """
-    values = values[~np.isnan(values)]
+    values = _known(values)
     if values.size < 5:
         return 0.0
-    second = np.diff(values, 2)
-    return float(np.median(np.abs(second)) / (0.6745 * np.sqrt(6.0)))
+    second = np.empty(values.size - 2)
+    for start in range(0, second.size, _PIECE):
+        stop = min(start + _PIECE, second.size)
+        np.abs(np.diff(values[start : stop + 2], 2), out=second[start:stop])
+    return float(np.median(second, overwrite_input=True) / (0.6745 * np.sqrt(6.0)))
+
+
+def _known(values: np.ndarray) -> np.ndarray:
+    """Values that are numbers, in a row; no copy is made if all are."""
+    values = values.reshape(-1)
+    if not np.isnan(values.sum()):  # one number says whether anything is missing
+        return values
+    return values[~np.isnan(values)]

@@ -25,7 +25,7 @@ _FASTER = 5.0  # than a slow wave: no harmonic of it
 _FEWEST = 4  # periods that tell how they scatter
 
 
-class Verdict(NamedTuple):
+class PeriodVerdict(NamedTuple):
     """What is claimed of a record.
 
     Parameters
@@ -65,14 +65,14 @@ def at_odds(found: Oscillation, seen: Regularity) -> bool:
     return bool(abs(np.log(frequency * periods.mean())) > max(reach, _ERRORS * error))
 
 
-def verdict(
+def period_verdict(
     probability: np.ndarray,
     found: Oscillation,
     seen: Regularity,
     slow: SlowWave | None,
     lines: tuple[Component, ...],
     duration: float,
-) -> Verdict:
+) -> PeriodVerdict:
     """Say what is claimed, by the class's probabilities and where drops and spectrum agree.
 
     Parameters
@@ -113,7 +113,7 @@ def verdict(
     if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
     if kind == CLASSES[0]:
-        return Verdict(kind, np.nan, np.nan, np.nan)
+        return PeriodVerdict(kind, np.nan, np.nan, np.nan)
     if kind == UNDECIDED:
         likely = CLASSES[int(np.argmax(probability))]
         return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
@@ -130,14 +130,14 @@ def verdict(
         known = count if slow is not None else np.nan
         return _withheld(f"only {count:.1f} periods, {_FEW}", known)
     if not seen.kind and significant and count >= 2 * CYCLES and not periods.size:
-        return Verdict(kind, frequency, error, count)  # noise hides the drops of a line
+        return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
     if not seen.kind or (irregular and periods.size < _FEWEST):
         return _withheld("too few drops repeat to tell the period")
-    return Verdict(kind, frequency, error, count)
+    return PeriodVerdict(kind, frequency, error, count)
 
 
 _FEW = "too few to tell an oscillation from a wander: slide further at this speed"
 
 
-def _withheld(why: str, periods: float = np.nan) -> Verdict:
-    return Verdict(UNDECIDED, np.nan, np.nan, periods, why)
+def _withheld(why: str, periods: float = np.nan) -> PeriodVerdict:
+    return PeriodVerdict(UNDECIDED, np.nan, np.nan, periods, why)

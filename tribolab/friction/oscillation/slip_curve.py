@@ -112,9 +112,9 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         data[name] = "sliding_speed", texts
     middle = np.array([np.exp(np.mean(np.log(speed[g]))) for g in groups])
     result = stamp(xr.Dataset(data, {"sliding_speed": middle}))
-    found = frequency_scaling(result)
+    scaling = frequency_scaling(result)
     result.attrs.update(
-        scaling_exponent=found.exponent, scaling_error=found.error, scaling=found.text
+        scaling_exponent=scaling.exponent, scaling_error=scaling.error, scaling=scaling.text
     )
     if rings.any():
         result.attrs["resonance_frequency_Hz"] = float(np.nanmedian(own[rings]))
@@ -141,7 +141,7 @@ def _regularity(slip: xr.Dataset) -> np.ndarray:
 
 def _row(
     group: np.ndarray, kind: np.ndarray, regular: np.ndarray, columns: dict[str, np.ndarray]
-) -> dict:
+) -> dict[str, float | str]:
     moving = group[oscillating(kind[group])]
     waveform, regularity, count = STEADY, "", moving.size
     decided = int((kind[group] != UNDECIDED).sum())

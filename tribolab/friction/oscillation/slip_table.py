@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
 import xarray as xr
@@ -177,16 +177,16 @@ def _row(e: Examined, speed: float, load: float) -> Row:
     )
 
 
-def oscillates(found: Examined | str) -> bool:
+def oscillates(seen: Examined | str) -> TypeGuard[Examined]:
     """Whether an oscillation is claimed of a segment."""
-    return class_of(found) in CLASSES[1:]
+    return class_of(seen) in CLASSES[1:]
 
 
-def _count(found: Examined | str) -> int:
-    return found.waveform.events if not isinstance(found, str) and oscillates(found) else 0
+def _count(seen: Examined | str) -> int:
+    return seen.waveform.events if oscillates(seen) else 0
 
 
-def table(
+def slip_columns(
     found: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Columns (segment): numbers, and the class and method as text."""
@@ -221,7 +221,7 @@ def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     found, speed
         What was seen, and the sliding speed [m/s] (segment).
     """
-    lines = [e.lines if not isinstance(e, str) and oscillates(e) else () for e in found]
+    lines = [e.lines if oscillates(e) else () for e in found]
     columns = {name: np.full((len(found), MOST), np.nan) for name in _LINE}
     for k, mine in enumerate(lines):
         for n, line in enumerate(mine):
@@ -235,7 +235,7 @@ def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
 _LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_probability")
 
 
-def spectra(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+def spectra_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     """All spectra on one logarithmic grid of frequency, and of inverse wavelength."""
     names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
     seen = [None if isinstance(e, str) else e.oscillation for e in found]
@@ -247,7 +247,7 @@ def spectra(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     places = [o.bands / v if o and v > 0 else None for o, v in zip(seen, speed, strict=True)]
     inverse = _grid([place for place in places if place is not None])
     rows = [
-        None if place is None else _on(inverse, place, v * o.power)
+        None if place is None or o is None else _on(inverse, place, v * o.power)
         for o, place, v in zip(seen, places, speed, strict=True)
     ]
     data["distance_psd"] = ("segment", "inverse_wavelength"), _stack(rows, inverse.size)

@@ -70,7 +70,7 @@ def block_means(values: np.ndarray, size: int) -> np.ndarray:
     return np.add.reduceat(values[: count * size], np.arange(0, count * size, size)) / size
 
 
-def coarse(record: Record, size: int) -> Record:
+def coarsened(record: Record, size: int) -> Record:
     """Return the record averaged over blocks of `size` samples."""
     if size <= 1:
         return record
@@ -105,7 +105,7 @@ def spectrum(record: Record) -> Spectrum:
     """
     method = "periodogram" if record.even else "Lomb-Scargle"
     size = int(np.ceil(record.values.size / SHORT))
-    low = _transform(coarse(record, size))
+    low = _transform(coarsened(record, size))
     if size == 1:
         return Spectrum(*low, method)
     window = max(WINDOW, 1 << int(np.ceil(np.log2(64 * size))))
@@ -177,8 +177,8 @@ def _averaged(record: Record, window: int) -> tuple[np.ndarray, np.ndarray, np.n
         power *= scale**2 * 2 * record.spacing / (shape @ shape) / count
     else:
         for first in range(0, count * window, window):
-            part = slice(first, first + window)
-            stretch = Record(record.time[part], record.values[part], record.spacing, False)
+            own = slice(first, first + window)
+            stretch = Record(record.time[own], record.values[own], record.spacing, False)
             f, p, _, _ = _transform(stretch._replace(spacing=_own_spacing(stretch)))
             power += np.interp(frequency, f, p) / count
     width = np.full(frequency.size, frequency[1])

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
-from tribolab.friction.oscillation.examine import Examined, Limits, examine
+from tribolab.friction.oscillation.examine import Examined, Limits, examine_record
 from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.slip_table import (
     class_of,
@@ -20,8 +20,8 @@ from tribolab.friction.oscillation.slip_table import (
     oscillates,
     ranked,
     ringing,
-    spectra,
-    table,
+    slip_columns,
+    spectra_table,
 )
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.friction.segments.stretches import name_of
@@ -57,7 +57,7 @@ REVERSED = (
 )
 
 
-class Signal(NamedTuple):
+class SegmentSignal(NamedTuple):
     """Friction of one segment, positive as resistance, and what the sensor gave."""
 
     time: np.ndarray
@@ -158,31 +158,31 @@ def stick_slip(
     limits = Limits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
     force = "friction_force" in run and "normal_force" not in run
-    found, loads, remarks = [], [], []
-    for one, v in zip(_signals(run, segments), speed, strict=True):
-        seen = examine(one.time, one.values, limits, force=force)
-        found.append(seen)
-        loads.append(one.load)
-        remarks.append(_remark(seen, _cut_off(one.raw), v))
-    data = table(found, speed, np.array(loads))
-    data["instrument"] = _texts(_instrument(found, speed))
+    examined, loads, remarks = [], [], []
+    for signal, v in zip(_signals(run, segments), speed, strict=True):
+        seen = examine_record(signal.time, signal.values, limits, force=force)
+        examined.append(seen)
+        loads.append(signal.load)
+        remarks.append(_remark(seen, _cut_off(signal.raw), v))
+    data = slip_columns(examined, speed, np.array(loads))
+    data["instrument"] = _texts(_instrument(examined, speed))
     data["remark"] = _texts(remarks)
     result = xr.Dataset({name: ("segment", values) for name, values in data.items()})
     kept = ("trimmed_start", "trimmed_stop", "sliding_speed", "direction", "sliding_distance")
     result = result.assign({k: ("segment", segments[k].values) for k in kept if k in segments})
-    result["class_probability"] = ("segment", "waveform_class"), class_table(found)
+    result["class_probability"] = ("segment", "waveform_class"), class_table(examined)
     result = result.assign_coords(
         segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
     )
-    result = result.merge(spectra(found, speed)).merge(event_list(found))
-    result = result.merge(line_table(found, speed))
+    result = result.merge(spectra_table(examined, speed)).merge(event_list(examined))
+    result = result.merge(line_table(examined, speed))
     if force:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
         result = result.rename(names)
     return stamp(result, **run.attrs)
 
 
-def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
+def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
     """Friction of each segment, one at a time: a long run is never held twice."""
     time, parts = run["time"].values, trimmed_slices(run, segments)
     direction = segments["direction"].values.astype(float)
@@ -206,7 +206,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
         for part, sign in zip(parts, direction, strict=True):
             raw = force[part]
             if normal is None:
-                yield Signal(time[part], _signed(raw, sign), raw, np.nan)
+                yield SegmentSignal(time[part], _signed(raw, sign), raw, np.nan)
                 continue
             pressed = normal[part] - zero
             load = float(np.mean(pressed)) if pressed.size else np.nan
@@ -216,17 +216,17 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[Signal]:
             if np.isfinite(load):
                 with np.errstate(divide="ignore", invalid="ignore"):
                     ratio = np.divide(_signed(raw, sign), pressed, out=pressed)
-                yield Signal(time[part], ratio, raw, load)
+                yield SegmentSignal(time[part], ratio, raw, load)
             else:
-                yield Signal(time[part], np.full(raw.size, np.nan), raw, load)
+                yield SegmentSignal(time[part], np.full(raw.size, np.nan), raw, load)
     elif "friction_coefficient" in run:
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
-        first = [ratio[s][:_SOME] for s in parts]
-        signed = any(np.nanmean(x) < 0 for x in first if np.isfinite(x).any())
+        begins = [ratio[s][:_SOME] for s in parts]
+        signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in zip(parts, direction, strict=True):
             raw = ratio[part]
-            yield Signal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
+            yield SegmentSignal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
     else:
         raise AnalysisError(
             f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
@@ -255,53 +255,53 @@ def _texts(values: list[str]) -> np.ndarray:
     return np.array(values, dtype=object)
 
 
-def _remark(found: Examined | str, cut: bool, speed: float) -> str:
-    if isinstance(found, str):
-        return found
+def _remark(seen: Examined | str, cut: bool, speed: float) -> str:
+    if isinstance(seen, str):
+        return seen
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
     if not np.isfinite(speed):
         words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
-    if found.verdict.kind == UNDECIDED:
-        return "; ".join([*words, f"not decided: {found.verdict.doubt}"])
-    words += _form_words(found, speed)
-    second = ranked(found)[1]
-    if class_of(found) == CLASSES[0] and second[1] > DOUBT:
+    if seen.verdict.kind == UNDECIDED:
+        return "; ".join([*words, f"not decided: {seen.verdict.doubt}"])
+    words += _form_words(seen, speed)
+    second = ranked(seen)[1]
+    if class_of(seen) == CLASSES[0] and second[1] > DOUBT:
         words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
-        if found.oscillation.share < 0.5:
+        if seen.oscillation.share < 0.5:
             words.append("noise and spikes hold more of the fluctuation")
     return "; ".join(words)
 
 
-def _form_words(found: Examined, speed: float) -> list[str]:
+def _form_words(examined: Examined, speed: float) -> list[str]:
     """Say what is special of an oscillation that is claimed."""
-    if not oscillates(found):
+    if not oscillates(examined):
         return []
-    words, seen = [], found.regularity
-    if class_of(found) == CLASSES[3]:
+    words, seen = [], examined.regularity
+    if class_of(examined) == CLASSES[3]:
         words.append(REVERSED)
-    if class_of(found) == CLASSES[2] and found.oscillation.share < 0.5:
+    if class_of(examined) == CLASSES[2] and examined.oscillation.share < 0.5:
         words.append("noise and spikes hold more of the fluctuation than the oscillation")
     if seen.kind == KINDS[2]:
         words.append(f"oscillates {seen.share:.0%} of the time")
     if seen.kind == KINDS[1] and speed > 0:
-        spectral = 1e6 * speed / found.verdict.frequency
+        spectral = 1e6 * speed / examined.verdict.frequency
         apart = 1e6 * speed * float(seen.periods.mean())
         words.append(
-            f"periods scatter by {found.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
+            f"periods scatter by {examined.waveform.period_scatter:.0%}: drops are {apart:.3g} µm "
             f"apart in the mean, the spectrum tells a wavelength of {spectral:.3g} µm"
         )
-    if len(found.lines) > 1:
-        listed = ", ".join(f"{line.frequency:.4g} Hz" for line in found.lines)
-        words.append(f"{len(found.lines)} frequencies, the strongest first: {listed}")
+    if len(examined.lines) > 1:
+        listed = ", ".join(f"{line.frequency:.4g} Hz" for line in examined.lines)
+        words.append(f"{len(examined.lines)} frequencies, the strongest first: {listed}")
     return words
 
 
-def _instrument(found: list[Examined | str], speed: np.ndarray) -> list[str]:
+def _instrument(examined: list[Examined | str], speed: np.ndarray) -> list[str]:
     """Name what is the instrument's: lines of the mains, and lines that ignore the speed."""
-    kind = np.array([class_of(e) for e in found], dtype=object)
-    own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in found])
+    kind = np.array([class_of(e) for e in examined], dtype=object)
+    own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in examined])
     texts = []
-    for e, rings in zip(found, ringing(kind, own, speed), strict=True):
+    for e, rings in zip(examined, ringing(kind, own, speed), strict=True):
         if isinstance(e, str):
             texts.append("")
             continue

@@ -138,11 +138,11 @@ def above_lower(
     return np.where((below > 0) & (usual > 0), np.nan_to_num(chance, nan=1.0), 1.0)
 
 
-def _without(found: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
+def _without(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
     """Put the median of the surroundings where a line of the mains stands."""
-    power = found.power.copy()
+    power = spectrum.power.copy()
     for line in mains:
-        at = int(np.argmin(np.abs(found.frequency - line.frequency)))
+        at = int(np.argmin(np.abs(spectrum.frequency - line.frequency)))
         near = power[max(at - 30, 0) : at + 31]
         power[max(at - 3, 0) : at + 4] = np.median(near) / np.log(2)
-    return found._replace(power=power)
+    return spectrum._replace(power=power)

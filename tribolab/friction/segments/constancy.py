@@ -31,7 +31,7 @@ FEWEST = 6  # bins that tell a curvature
 FEW = 16 * INSIDE  # readings of a piece whose bins hold too few to tell their own noise
 
 
-class Record:
+class MeanVelocities:
     """Mean velocities of a record over any bins, from its velocity or from its position.
 
     Parameters
@@ -115,7 +115,7 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
     return np.median(np.stack([padded[i : i + values.size] for i in range(3)]), axis=0)
 
 
-def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, int]:
+def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tuple[int, int]:
     """Return the samples [first, last) of a piece without the ends that stand off its level.
 
     Parameters
@@ -154,7 +154,7 @@ def held_part(data: Record, first: int, last: int, drift: float) -> tuple[int, i
     return first, last
 
 
-def is_constant(data: Record, first: int, last: int, drift: float) -> bool:
+def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bool:
     """Whether a piece holds its speed.
 
     Parameters
@@ -212,7 +212,7 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
     return apart > most and apart > sure * scatter / np.sqrt(values.size / 4)
 
 
-def _fluctuates(data: Record, begin: float, end: float, samples: int, most: float) -> bool:
+def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, most: float) -> bool:
     """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
     count = min(samples, 1024)
     while count >= 4 * FEWEST:  # wider bins show what noise hides from narrow ones
@@ -229,7 +229,7 @@ def _fluctuates(data: Record, begin: float, end: float, samples: int, most: floa
 
 
 def _goes_on(
-    data: Record,
+    data: MeanVelocities,
     inside: np.ndarray,
     begin: float,
     end: float,
@@ -264,4 +264,4 @@ def _goes_on(
     about = float(((inside - level) ** 2).sum()) / (count - 1)
     left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
     # the longer the way on which a plateau is left, the more it has to prove that it is one
-    return left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about
+    return bool(left < np.interp(longest / count, (GRADUAL, 1), (BETTER, 1.1)) * about)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.segments.loaded import loaded
-from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
 from tribolab.friction.segments.stretches import (
     Stretch,
@@ -110,17 +110,13 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
     """
-    if not isinstance(trim, Real) or not 0 <= trim < 0.5:
-        raise AnalysisError(
-            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
-            f"{shown(repr(trim))}"
-        )
+    _refuse_trim(trim)
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")
     gap = None if max_gap is None else to_si(max_gap, "s", name="max_gap")
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
-    limits = Limits(resolution, drift, min_samples, slow)
+    limits = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source = velocity_source(run)
     if source == "recorded":
@@ -160,14 +156,22 @@ def why_no_segment(segments: xr.Dataset) -> str:
     start, stop = segments["omitted_start"].values, segments["omitted_stop"].values
     reason = segments["omitted_reason"].values.astype(str)
     whole = float((stop - start).sum())
-    lasted = {one: float((stop - start)[reason == one].sum()) for one in dict.fromkeys(reason)}
+    lasted = {why: float((stop - start)[reason == why].sum()) for why in dict.fromkeys(reason)}
     shares = [
-        f"{one} {lasted[one] / whole:.0%}".replace("%", " %")
-        for one in sorted(lasted, key=lambda one: -lasted[one])
-        if whole > 0 and lasted[one] >= 0.005 * whole
+        f"{why} {lasted[why] / whole:.0%}".replace("%", " %")
+        for why in sorted(lasted, key=lambda why: -lasted[why])
+        if whole > 0 and lasted[why] >= 0.005 * whole
     ]
     detail = f" ({', '.join(shares)} of the time)" if shares else ""
     return f"no segment: the run never slides at constant speed{detail}"
+
+
+def _refuse_trim(trim: object) -> None:
+    if not isinstance(trim, Real) or not 0 <= float(trim) < 0.5:
+        raise AnalysisError(
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
+            f"{shown(repr(trim))}"
+        )
 
 
 def _dataset(

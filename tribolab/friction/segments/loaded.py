@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.segments.locate import Limits
+from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
 
 NO_LOAD = "no load"
@@ -17,7 +17,7 @@ BINS = 200  # in a stretch
 MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
 
 
-def loaded(run: xr.Dataset, stretches: list[Stretch], limits: Limits) -> list[Stretch]:
+def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -> list[Stretch]:
     """Take out of the constant stretches what slides without load.
 
     Parameters
@@ -48,56 +48,62 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: Limits) -> list[St
     zero = float(np.median(rests)) if rests.size else 0.0
     least = NO_CONTACT * (usual - zero)
     result: list[Stretch] = []
-    for one in stretches:
-        if one.kind == "constant":
-            result += _cut(time, force - zero, one, least, limits.min_samples)
+    for stretch in stretches:
+        if stretch.kind == "constant":
+            result += _cut(time, force, zero, stretch, least, limits.min_samples)
         else:
-            result.append(one)
+            result.append(stretch)
     return result
 
 
 def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind: str) -> np.ndarray:
-    found = []
-    for one in stretches:
-        if one.kind == kind:
-            first, last = np.searchsorted(time, [one.start, one.stop])
+    levels = []
+    for stretch in stretches:
+        if stretch.kind == kind:
+            first, last = np.searchsorted(time, [stretch.start, stretch.stop])
             part = force[first:last][:: max(1, (last - first) // 4096)]
             part = part[np.isfinite(part)]
             if part.size:
-                found.append(float(np.median(part)))
-    return np.array(found)
+                levels.append(float(np.median(part)))
+    return np.array(levels)
 
 
 def _cut(
-    time: np.ndarray, force: np.ndarray, one: Stretch, least: float, min_samples: int
+    time: np.ndarray,
+    force: np.ndarray,
+    zero: float,
+    stretch: Stretch,
+    least: float,
+    min_samples: int,
 ) -> list[Stretch]:
     """One stretch, cut where its load comes or goes."""
-    first, last = np.searchsorted(time, [one.start, one.stop])
+    first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     count = min(BINS, last - first)
     if count < 1:
-        return [one]
+        return [stretch]
     at = first + (last - first) * np.arange(count + 1) // count
-    mean = np.add.reduceat(np.nan_to_num(force[first:last]), at[:-1] - first) / np.diff(at)
+    part = np.nan_to_num(force[first:last] - zero)
+    mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     bare = mean < least
     if not bare.mean() > LOST:
-        return [one]
+        return [stretch]
     if bare.all():
-        return [one._replace(kind=NO_LOAD)]
+        return [stretch._replace(kind=NO_LOAD)]
     away = _grown(bare, mean < LOADED * float(np.median(mean[~bare])))
     edges = np.flatnonzero(np.diff(away)) + 1
     if edges.size > 2 * MOST_CUTS:
-        return [one]
+        return [stretch]
     if away.all():
-        return [one._replace(kind=NO_LOAD)]
+        return [stretch._replace(kind=NO_LOAD)]
     marks = np.concatenate([[0], edges, [count]])
     result = []
     for a, b in zip(marks[:-1], marks[1:], strict=True):
         kind = NO_LOAD if away[a] else "constant"
         if kind == "constant" and at[b] - at[a] < min_samples:
             kind = "too short"
-        start = one.start if a == 0 else float(time[at[a]])
-        stop = one.stop if b == count else float(time[at[b]])
-        result.append(one._replace(start=start, stop=stop, kind=kind))
+        start = stretch.start if a == 0 else float(time[at[a]])
+        stop = stretch.stop if b == count else float(time[at[b]])
+        result.append(stretch._replace(start=start, stop=stop, kind=kind))
     return result
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.segments.constancy import Record, held_part, is_constant
+from tribolab.friction.segments.constancy import MeanVelocities, held_part, is_constant
 from tribolab.friction.segments.plateaus import (
     Noise,
     estimate_noise,
@@ -29,7 +29,7 @@ PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
-class Piece(NamedTuple):
+class VelocityPiece(NamedTuple):
     """Samples [first, last), the mean velocity, and what the piece is."""
 
     first: int
@@ -40,7 +40,7 @@ class Piece(NamedTuple):
     error: float
 
 
-class Limits(NamedTuple):
+class ConstancyLimits(NamedTuple):
     """What counts as constant; see `find_segments`."""
 
     resolution: float
@@ -50,8 +50,8 @@ class Limits(NamedTuple):
 
 
 def locate(
-    time: np.ndarray, velocity: np.ndarray, limits: Limits, floor: float = 0.0
-) -> list[Piece]:
+    time: np.ndarray, velocity: np.ndarray, limits: ConstancyLimits, floor: float = 0.0
+) -> list[VelocityPiece]:
     """Return the pieces of a record without gaps in it, in order and touching.
 
     Parameters
@@ -68,7 +68,9 @@ def locate(
     return _proven(pieces, limits)
 
 
-def moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]:
+def moving(
+    time: np.ndarray, pieces: list[VelocityPiece], limits: ConstancyLimits
+) -> list[VelocityPiece]:
     """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
 
     Parameters
@@ -95,7 +97,9 @@ def moving(time: np.ndarray, pieces: list[Piece], limits: Limits) -> list[Piece]
     )
 
 
-def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+def held(
+    data: MeanVelocities, pieces: list[VelocityPiece], limits: ConstancyLimits
+) -> list[VelocityPiece]:
     """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
 
     Parameters
@@ -107,7 +111,7 @@ def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
     limits
         What counts as constant.
     """
-    result: list[Piece] = []
+    result: list[VelocityPiece] = []
     for piece in pieces:
         if piece.kind != "constant":
             result.append(piece)
@@ -119,7 +123,9 @@ def held(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
     return _beside(data, _paused(_fused(result, limits), limits), limits)
 
 
-def _beside(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _beside(
+    data: MeanVelocities, pieces: list[VelocityPiece], limits: ConstancyLimits
+) -> list[VelocityPiece]:
     """Call a plateau that is short beside a ramp a ramp, if the data do not prove that it is none.
 
     A ramp is all that lies between two plateaus or rests.
@@ -138,7 +144,7 @@ def _beside(data: Record, pieces: list[Piece], limits: Limits) -> list[Piece]:
     return _fused(result, limits)
 
 
-def _until_kept(time: np.ndarray, pieces: list[Piece], index: int, way: int) -> float:
+def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
     """Time [s] from a piece to the next plateau or rest on one side of it."""
     at = index + way
     while 0 <= at < len(pieces) and pieces[at].kind not in KEPT:
@@ -149,7 +155,7 @@ def _until_kept(time: np.ndarray, pieces: list[Piece], index: int, way: int) -> 
     return float(time[last] - time[pieces[index].last - 1])
 
 
-def _paused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _paused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
     """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
     result = list(pieces)
     for i in range(1, len(pieces) - 1):
@@ -193,11 +199,11 @@ def _despiked(velocity: np.ndarray, noise: Noise) -> np.ndarray:
 def _locate(
     time: np.ndarray,
     velocity: np.ndarray,
-    limits: Limits,
+    limits: ConstancyLimits,
     noise: Noise | None,
     rest_speed: float | None,
     floor: float = 0.0,
-) -> list[Piece]:
+) -> list[VelocityPiece]:
     size = block_size(time.size, MOST_BLOCKS if noise is None else FEW_BLOCKS)
     t, v = _blocks(time, velocity, size)
     if noise is None:
@@ -216,17 +222,17 @@ def _locate(
     if size == 1:
         v = _despiked(v, noise)
     breaks = find_breaks(v, noise, limits.resolution, rest_speed)
-    found = straight_pieces(t, v, noise, breaks, limits.resolution)
+    straight = straight_pieces(t, v, noise, breaks, limits.resolution)
 
-    pieces: list[Piece] = []
+    pieces: list[VelocityPiece] = []
     pending = 0  # first sample that no kept piece has taken yet
-    edges = np.append(found.first * size, time.size)
+    edges = np.append(straight.first * size, time.size)
     fewest = limits.min_samples if size == 1 else 4 * size
-    for i in range(found.first.size):
+    for i in range(straight.first.size):
         first, last = int(edges[i]), int(edges[i + 1])
-        mean, change = float(found.mean[i]), float(found.change[i])
+        mean, change = float(straight.mean[i]), float(straight.change[i])
         kind = _kind(
-            mean, change, found.mean_error[i], found.change_error[i], rest_speed, limits.drift
+            mean, change, straight.mean_error[i], straight.change_error[i], rest_speed, limits.drift
         )
         if last - first < fewest and kind != "ramp":
             kind = "too short"
@@ -235,7 +241,7 @@ def _locate(
                 continue
             pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
             pending = last
-        pieces.append(Piece(first, last, kind, mean, change, float(found.mean_error[i])))
+        pieces.append(VelocityPiece(first, last, kind, mean, change, float(straight.mean_error[i])))
     if size > 1:
         pieces += _leftover(time, velocity, limits, single, rest_speed, pending, time.size)
     return pieces
@@ -244,12 +250,12 @@ def _locate(
 def _leftover(
     time: np.ndarray,
     velocity: np.ndarray,
-    limits: Limits,
+    limits: ConstancyLimits,
     noise: Noise,
     rest_speed: float,
     first: int,
     last: int,
-) -> list[Piece]:
+) -> list[VelocityPiece]:
     """Look again, with finer blocks, at what lies between two kept pieces."""
     if first >= last:
         return []
@@ -273,15 +279,15 @@ def _kind(
     return "ramp" if sure > drift * abs(mean) else "constant"
 
 
-def _fused(pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _fused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
     """Join touching pieces of one kind and one velocity, such as a plateau and its last samples."""
-    result: list[Piece] = []
+    result: list[VelocityPiece] = []
     for piece in pieces:
         if result and _same(result[-1], piece, limits):
             last = result.pop()
             n, k = last.last - last.first, piece.last - piece.first
             kind = max(last, piece, key=lambda p: p.last - p.first).kind
-            piece = Piece(
+            piece = VelocityPiece(
                 last.first,
                 piece.last,
                 kind,
@@ -293,7 +299,7 @@ def _fused(pieces: list[Piece], limits: Limits) -> list[Piece]:
     return result
 
 
-def _same(a: Piece, b: Piece, limits: Limits) -> bool:
+def _same(a: VelocityPiece, b: VelocityPiece, limits: ConstancyLimits) -> bool:
     if a.kind == b.kind and a.kind != "constant":
         return True
     short, long = sorted((a, b), key=lambda p: p.last - p.first)
@@ -304,9 +310,9 @@ def _same(a: Piece, b: Piece, limits: Limits) -> bool:
     return apart <= max(limits.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
 
 
-def _bridged(pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _bridged(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
     """Join two plateaus of one velocity across a disturbance that is short beside both."""
-    result: list[Piece] = []
+    result: list[VelocityPiece] = []
     for piece in pieces:
         if len(result) > 1 and piece.kind == "constant" == result[-2].kind:
             left, odd = result[-2], result[-1]
@@ -320,7 +326,7 @@ def _bridged(pieces: list[Piece], limits: Limits) -> list[Piece]:
     return result
 
 
-def _proven(pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _proven(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
     """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
@@ -334,7 +340,7 @@ def _proven(pieces: list[Piece], limits: Limits) -> list[Piece]:
     return _fused(result, limits)
 
 
-def _settled(pieces: list[Piece], limits: Limits) -> list[Piece]:
+def _settled(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
     """Call the tail of a ramp a ramp: a short drifting piece that leads into a long plateau."""
     result = list(pieces)
     for i, piece in enumerate(pieces):

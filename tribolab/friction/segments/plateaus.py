@@ -99,8 +99,8 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
         return Noise(least, nothing, nothing)
     bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8))).astype(int)
     levels = []
-    for one in np.unique(bins):
-        inside = bins == one
+    for group in np.unique(bins):
+        inside = bins == group
         if np.count_nonzero(inside) >= 8:
             # a ramp has differences, but it does not bend; noise with memory hardly bends from
             # block to block, but over more of them; digits repeat, and hide from one distance
@@ -157,7 +157,7 @@ def find_breaks(
     """Block numbers at which the mean velocity changes, by moving sums from fine to coarse."""
     m = velocity.size
     total = np.concatenate([[0.0], np.cumsum(velocity)])
-    found = np.zeros(0, dtype=int)
+    breaks = np.zeros(0, dtype=int)
     free = np.zeros(m + 1, dtype=int)  # 1 where a break stands
     width, memory = 1, 1.0
     while 2 * width <= m:
@@ -188,9 +188,9 @@ def find_breaks(
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
             free[found_now] = 1
-            found = np.concatenate([found, found_now])
+            breaks = np.concatenate([breaks, found_now])
         width *= 2
-    return np.sort(found)
+    return np.sort(breaks)
 
 
 def _bends(total: np.ndarray, noise: Noise, width: int, far: int, k: np.ndarray) -> np.ndarray:

@@ -78,8 +78,8 @@ class Fit(NamedTuple):
 
 def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
     """Least squares; readings whose residuals have a memory count for less."""
-    found = np.linalg.lstsq(basis, values, rcond=None)[0]
-    rest = values - basis @ found
+    terms = np.linalg.lstsq(basis, values, rcond=None)[0]
+    rest = values - basis @ terms
     n, k = basis.shape
     tiny = 1e-14 * float(np.mean(values**2)) + 1e-300
     variance = max(float(rest @ rest) / max(n - k, 1), tiny)
@@ -87,7 +87,7 @@ def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
     alike = min(max(alike, 0.0), 0.9)
     samples = n * (1 - alike) / (1 + alike)
     covariance = np.linalg.pinv(basis.T @ basis) * variance * n / samples
-    return Fit(found, covariance, variance, samples, k)
+    return Fit(terms, covariance, variance, samples, k)
 
 
 def _columns(readings: Readings, place: np.ndarray, motion: list[np.ndarray]) -> np.ndarray:
@@ -129,17 +129,17 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
     half = float(np.ptp(own.time)) / 2
     place = (own.time - own.time[0]) / half - 1
     shift = float(own.values.mean())
-    found = _fit(legendre.legvander(place, degree), own.values - shift)
+    line = _fit(legendre.legvander(place, degree), own.values - shift)
     ends = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
     unit = np.eye(degree + 1)
     if own.is_position:
         reading = np.stack([legendre.legval(ends, legendre.legder(u)) for u in unit], 1) / half
     else:
         reading = legendre.legvander(ends, degree)
-    speeds = reading @ found.coefficients
+    speeds = reading @ line.coefficients
     high, low = int(speeds.argmax()), int(speeds.argmin())
     apart = reading[high] - reading[low]
-    return float(speeds[high] - speeds[low]), float(np.sqrt(apart @ found.covariance @ apart))
+    return float(speeds[high] - speeds[low]), float(np.sqrt(apart @ line.covariance @ apart))
 
 
 def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
@@ -194,9 +194,9 @@ def _is_level(
     others = [fitted(*case) for case in _motions(place)]
     turns, width = TURNS, TURNS[1] - TURNS[0]
     for _ in range(FINER):
-        found = [fitted(_turn(place, at), 1) for at in turns]
-        others += found
-        best = int(np.argmin([fit.variance for fit, _ in found]))
+        misfits = [fitted(_turn(place, at), 1) for at in turns]
+        others += misfits
+        best = int(np.argmin([fit.variance for fit, _ in misfits]))
         turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
     # one count of readings for all: that of the motion that leaves least
     count = min(levels + others, key=lambda one: one[0].variance)[0].samples
@@ -216,7 +216,7 @@ def _levels(
 ) -> list[tuple[list[np.ndarray], int]]:
     """Levels with a line on each side that has a ramp; their corners move a little."""
     size = corners[1] - corners[0]
-    found = []
+    levels = []
     for before in CORNERS if sides[0] else (None,):
         for after in CORNERS if sides[1] else (None,):
             motion = [np.ones(place.size), place]
@@ -224,8 +224,8 @@ def _levels(
                 if shift is not None:
                     beyond = way * (place - corner) - shift * size
                     motion += [np.maximum(beyond, 0.0), (beyond > 0).astype(float)]
-            found.append((motion, sum(sides)))
-    return found
+            levels.append((motion, sum(sides)))
+    return levels
 
 
 def _turn(place: np.ndarray, at: float) -> list[np.ndarray]:

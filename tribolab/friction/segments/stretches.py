@@ -10,8 +10,8 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.segments import slopes
-from tribolab.friction.segments.constancy import Record
-from tribolab.friction.segments.locate import Limits, Piece, held, locate, moving
+from tribolab.friction.segments.constancy import MeanVelocities
+from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
 
 RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
@@ -69,31 +69,33 @@ def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     return time, slopes.without_resets(time, position)[0]
 
 
-def from_velocity(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
+def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")
     if time.size < 2:
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, limits), 0.05
     pieces = moving(time, pieces, limits)
-    pieces = held(Record(time, velocity=velocity), pieces, limits)
+    pieces = held(MeanVelocities(time, velocity=velocity), pieces, limits)
     return _in_time(run, time, pieces, limits, max_gap, share)
 
 
-def from_position(run: xr.Dataset, limits: Limits, max_gap: float | None) -> list[Stretch]:
+def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the position, by slopes over blocks."""
     time, position = track(run)
     if time.size < 3 * slopes.FEWEST:
         return _nothing(run, time.size)
     pieces = _by_slopes(time, position, limits, slopes.FEWEST)
     pieces = moving(time, pieces, limits)
-    pieces = held(Record(time, position=position), pieces, limits)
+    pieces = held(MeanVelocities(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
     return _in_time(run, time, pieces, limits, max_gap, share)
 
 
-def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: int) -> list[Piece]:
+def _by_slopes(
+    time: np.ndarray, position: np.ndarray, limits: ConstancyLimits, least: int
+) -> list[VelocityPiece]:
     """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
     fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
@@ -106,7 +108,7 @@ def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: in
     pieces = _kinks(time, position, pieces, size)
     if error == 0:
         return pieces
-    result: list[Piece] = []
+    result: list[VelocityPiece] = []
     slow = [abs(p.velocity) < RESOLVED * error for p in pieces]
     for is_slow, some in groupby(zip(slow, pieces, strict=True), key=lambda pair: pair[0]):
         group = [piece for _, piece in some]
@@ -118,14 +120,16 @@ def _by_slopes(time: np.ndarray, position: np.ndarray, limits: Limits, least: in
     return result
 
 
-def _with_slope(time: np.ndarray, position: np.ndarray, piece: Piece) -> Piece:
+def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) -> VelocityPiece:
     if piece.kind != "constant":
         return piece
     inside = slice(piece.first, piece.last)
     return piece._replace(velocity=slopes.line(time[inside], position[inside])[1])
 
 
-def _kinks(time: np.ndarray, position: np.ndarray, pieces: list[Piece], size: int) -> list[Piece]:
+def _kinks(
+    time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], size: int
+) -> list[VelocityPiece]:
     """Put the border of two neighbouring plateaus where their straight lines cross."""
     kept = [i for i, p in enumerate(pieces) if p.kind == "constant"]
     result = list(pieces)
@@ -160,8 +164,8 @@ def _nothing(run: xr.Dataset, finite: int) -> list[Stretch]:
 def _in_time(
     run: xr.Dataset,
     time: np.ndarray,
-    pieces: list[Piece],
-    limits: Limits,
+    pieces: list[VelocityPiece],
+    limits: ConstancyLimits,
     max_gap: float | None,
     share: float,
 ) -> list[Stretch]:
@@ -188,13 +192,15 @@ def _in_time(
     return result
 
 
-def _wide(time: np.ndarray, index: int, piece: Piece) -> bool:
+def _wide(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
     """Whether the pause after a sample is much longer than usual in its piece."""
     usual = (time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
     return bool(time[index + 1] - time[index] > 3 * usual)
 
 
-def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -> np.ndarray:
+def _gaps(
+    time: np.ndarray, piece: VelocityPiece, max_gap: float | None, share: float
+) -> np.ndarray:
     """Return the samples of a plateau after which too long a pause follows."""
     inside = time[piece.first : piece.last]
     if piece.kind != "constant" or inside.size < 2:
@@ -207,11 +213,11 @@ def _gaps(time: np.ndarray, piece: Piece, max_gap: float | None, share: float) -
         usual = float(np.median(spans)) / step
         longest = max(20 * usual, share * float(inside[-1] - inside[0]))
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
-    found = []
+    parts = []
     for block in wide:
         part = inside[block * step : (block + 1) * step + 1]
-        found.append(block * step + np.flatnonzero(np.diff(part) > longest))
-    return piece.first + np.concatenate(found) if found else np.zeros(0, dtype=int)
+        parts.append(block * step + np.flatnonzero(np.diff(part) > longest))
+    return piece.first + np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
 def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:

@@ -96,7 +96,7 @@ def middles(
     return Middles(member, share, when, value, slope, ends, part)
 
 
-class Rows(NamedTuple):
+class StrokeSums(NamedTuple):
     """Each force without its zero as a sum over strokes: which, and how much (segment, term)."""
 
     stroke: np.ndarray
@@ -105,7 +105,7 @@ class Rows(NamedTuple):
 
 def interpolated(
     found: Middles, pair: np.ndarray, time: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, Rows]:
+) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
     """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
 
     Returns
@@ -141,10 +141,12 @@ def interpolated(
     own = np.arange(count)[:, None]
     stroke = np.concatenate([own, found.member[loop].reshape(count, 6)], axis=1)
     of_loops = -(weight[:, :, None] * found.share[loop]).reshape(count, 6)
-    return value, slope, Rows(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
+    return value, slope, StrokeSums(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
 
 
-def error_of_rows(rows: Rows, found: Middles, own: np.ndarray, time: np.ndarray) -> np.ndarray:
+def error_of_rows(
+    rows: StrokeSums, found: Middles, own: np.ndarray, time: np.ndarray
+) -> np.ndarray:
     """Return the standard error of each segment's force without its zero.
 
     Parameters
@@ -182,11 +184,11 @@ def error_of_rows(rows: Rows, found: Middles, own: np.ndarray, time: np.ndarray)
     return np.sqrt(np.minimum(*moved))
 
 
-def _movements(found: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
+def _movements(middles: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
     """Return how the zero moves from loop to loop: all in all, and beyond a common drift."""
-    order = np.flatnonzero(np.isfinite(found.value))
-    order = order[np.argsort(found.time[order], kind="stable")]
-    value, error, time = found.value[order], error[order], found.time[order]
+    order = np.flatnonzero(np.isfinite(middles.value))
+    order = order[np.argsort(middles.time[order], kind="stable")]
+    value, error, time = middles.value[order], error[order], middles.time[order]
     plain = wander(value, error, time)
     if order.size < 3:
         return plain, plain

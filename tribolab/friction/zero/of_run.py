@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.parts import Known, Reference, Strokes
-from tribolab.friction.zero.rectified import SIGNED, Fold, Trace, folded
+from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, folded
 from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
 from tribolab.friction.zero.unequal import TOO_FAR
@@ -120,13 +120,13 @@ def zero_of_run(
     )
     known = Known(rests, stated, tuple(settings.other_zeros), settings.pair_tolerance)
     source = str(run.attrs.get("source", "run"))
-    found = find_reference(strokes, known, settings.offset, fold, source)
+    reference = find_reference(strokes, known, settings.offset, fold, source)
     if _lost(fold):
-        words = [f"recorded without sign: {text}" for text in found.zero_from]
-        method = WITHOUT_SIGN if found.method == "half loop" else found.method
-        found = replace(found, zero_from=np.array(words, dtype=object), method=method)
-    doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *found.doubts)
-    return replace(found, doubts=doubts), Signs(sign, unfold), pair
+        words = [f"recorded without sign: {text}" for text in reference.zero_from]
+        method = WITHOUT_SIGN if reference.method == "half loop" else reference.method
+        reference = replace(reference, zero_from=np.array(words, dtype=object), method=method)
+    doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *reference.doubts)
+    return replace(reference, doubts=doubts), Signs(sign, unfold), pair
 
 
 def _lost(fold: Fold) -> bool:
@@ -185,4 +185,4 @@ def _fold(
         usual = np.nanmedian(np.concatenate([normal[part] for part in parts]))
         loaded = normal > max(0.5, UNLOADED) * usual
     rest = float(np.median(rests.value)) if rests is not None else float("nan")
-    return folded(Trace(run[name].values, loaded, parts, mean, error, direction, rest))
+    return folded(ForceTrace(run[name].values, loaded, parts, mean, error, direction, rest))

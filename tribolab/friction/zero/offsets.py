@@ -75,12 +75,12 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
 
     scale = apart.mean()
     parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
-    found = np.zeros(2)
+    variances = np.zeros(2)
     for _ in range(30):  # the weights depend on what is sought; this settles in a few rounds
-        expected = noise + parts @ found
+        expected = noise + parts @ variances
         weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-300)
-        found, _ = optimize.nnls(parts * weight[:, None], excess * weight)
+        variances, _ = optimize.nnls(parts * weight[:, None], excess * weight)
     # so few squares tell a variance poorly: one standard error above it, as Student's t would; each
     # with the other held, because even spacing does not tell them apart
-    found = found + np.sqrt(2 / ((parts * weight[:, None]) ** 2).sum(axis=0))
-    return Wander(float(found[0]), float(found[1] / scale))
+    variances = variances + np.sqrt(2 / ((parts * weight[:, None]) ** 2).sum(axis=0))
+    return Wander(float(variances[0]), float(variances[1] / scale))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -71,6 +71,17 @@ class Known:
     tolerance: float = 0.25
 
 
+class Doubt(TypedDict):
+    """What is not sure of the zero of some segments: which check says so, and what settles it."""
+
+    check: str
+    status: str
+    message: str
+    cure: str
+    segments: list[int]
+    noted: bool
+
+
 @dataclass(frozen=True)
 class Reference:
     """The zero of each segment and what it rests on.
@@ -90,7 +101,7 @@ class Reference:
     method
         One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
     doubts
-        What is not sure: dictionaries with "check", "message", "cure", "segments" and "status".
+        What is not sure.
     """
 
     value: np.ndarray
@@ -99,10 +110,10 @@ class Reference:
     zero_from: np.ndarray
     half_loop: np.ndarray
     method: str
-    doubts: tuple[dict[str, Any], ...] = field(default=())
+    doubts: tuple[Doubt, ...] = field(default=())
 
 
-def doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> dict[str, Any]:
+def doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> Doubt:
     """Return what is not sure of the zero of some segments, and what settles it."""
     return {
         "check": "zero_reference",

@@ -13,7 +13,7 @@ LIKE = 0.25  # of their mean: strokes that differ by less are of one level
 CLEAR = 5.0  # standard errors beyond which levels differ
 
 
-class Trace(NamedTuple):
+class ForceTrace(NamedTuple):
     """What a fold is told by: the samples of the force and where the strokes are.
 
     Parameters
@@ -51,7 +51,7 @@ class Fold(NamedTuple):
 SIGNED = Fold("signed", "")
 
 
-def folded(trace: Trace) -> Fold:
+def folded(trace: ForceTrace) -> Fold:
     """Tell whether a friction force was recorded without its sign.
 
     Parameters
@@ -80,7 +80,7 @@ def folded(trace: Trace) -> Fold:
     >>> def told(force):
     ...     mean = np.array([force[part].mean() for part in parts])
     ...     sign, error = np.array([1, -1, 1, -1]), np.full(4, 0.01)
-    ...     return folded(Trace(force, force == force, parts, mean, error, sign, np.nan)).kind
+    ...     return folded(ForceTrace(force, force == force, parts, mean, error, sign, np.nan)).kind
     >>> told(force), told(np.abs(force)), told(force + 20)
     ('signed', 'rectified', 'signed')
     """
@@ -101,7 +101,7 @@ def folded(trace: Trace) -> Fold:
     return _one_way(trace)
 
 
-def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
+def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     """Directions are recorded, the force has one sign."""
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
@@ -132,7 +132,7 @@ def _both_ways(trace: Trace, known: np.ndarray) -> Fold:
     return Fold("undecided: alike" if like else "undecided", why)
 
 
-def _reversals(trace: Trace) -> tuple[float, float, int]:
+def _reversals(trace: ForceTrace) -> tuple[float, float, int]:
     """Share of the turns that dip towards zero, share that goes straight across, number of turns.
 
     "Straight" is a turn with readings between the two levels and none below them, where these are
@@ -165,7 +165,7 @@ def _reversals(trace: Trace) -> tuple[float, float, int]:
     return (dips / seen, straight / seen, seen) if seen else (0.0, 0.0, 0)
 
 
-def _one_way(trace: Trace) -> Fold:
+def _one_way(trace: ForceTrace) -> Fold:
     """No direction is recorded: a force that touches zero at the stops and is never below it."""
     force = trace.force[np.isfinite(trace.force)]
     if len(trace.parts) < 2 or (force < 0).any():
@@ -179,8 +179,8 @@ def _one_way(trace: Trace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    touched = [_touches(trace, i) for i in range(len(trace.parts) - 1)]
-    touched = [one for one in touched if one is not None]
+    stops = (_touches(trace, i) for i in range(len(trace.parts) - 1))
+    touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
     if dips >= MOST:
         why = (
@@ -191,7 +191,7 @@ def _one_way(trace: Trace) -> Fold:
     return SIGNED
 
 
-def _touches(trace: Trace, number: int) -> bool | None:
+def _touches(trace: ForceTrace, number: int) -> bool | None:
     """Whether the force comes to zero between two strokes, as near as its noise and steps allow."""
     here, there = trace.parts[number], trace.parts[number + 1]
     between = slice(here.stop, there.start)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.zero.middles import Middles, error_of_rows, interpolated, middles
-from tribolab.friction.zero.parts import Known, Reference, Strokes, doubt
+from tribolab.friction.zero.parts import Doubt, Known, Reference, Strokes, doubt
 from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
@@ -106,7 +105,7 @@ def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
     if rests.time.size > 1:
         words = f"{rests.time.size} rests without load, interpolated in time"
     lonely = ~rests.around(strokes.time)
-    doubts: tuple[dict[str, Any], ...] = ()
+    doubts: tuple[Doubt, ...] = ()
     if np.isfinite(known.stated):
         error = np.where(lonely, np.hypot(error, known.stated), error)
     elif lonely.any():
@@ -233,8 +232,9 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     else:
         text += "is larger than friction; what part of it is an asymmetry is not known; "
     text += "their mean does not change"
-    found = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
-    return replace(loop, doubts=(*loop.doubts, found | {"noted": ASYMMETRY < share < 1}))
+    remark = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
+    remark["noted"] = bool(ASYMMETRY < share < 1)
+    return replace(loop, doubts=(*loop.doubts, remark))
 
 
 def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.statistics import describe
+from tribolab.friction.statistics import estimate_of
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
@@ -109,12 +109,12 @@ def unloaded_rests(
             continue
         before = float(np.mean(normal[level]))
         when = float(time[level].mean())
-        found = describe(time[level], normal[level])
-        zeros["normal"].append((when, found.mean, found.sem))
+        level_estimate = estimate_of(time[level], normal[level])
+        zeros["normal"].append((when, level_estimate.mean, level_estimate.sem))
         if friction is not None:
-            found = describe(time[level], friction[level])
-            if found.samples >= FEWEST:
-                zeros["friction"].append((when, found.mean, found.sem))
+            level_estimate = estimate_of(time[level], friction[level])
+            if level_estimate.samples >= FEWEST:
+                zeros["friction"].append((when, level_estimate.mean, level_estimate.sem))
     return _zeros(zeros["friction"]), _zeros(zeros["normal"])
 
 
@@ -128,5 +128,5 @@ def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray
     return light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
 
 
-def _zeros(found: list[tuple[float, float, float]]) -> Zeros | None:
-    return Zeros(*np.array(found).T) if found else None
+def _zeros(rests: list[tuple[float, float, float]]) -> Zeros | None:
+    return Zeros(*np.array(rests).T) if rests else None

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribolab.friction.zero.middles import Middles
-from tribolab.friction.zero.parts import Known, Strokes, doubt
+from tribolab.friction.zero.parts import Doubt, Known, Strokes, doubt
 from tribolab.friction.zero.rectified import Fold
 
 
@@ -47,7 +45,7 @@ def of_speeds(
     known: Known,
     allowance: np.ndarray,
     measured: bool,
-) -> list[dict[str, Any]]:
+) -> list[Doubt]:
     """Doubt pairs across speeds that nobody stated to be alike and the run does not measure."""
     speed = strokes.speed[loops.member]
     mean = speed.mean(axis=1)
@@ -71,7 +69,7 @@ def of_speeds(
     return [doubt(text, cure, np.flatnonzero(np.isin(strokes.pair, np.flatnonzero(far))), status)]
 
 
-def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[dict[str, Any], ...]:
+def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
     """Return the doubt about a sign that was lost, if there is one."""
     if fold.kind == "signed" or not fold.why:
         return ()
@@ -80,5 +78,6 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[dict[str, Any], ...]
         "State `rectified = true` if the record holds no sign, `rectified = false` if its offset "
         "is real: in the [[run]], or of the column in the dialect."
     )
-    found = doubt(f"{fold.why}; {done}", cure, np.arange(size))
-    return (found | {"check": "rectified"},)
+    remark = doubt(f"{fold.why}; {done}", cure, np.arange(size))
+    remark["check"] = "rectified"
+    return (remark,)

@@ -147,7 +147,7 @@ class Classes:
         at = np.interp(self._moments + shift, self._time, self._edges[:-1] + 0.5)
         number = np.bincount(self._classes, weights=np.diff(at))
         total = np.bincount(self._classes, np.diff(np.interp(at, self._edges, self._sum)))
-        return at, number, total
+        return at, np.asarray(number, dtype=float), np.asarray(total, dtype=float)
 
     def explained(self, shift: float) -> float:
         """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""

@@ -40,13 +40,13 @@ def set_time(content: Content, dialect: Dialect) -> None:
         return
     step = 1.0
     if dialect.time.rate_pattern:
-        found = last_match(dialect.time.rate_pattern, content.pieces[0].before)
-        if found is None:
+        rate = last_match(dialect.time.rate_pattern, content.pieces[0].before)
+        if rate is None:
             raise ReadError(
                 f"{content.path}: no sample rate matches '{shown(dialect.time.rate_pattern)}' "
                 f"(instrument '{dialect.name}', time.rate_pattern)"
             )
-        step = 1.0 / to_si(f"{found} {dialect.time.rate_unit}", "Hz", str(content.path))
+        step = 1.0 / to_si(f"{rate} {dialect.time.rate_unit}", "Hz", str(content.path))
     elif dialect.time.rate:
         step = 1.0 / to_si(dialect.time.rate, "Hz", "time.rate")
     start = 0
@@ -119,11 +119,12 @@ def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
     stamps = [piece.started for piece in pieces]
     times = [piece.columns["time"] for piece in pieces]
     ends = zip(times, times[1:], strict=False)
-    if None in stamps and all(later[0] > earlier[-1] for earlier, later in ends):
+    dated = None not in stamps
+    if not dated and all(later[0] > earlier[-1] for earlier, later in ends):
         return  # the clock went on
     first, end = stamps[0], None
     for time, stamp in zip(times, stamps, strict=True):
-        if first is not None and None not in stamps:
+        if dated and first is not None and stamp is not None:
             time += (stamp - first).total_seconds()
             if end is not None and 0 <= end - time[0] <= _resolution(stamp, dialect):
                 time += end - time[0] + _interval(time)

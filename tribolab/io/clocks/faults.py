@@ -87,11 +87,11 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
     """
     missing = ~np.isfinite(time)
     rows = np.flatnonzero(~missing)
-    found = _Search(time[rows], wrap)
-    found.run()
+    search = _Search(time[rows], wrap)
+    search.run()
     astray = np.zeros(time.size, dtype=bool)
-    astray[rows] = found.astray
-    starts = tuple(start._replace(row=int(rows[start.row])) for start in found.starts)
+    astray[rows] = search.astray
+    starts = tuple(start._replace(row=int(rows[start.row])) for start in search.starts)
     return Faults(starts, astray, missing)
 
 
@@ -223,8 +223,8 @@ class _Search:
             self.time[start.row] > 3 * self.usual and 0.5 * period < start.ahead < period
             for start in others
         )
-        one = len(periods) == 1 and lands_ahead and np.ptp(self.time[~self.astray]) <= period
-        if one or not others and len(periods) == 1:
+        single = len(periods) == 1 and lands_ahead and np.ptp(self.time[~self.astray]) <= period
+        if single or not others and len(periods) == 1:
             self.starts = [Start(start.row, period, period) for start in self.starts]
         else:
             self.starts = [start._replace(period=0.0) for start in self.starts]

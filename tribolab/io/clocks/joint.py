@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from tribolab.io.clocks.motion import Motion
 
 Array = NDArray[np.float64]
+Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
 _SAMPLES = 2000  # of the force, looked at in one fit
 _LENGTHS = 9  # stops
@@ -127,12 +128,12 @@ class Basis:
         stop = (path - play(path, lengths[-3])) / lengths[-3]
         return np.stack([*ramps, stop, *self._more(velocity, way, last)], axis=1)
 
-    def _more(self, velocity: Array, way: Array, last: Array) -> list[Array]:
+    def _more(self, velocity: Array, way: Ways, last: Ways) -> list[Array]:
         """List what goes with the speed, what relaxes at rest, and the inertia."""
         acceleration = np.gradient(velocity, self.time)
         return [*_speeds(velocity, last), *self._relaxed(velocity, way, last), acceleration]
 
-    def _relaxed(self, velocity: Array, way: Array, last: Array) -> list[Array]:
+    def _relaxed(self, velocity: Array, way: Ways, last: Ways) -> list[Array]:
         """List what the force loses at rest, and gets back within a distance."""
         stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
         stops = stops[stops > 0]
@@ -177,7 +178,7 @@ def _path(time: Array, velocity: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _speeds(velocity: Array, last: Array) -> list[Array]:
+def _speeds(velocity: Array, last: Ways) -> list[Array]:
     """Hat functions of log |v| times the way; held at rest."""
     speed = np.abs(velocity)
     moving = speed > 0
@@ -281,8 +282,8 @@ def joint_fit(
     for name, table, (at, error) in models:
         prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(_SLACKS))
         fit = _Fit(force_time[used], force[used], basis.time, table)
-        found = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
-        answers.append(Answer(name, at, error, *found[1:], prior))
+        profile = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
+        answers.append(Answer(name, at, error, *profile[1:], prior))
     return answers
 
 
@@ -344,7 +345,7 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
     each = max(20, _SAMPLES // len(events))
     first = max(basis.time[0] + shift + half, force_time[0])
     last = min(basis.time[-1] + shift - half, force_time[-1])
-    chosen = []
+    places: list[NDArray[np.int64]] = []
     for event, (low, high) in zip(events, around, strict=True):
         a, k, b = np.searchsorted(force_time, [low, event, high])
         flat = 2.0 * half  # evenly within the span, more and more thinly beyond it
@@ -359,8 +360,8 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
                 scale = max(min(n_flat, n), 4)
                 u = np.linspace(0.0, np.arcsinh(n / scale), m)
                 steps = np.unique((scale * np.sinh(u)).astype(np.int64))
-            chosen.append(k + sign * steps)
-    chosen = np.unique(np.concatenate(chosen))
+            places.append(k + sign * steps)
+    chosen = np.unique(np.concatenate(places))
     good = (chosen >= 0) & (chosen < len(force_time))
     chosen = chosen[good]
     return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
@@ -390,12 +391,13 @@ class _Fit:
 
     def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
         squares = np.empty(len(shifts))
-        best = None
+        best: tuple[float, Array, float] | None = None
         for k, s in enumerate(shifts):
             residual, part = self.residual(s)
             squares[k] = residual @ residual
             if best is None or squares[k] < best[0]:
-                best = (squares[k], residual, part)
+                best = (float(squares[k]), residual, part)
+        assert best is not None  # there is at least one shift
         residual = best[1]
         alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
         hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))

@@ -87,8 +87,8 @@ def likeliest(found: list[Candidate]) -> Candidate:
     >>> likeliest([Candidate(0.0, 0.011, 70.0, 8), Candidate(4.5, 0.01, 180.0, 8)]).shift
     0.0
     """
-    fitted = [one for one in found if not np.isnan(one.unexplained)]
+    fitted = [candidate for candidate in found if not np.isnan(candidate.unexplained)]
     if not fitted or np.isnan(found[0].unexplained):
         return found[0]
-    best = min(fitted, key=lambda one: one.unexplained)
+    best = min(fitted, key=lambda candidate: candidate.unexplained)
     return best if best.beats(found[0]) else found[0]

@@ -60,7 +60,7 @@ class Told(NamedTuple):
     uncertainty: float
 
 
-class Estimate(NamedTuple):
+class ShiftEstimate(NamedTuple):
     """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
 
     Away from the middle, `rate` times the time since then on the motion clock is added.
@@ -77,8 +77,6 @@ class Estimate(NamedTuple):
     refused: str = ""
 
 
-# on matrices this small two threads of BLAS wait for each other: ten times as long
-@threadpool_limits.wrap(limits=1, user_api="blas")
 def estimate_clock_shift(
     force_time: Array,
     force: Array,
@@ -86,8 +84,8 @@ def estimate_clock_shift(
     velocity: Array,
     expected: float = 0.0,
     dated: bool = False,
-) -> Estimate | None:
-    """Estimate the shift between the clocks of a force log and a motion log.
+) -> ShiftEstimate | None:
+    """ShiftEstimate the shift between the clocks of a force log and a motion log.
 
     Parameters
     ----------
@@ -102,7 +100,7 @@ def estimate_clock_shift(
 
     Returns
     -------
-    Estimate or None
+    ShiftEstimate or None
         None if the force does not vary with the motion. An estimate with `refused` is a guess.
 
     Notes
@@ -112,6 +110,19 @@ def estimate_clock_shift(
     much the ways differ: friction that rises before the sample slides, or only after slack is
     taken up, moves the shift by what that lasts.
     """
+    # on matrices this small two threads of BLAS wait for each other: ten times as long
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _estimated(force_time, force, motion_time, velocity, expected, dated)
+
+
+def _estimated(
+    force_time: Array,
+    force: Array,
+    motion_time: Array,
+    velocity: Array,
+    expected: float,
+    dated: bool,
+) -> ShiftEstimate | None:
     good = np.abs(force) < _POSSIBLE
     force_time, force = force_time[good], force[good]
     velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
@@ -162,51 +173,51 @@ def estimate_clock_shift(
         return abs(at - shift) <= reach and 1.0 - fit.ratio(at) < unexplained
 
     told = shift_from_starts(logs, shift, span, allowed)
-    found = Estimate(shift, uncertainty, ratio)
+    estimate = ShiftEstimate(shift, uncertainty, ratio)
     if told is not None:
-        found = Estimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
-    if found.rate == 0.0:
-        found = _sharpened(found, force_time, force, motion_time, motion.velocity, fit)
-    if found.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
-        anew = Estimate(shift, uncertainty, ratio)
+        estimate = ShiftEstimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    if estimate.rate == 0.0:
+        estimate = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
+    if estimate.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
+        anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
-        found = anew if anew.uncertainty < found.uncertainty else found
-    if found.shift != shift:
-        ways["starts"] = Told(found.shift, found.uncertainty)
+        estimate = anew if anew.uncertainty < estimate.uncertainty else estimate
+    if estimate.shift != shift:
+        ways["starts"] = Told(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
-    paced = motion_time + found.rate * (motion_time - middle)
+    paced = motion_time + estimate.rate * (motion_time - middle)
     durations = np.diff(motion_time[changes(way)])
     stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
     ends = durations[[0, -1]]
-    least = 5.0 * found.uncertainty
+    least = 5.0 * estimate.uncertainty
     near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
-    joint = told_by_motion(force_time, force, paced, motion, found.shift, near, least)
+    joint = told_by_motion(force_time, force, paced, motion, estimate.shift, near, least)
     if weak and (joint is None or joint.unexplained > _CONSENT):
         return None
     if joint is not None:
-        apart = QUARTZ if found.rate == 0.0 else found.rate_uncertainty
+        apart = QUARTZ if estimate.rate == 0.0 else estimate.rate_uncertainty
         error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
         ways["motion"] = Told(joint.shift, error)
-        if weak and not placed and abs(joint.shift - found.shift) > 0.5 * sharp:
+        if weak and not placed and abs(joint.shift - estimate.shift) > 0.5 * sharp:
             return None
         stroke = joint.stroke
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
     if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
     elif sharp_fit:
-        known = "starts" in ways and found.uncertainty < _SHARP * stroke
+        known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
         first = "starts" if known else "classes"
         combined, part = _combined(ways[first], ways["motion"]), _PART
     elif "starts" in ways and _agree(ways["starts"], ways["classes"]):
         combined, part = ways["starts"], _PART
     else:
-        return found._replace(ways=ways, refused="no two ways tell it")
+        return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
-    found = found._replace(shift=combined.shift, uncertainty=error, ways=ways)
-    found = found._replace(explained=fit.ratio(combined.shift))
-    rivals = [one for one in may if one is not chosen]
-    doubt = _doubt(found, fit, coarse.half, stroke, chosen, rivals)
-    return found._replace(refused=doubt)
+    estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
+    estimate = estimate._replace(explained=fit.ratio(combined.shift))
+    rivals = [rival for rival in may if rival is not chosen]
+    doubt = _doubt(estimate, fit, coarse.half, stroke, chosen, rivals)
+    return estimate._replace(refused=doubt)
 
 
 def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
@@ -242,7 +253,7 @@ def _combined(first: Told, second: Told) -> Told:
 
 
 def _doubt(
-    found: Estimate,
+    estimate: ShiftEstimate,
     fit: Classes,
     half: float,
     stroke: float,
@@ -250,40 +261,40 @@ def _doubt(
     rivals: list[Candidate],
 ) -> str:
     """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
-    if found.uncertainty > _SHARP * stroke and "motion" in found.ways:
-        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in found.ways.items())
+    if estimate.uncertainty > _SHARP * stroke and "motion" in estimate.ways:
+        told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in estimate.ways.items())
         return f"the ways to tell it disagree: {told}"
-    if found.uncertainty > _SHARP * stroke:
-        return f"no way tells it sharply: {found.shift:.4g} s to {found.uncertainty:.2g} s"
-    left = _RIVAL * (1.0 - found.explained) + _ALMOST_NOTHING
+    if estimate.uncertainty > _SHARP * stroke:
+        return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
+    left = _RIVAL * (1.0 - estimate.explained) + _ALMOST_NOTHING
     for rival in rivals:
         if chosen.beats(rival):
             continue
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
-        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * found.explained
+        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * estimate.explained
         as_good |= not np.isnan(chosen.unexplained + rival.unexplained)
-        if abs(at - found.shift) > 0.5 * stroke and as_good:
-            return f"the motion repeats: {found.shift:.4g} s and {at:.4g} s do equally well"
+        if abs(at - estimate.shift) > 0.5 * stroke and as_good:
+            return f"the motion repeats: {estimate.shift:.4g} s and {at:.4g} s do equally well"
     return ""
 
 
 def _sharpened(
-    found: Estimate,
+    estimate: ShiftEstimate,
     force_time: Array,
     force: Array,
     motion_time: Array,
     velocity: Array,
     fit: Classes,
-) -> Estimate:
+) -> ShiftEstimate:
     """Sharpen an estimate by the fast strokes' beginnings taken together."""
-    onsets = refine_by_onsets(force_time, force, motion_time, velocity, found.shift, fit.period)
+    onsets = refine_by_onsets(force_time, force, motion_time, velocity, estimate.shift, fit.period)
     if onsets is None:
-        return found
-    apart = abs(onsets.shift - found.shift)
+        return estimate
+    apart = abs(onsets.shift - estimate.shift)
     # known where the fast strokes are; the clocks' rates leave it open elsewhere
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     error = float(np.hypot(onsets.uncertainty, QUARTZ * (onsets.time - middle)))
-    if apart > 3.0 * found.uncertainty:  # the two ways disagree, and neither can be trusted more
+    if apart > 3.0 * estimate.uncertainty:  # the two ways disagree, and neither can be trusted more
         error = max(error, apart)
-    return Estimate(onsets.shift, error, fit.ratio(onsets.shift))
+    return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))

@@ -31,7 +31,7 @@ _FLOOR = 20.0  # a start speaks against a shift by no more than this log-likelih
 _TELLING = 0.3  # the rate is fitted if it becomes this much better known than it was
 
 
-class Told(NamedTuple):
+class ToldByStarts(NamedTuple):
     """Shift in the middle of the motion log [s] and rate, each with its standard deviation."""
 
     shift: float
@@ -133,7 +133,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
 
 def shift_from_starts(
     logs: Logs, shift: float, span: float, allowed: Callable[[float], bool]
-) -> Told | None:
+) -> ToldByStarts | None:
     """Shift that the starts of motion tell.
 
     Parameters
@@ -147,7 +147,7 @@ def shift_from_starts(
 
     Returns
     -------
-    Told or None
+    ToldByStarts or None
         None where no start tells.
     """
     for width in (span, 0.5 * span):  # what is around a start depends on the shift
@@ -166,10 +166,10 @@ def shift_from_starts(
         step = half / 20.0
         offsets = half * np.linspace(-1.0, 1.0, 41)
         for k, start in enumerate(starts):
-            found, error = _one(logs, start, centre[k] + offsets)
+            moments, error = _one(logs, start, centre[k] + offsets)
             # 0.58 of the half width where it tells nothing; at an end, it is cut off
-            if error < 0.4 * half and abs(found - centre[k]) < 0.7 * half:
-                seen[:, k] = found, error
+            if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
+                seen[:, k] = moments, error
         told = np.isfinite(seen[1])
         if not told.any():
             return None
@@ -233,7 +233,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
     return -0.5 * freedom * np.log(relative / relative.min())
 
 
-def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told:
+def _combined(since: Array, shifts: Array, errors: Array, common: float) -> ToldByStarts:
     """Put the starts' shifts together, at times since the middle; `common` error is in all."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, QUARTZ**-2])
@@ -258,4 +258,4 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told
         told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
     # the loggers see all starts in the same way, so this does not become less by their number
     error[0] = np.hypot(error[0], common)
-    return Told(float(told[0]), float(error[0]), float(told[1]), float(error[1]))
+    return ToldByStarts(float(told[0]), float(error[0]), float(told[1]), float(error[1]))

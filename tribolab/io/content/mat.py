@@ -34,7 +34,7 @@ def read_mat(path: Path, dialect: Dialect) -> Content:
     signals, unused = resolve(str(path), names, [None] * len(names), len(names), dialect)
     columns = {}
     for signal in signals:
-        numbers = content[names[signal.index]]
+        numbers = content[names[signal.place]]
         if numbers is None or numbers.size != max(numbers.shape):
             raise ReadError(
                 f"{path}: variable '{shown(signal.label)}' is not one column of numbers"

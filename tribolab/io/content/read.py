@@ -143,7 +143,7 @@ def _checked(content: Content, dialect: Dialect) -> Content:
 
 def _possible(content: Content) -> Content:
     """Take numbers that nothing measured can have for missing, and say how many they were."""
-    found: dict[str, int] = {}
+    places: dict[str, int] = {}
     pieces = []
     for piece in content.pieces:
         columns = dict(piece.columns)
@@ -156,12 +156,12 @@ def _possible(content: Content) -> Content:
                 continue
             columns[name] = measurable(values)
             if odd.any():
-                found[name] = found.get(name, 0) + int(odd.sum())
+                places[name] = places.get(name, 0) + int(odd.sum())
         pieces.append(piece._replace(columns=columns))
     content = content._replace(pieces=pieces)
-    if not found:
+    if not places:
         return content
-    told = "; ".join(f"{name}: {count}" for name, count in found.items())
+    told = "; ".join(f"{name}: {count}" for name, count in places.items())
     return content._replace(notes={**content.notes, "numbers_beyond_range": told})
 
 

@@ -11,7 +11,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columns import resolve
 from tribolab.io.dialects.headers import split_name
-from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.model import Dialect, Marks
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.tables.tdms_file import open_tdms
 from tribolab.provenance import sha256_of_file
@@ -41,7 +41,7 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     signals, unused = resolve(str(path), names, units, len(names), dialect)
     columns = {}
     for signal in signals:
-        numbers = np.asarray(channels[signal.index][:])
+        numbers = np.asarray(channels[signal.place][:])
         if numbers.dtype.kind not in "fiu":
             raise ReadError(f"{path}: channel '{shown(signal.label)}' holds no numbers")
         with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
@@ -52,7 +52,7 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
     notes = _incomplete(file)
     if dialect.marks is not None:
-        columns["step"], more = _steps(path, file, columns["time"], dialect)
+        columns["step"], more = _steps(path, file, columns["time"], dialect.marks)
         notes |= more
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
     piece = Piece(columns, before=text)
@@ -68,27 +68,23 @@ def _incomplete(file: Any) -> dict[str, str]:
 
 
 def _steps(
-    path: Path, file: Any, time: np.ndarray, dialect: Dialect
+    path: Path, file: Any, time: np.ndarray, marks: Marks
 ) -> tuple[np.ndarray, dict[str, str]]:
     """Step k lasts from mark k to mark k + 1; before the first mark it is 0."""
-    marks = dialect.marks
     group = next((g for g in file.groups() if g.name == marks.group), None)
-    found = (
-        []
-        if group is None
-        else [c for c in group.channels() if split_name(c.name)[0] == marks.time]
-    )
-    if not found:
+    clocks = [] if group is None else group.channels()
+    clocks = [channel for channel in clocks if split_name(channel.name)[0] == marks.time]
+    if group is None or not clocks:
         raise ReadError(
             f"{path}: there is no channel '{shown(marks.time)}' in a group '{shown(marks.group)}'"
         )
-    unit = marks.unit or split_name(found[0].name)[1]
+    unit = marks.unit or split_name(clocks[0].name)[1]
     if unit is None:
         raise ReadError(
             f"{path}: the marks' time has no unit; give it in the dialect: [marks] unit"
         )
     scale, _ = conversion(unit, "s")
-    at = np.sort(np.asarray(found[0][:], dtype=float) * scale)
+    at = np.sort(np.asarray(clocks[0][:], dtype=float) * scale)
     texts = [
         str(value)
         for key, value in group.properties.items()

@@ -26,9 +26,9 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
         if value.source == "step":
             continue
         text = content.path.name if value.source == "file name" else content.pieces[0].before
-        found = _first_match(value.pattern, text)
-        if found:
-            attrs[value.attribute] = _converted(found, value, content, dialect)
+        text_found = _first_match(value.pattern, text)
+        if text_found:
+            attrs[value.attribute] = _converted(text_found, value, content, dialect)
     return attrs
 
 
@@ -42,15 +42,15 @@ def step_values(
     for value in dialect.value:
         if value.source != "step":
             continue
-        found = [last_match(value.pattern, piece.before) or "" for _, piece in places]
+        texts = [last_match(value.pattern, piece.before) or "" for _, piece in places]
         if value.unit is None:
             attrs[f"{value.name}s"] = "; ".join(
-                f"{piece.step}: {text}" for text, (_, piece) in zip(found, places, strict=True)
+                f"{piece.step}: {text}" for text, (_, piece) in zip(texts, places, strict=True)
             )
         elif value.name in QUANTITIES:
             numbers = [
                 _converted(text, value, content, dialect) if text else np.nan
-                for text, (content, _) in zip(found, places, strict=True)
+                for text, (content, _) in zip(texts, places, strict=True)
             ]
             lengths = [len(piece.columns["time"]) for _, piece in places]
             variables[value.name] = np.repeat(np.array(numbers, dtype=float), lengths)

@@ -10,10 +10,10 @@ from tribolab.io.dialects.model import Column, Dialect
 from tribolab.quantities import quantity, unit_conversion
 
 
-class Signal(NamedTuple):
+class ReadColumn(NamedTuple):
     """A column that is read: its place (from 0), quantity, unit; ``si = scale * x + offset``."""
 
-    index: int
+    place: int
     quantity: str
     label: str
     unit: str
@@ -28,7 +28,7 @@ def resolve(
     units: Sequence[str | None],
     width: int,
     dialect: Dialect,
-) -> tuple[list[Signal], list[str]]:
+) -> tuple[list[ReadColumn], list[str]]:
     """Find the columns that a dialect asks for.
 
     Parameters
@@ -57,7 +57,7 @@ def resolve(
         index = _index(where, column, names, width, dialect)
         if index is not None:
             signals.append(_signal(where, column, index, names, units, dialect))
-    used = {signal.index for signal in signals}
+    used = {signal.place for signal in signals}
     unused = [
         f"{name} [{unit}]" if unit else name
         for index, (name, unit) in enumerate(zip(names, units, strict=True))
@@ -99,7 +99,7 @@ def _index(
             f"{column.occurrence} times, it stands {len(places)} times"
         )
     hint = nearest(column.name or "", [name for name in names if name])
-    if "did you mean" not in hint and not any(one.name in names for one in dialect.column):
+    if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
         hint = ""  # no column of this instrument is there: what the file holds is not told
     raise ReadError(
         f"{where}: column '{shown(column.name)}' ({column.quantity}) is missing (instrument "
@@ -114,7 +114,7 @@ def _signal(
     names: Sequence[str],
     units: Sequence[str | None],
     dialect: Dialect,
-) -> Signal:
+) -> ReadColumn:
     wanted = quantity(column.quantity).unit
     label = names[index] if names else f"column {index + 1}"
     unit = column.unit if column.unit is not None else (units[index] if units else None)
@@ -131,8 +131,8 @@ def _signal(
             f"given in the dialect '{dialect.name}'"
         ) from error
     # sign * (scale * x + offset), then the unit
-    return Signal(
-        index=index,
+    return ReadColumn(
+        place=index,
         quantity=column.quantity,
         label=label,
         unit=unit or "1",

@@ -113,7 +113,7 @@ def unknown(file: File, table: str) -> ReadError:
         folder = "describe it as raw_data_schema/README.md says"
         cure = cures.name_instrument(table, say=f"{folder}, and name that with")
         return ReadError(what, where=file.path, cure=cure)
-    return ReadError(what, where=file.path, cure=cures.draft_dialect(file.path, table))
+    return ReadError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
 
 
 def is_scan(dialect: Dialect) -> bool:
@@ -162,7 +162,7 @@ def _parse(path: Path) -> Dialect:
     try:
         return Dialect.model_validate(content)
     except ValidationError as error:
-        said = [_explain(one) for one in error.errors()]
+        said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
 

@@ -181,10 +181,11 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
     for number, start in enumerate(starts):
         limit = starts[number + 1] if number + 1 < len(starts) else size
         here, names, units = _read_header(file, content, start, dialect)
-        body = _BLANK.match(content, here).end()
+        blank = _BLANK.match(content, here)
+        body = blank.end() if blank else here
         stop = limit
-        if end is not None and (found := end.search(content, body, min(limit, len(content)))):
-            stop = found.start()
+        if end is not None and (last := end.search(content, body, min(limit, len(content)))):
+            stop = last.start()
         width = len(split_row(_line(file, content, body, dialect)[0], text.delimiter))
         before = _decode(content[origin : start if start > origin else body], file, dialect)
         if header.line is None and header.pattern is None:
@@ -203,10 +204,10 @@ def _header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> 
     header = dialect.header
     first = 3 if content[:3] == _BOM else 0
     if header.pattern is not None:
-        found = compiled(header.pattern, dialect).all(content, first)
+        matches = compiled(header.pattern, dialect).all(content, first)
         wanted = None if header.repeats else 1  # looking for more would read the whole head
         starts = [
-            max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(found, wanted)
+            max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(matches, wanted)
         ]
         if not starts:
             raise ReadError(

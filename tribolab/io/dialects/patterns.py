@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import mmap
 from collections.abc import Iterator
-from typing import AnyStr, Generic
+from typing import Any, AnyStr, Generic
 
 import regex
 
@@ -43,9 +44,10 @@ class Guarded(Generic[AnyStr]):
     def __init__(self, pattern: AnyStr) -> None:
         if len(pattern) > LONGEST:
             raise PatternError(f"it has {len(pattern)} letters, and at most {LONGEST} are taken")
-        self.pattern = pattern
+        self.pattern: AnyStr = pattern
         try:
-            self._compiled = regex.compile(pattern, regex.MULTILINE)
+            # of text or of bytes, and then of mapped memory too: the stubs cannot say both
+            self._compiled: regex.Pattern[Any] = regex.compile(pattern, regex.MULTILINE)
         except (regex.error, RecursionError, OverflowError, MemoryError) as error:
             raise PatternError(str(error)) from error
 
@@ -55,7 +57,7 @@ class Guarded(Generic[AnyStr]):
         return int(self._compiled.groups)
 
     def search(
-        self, text: AnyStr, start: int = 0, stop: int | None = None
+        self, text: AnyStr | mmap.mmap, start: int = 0, stop: int | None = None
     ) -> regex.Match[AnyStr] | None:
         """Return the first match in a text, or None.
 
@@ -66,11 +68,14 @@ class Guarded(Generic[AnyStr]):
         """
         stop = len(text) if stop is None else stop
         try:
-            return self._compiled.search(text, start, stop, timeout=_limit(stop - start))
+            match: regex.Match[Any] | None = self._compiled.search(
+                text, start, stop, timeout=_limit(stop - start)
+            )
         except TimeoutError as error:
             raise self._endless() from error
+        return match
 
-    def all(self, text: AnyStr, start: int = 0) -> Iterator[regex.Match[AnyStr]]:
+    def all(self, text: AnyStr | mmap.mmap, start: int = 0) -> Iterator[regex.Match[AnyStr]]:
         """Give the matches in a text, one after the other; errors as in `search`."""
         limit = _limit(len(text) - start)
         try:
@@ -80,15 +85,15 @@ class Guarded(Generic[AnyStr]):
 
     def first(self, text: AnyStr) -> AnyStr | None:
         """Group 1 of the first match, without blanks around it."""
-        found = self.search(text)
-        return found[1].strip() if found and found[1] is not None else None
+        match = self.search(text)
+        return match[1].strip() if match and match[1] is not None else None
 
     def last(self, text: AnyStr) -> AnyStr | None:
         """Group 1 of the last match, without blanks around it."""
-        found = None
-        for found in self.all(text):  # noqa: B007 - the last one is wanted
+        last = None
+        for last in self.all(text):  # noqa: B007 - the last one is wanted
             pass
-        return found[1].strip() if found and found[1] is not None else None
+        return last[1].strip() if last and last[1] is not None else None
 
     def _endless(self) -> ReadError:
         return ReadError(

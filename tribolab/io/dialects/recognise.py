@@ -85,9 +85,9 @@ def _text(head: bytes, encoding: str) -> str:
 def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
     """Check a table without a header by the number and the kinship of its columns."""
     columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
-    first = _FIRST_LINE.match(text)[1]  # of most files it tells
+    first = _FIRST_LINE.match(text)  # of most files it tells
     rows = []
-    if len(split_row(first, delimiter)) == columns:
+    if first and len(split_row(first[1], delimiter)) == columns:
         lines = text.splitlines()[:-1][:_ROWS]
         rows = [split_row(line, delimiter) for line in lines if line.strip()]
     if not rows or any(len(row) != columns for row in rows):
@@ -96,10 +96,10 @@ def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
         numbers = np.array(rows, dtype=float)
     except ValueError:
         return "it is not all numbers"
-    for one, other in dialect.recognise.linked:
-        a, b = numbers[:, one - 1], numbers[:, other - 1]
+    for first_column, other in dialect.recognise.linked:
+        a, b = numbers[:, first_column - 1], numbers[:, other - 1]
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             linked = np.ptp(a) > 0 and np.ptp(b) > 0 and abs(np.corrcoef(a, b)[0, 1]) >= _LINKED
         if not linked:
-            return f"columns {one} and {other} are not the same signal"
+            return f"columns {first_column} and {other} are not the same signal"
     return None

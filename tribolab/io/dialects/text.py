@@ -6,14 +6,14 @@ import hashlib
 import io
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.dialects.columns import Signal
+from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
 
@@ -31,7 +31,7 @@ class Hasher:
         self._digest = hashlib.sha256()
         self._thread = ThreadPoolExecutor(1)
 
-    def update(self, data: bytes | memoryview) -> Future:
+    def update(self, data: bytes | memoryview) -> Future[None]:
         """Add bytes; they may be overwritten when the future is done."""
         return self._thread.submit(self._digest.update, data)
 
@@ -45,14 +45,14 @@ class _Work(NamedTuple):
     """A block in work: its buffer is used again when both are done."""
 
     buffer: bytearray
-    parsed: Future
-    hashed: Future | None
+    parsed: Future[list[list[np.ndarray]]]
+    hashed: Future[None] | None
 
 
 def read_table(
     raw: RawText,
     table: Table,
-    signals: list[Signal],
+    signals: list[ReadColumn],
     dialect: Dialect,
     hasher: Hasher | None = None,
 ) -> tuple[dict[str, np.ndarray], int]:
@@ -94,12 +94,12 @@ def read_table(
     return columns.finished(), parser.incomplete
 
 
-def _opened(raw: RawText) -> BinaryIO:
+def _opened(raw: RawText) -> io.FileIO | io.BytesIO:
     return raw.file.path.open("rb", buffering=0) if raw.memory is None else io.BytesIO(raw.memory)
 
 
 def _pump(
-    file: BinaryIO,
+    file: io.FileIO | io.BytesIO,
     table: Table,
     parser: _Parser,
     columns: _Columns,
@@ -127,7 +127,7 @@ def _pump(
             buffer = bytearray(len(rest) + wanted)
         view = memoryview(buffer)
         view[: len(rest)] = rest
-        got = file.readinto(view[len(rest) : len(rest) + wanted])
+        got = file.readinto(view[len(rest) : len(rest) + wanted]) or 0
         left = left - got if got else 0
         full = len(rest) + got
         hashed = hasher.update(view[len(rest) : full]) if hasher else None
@@ -148,10 +148,10 @@ def _pump(
 class _Parser:
     """Turns blocks of lines into arrow tables, and arrow's complaints into ours."""
 
-    def __init__(self, raw: RawText, table: Table, signals: list[Signal], dialect: Dialect):
+    def __init__(self, raw: RawText, table: Table, signals: list[ReadColumn], dialect: Dialect):
         self._raw, self._table, self._signals, self._dialect = raw, table, signals, dialect
         names = [str(index) for index in range(table.width)]
-        self._wanted = [names[signal.index] for signal in signals]
+        self._wanted = [names[signal.place] for signal in signals]
         delimiter = dialect.text.delimiter
         self.incomplete = 0
         self._parse = {"delimiter": "\t" if delimiter == "whitespace" else delimiter}
@@ -181,6 +181,7 @@ class _Parser:
 
     def _arrow(self, block: bytes | memoryview, types: dict[str, Any]) -> pa.Table:
         held = block.obj if isinstance(block, memoryview) else block
+        assert isinstance(held, bytes | bytearray)  # `_pump` passes views of its own buffers
         # arrow is faster where it need not look for quotes
         quote = '"' if held.find(b'"', 0, len(block)) >= 0 else False
         return arrow_csv.read_csv(
@@ -233,7 +234,7 @@ class _Parser:
                     "if the table ends before it, say so in the dialect: [text] end = '...'"
                 )
             for signal in self._signals:
-                cell = cells[signal.index]
+                cell = cells[signal.place]
                 if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
                     told = f"'{shown(cell, 40)}'" if is_table else "what stands there"
                     word = shown(cell, 40) if is_table else "..."
@@ -269,7 +270,7 @@ def _is_number(cell: str, decimal: str) -> bool:
 class _Columns:
     """Arrays that grow as blocks come in; each number is brought to SI as it is stored."""
 
-    def __init__(self, signals: list[Signal], size: int):
+    def __init__(self, signals: list[ReadColumn], size: int):
         self._signals, self._size = signals, size
         self._arrays: list[np.ndarray] = []
         self._used = 0

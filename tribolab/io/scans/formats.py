@@ -70,7 +70,8 @@ def read_foreign(
         warnings.simplefilter("ignore")
         with _opened(path, formats, open_topography) as reader:
             channel, topography, vertical = _topography(path, reader, x_unit, height_unit)
-            heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+            masked: np.ma.MaskedArray = np.ma.asarray(topography.heights(), dtype=float)
+            heights = masked.filled(np.nan)
             x = topography.positions() if topography.dim == 1 else ()
             sizes, points = topography.physical_sizes, topography.nb_grid_pts
     try:
@@ -137,7 +138,7 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
         raise ReadError(
             f"neither a known dialect nor a format that SurfaceTopography reads{told}",
             where=path,
-            cure=cures.draft_dialect(path, cures.SURFACE),
+            cure=cures.unknown_instrument(path, cures.SURFACE),
         )
     with reader:
         yield reader

@@ -13,7 +13,9 @@ _SMALLEST = 1e-15  # m, a nucleus
 _ROUNDED = 0.6  # in units of the last digit
 
 
-def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarray, dict]:
+def even(
+    where: str, x: np.ndarray, height: np.ndarray
+) -> tuple[float, np.ndarray, dict[str, float | str]]:
     """Bring a profile on an even grid.
 
     Parameters
@@ -56,7 +58,10 @@ def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarr
         pitch, start = (float(c) for c in np.polyfit(count, x, 1))
         ideal = start + pitch * count
         unevenness = float(np.abs(ideal - x).max()) / pitch
-    attrs = {"x_origin_m": float(ideal[0]), "x_unevenness": unevenness}
+    attrs: dict[str, float | str] = {
+        "x_origin_m": float(ideal[0]),
+        "x_unevenness": unevenness,
+    }
     if unevenness <= _JITTER or unevenness * pitch <= _ROUNDED * _last_digit(x):
         return pitch, height, attrs
     steps = np.diff(x)
@@ -69,8 +74,8 @@ def even(where: str, x: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarr
     # the straight line through all positions may begin before the first: nothing is known there
     pitch = float(x[-1] - x[0]) / (x.size - 1)
     ideal = x[0] + pitch * count
-    attrs |= {"x_origin_m": float(x[0]), "x_unevenness": float(np.abs(ideal - x).max()) / pitch}
-    unevenness = attrs["x_unevenness"]
+    unevenness = float(np.abs(ideal - x).max()) / pitch
+    attrs |= {"x_origin_m": float(x[0]), "x_unevenness": unevenness}
     attrs["resampled"] = (
         f"positions deviate from an even grid by up to {unevenness:.2g} steps, more than their "
         "rounding; heights were interpolated along straight lines"

@@ -6,6 +6,7 @@ import functools
 import glob
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -100,12 +101,12 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
         raise ReadError("no file is given", function="read_scans")
     files: list[Path] = []
     for path in given:
-        found = [str(path)]
+        names = [str(path)]
         if glob.has_magic(str(path)) and not Path(path).exists():
-            found = sorted(glob.glob(str(path)))  # noqa: PTH207 - Path.glob wants no absolute one
-            if not found:
+            names = sorted(glob.glob(str(path)))  # noqa: PTH207 - Path.glob wants no absolute one
+            if not names:
                 raise ReadError(f"{path}: no file has such a name")
-        files.extend(map(Path, found))
+        files.extend(map(Path, names))
     return files
 
 
@@ -212,8 +213,8 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
             if scan.sizes[dim] == points and drift <= 0.5 * length / max(points - 1, 1):
                 continue
             found, usual = (
-                1e6 * float(np.ptp(one[dim].values)) / max(one.sizes[dim] - 1, 1)
-                for one in (scan, first)
+                1e6 * float(np.ptp(pitch_of[dim].values)) / max(pitch_of.sizes[dim] - 1, 1)
+                for pitch_of in (scan, first)
             )
             raise ReadError(
                 f"{scan.sizes[dim]} points of {found:.6g} um, but {files[0].name} has {points} "
@@ -233,22 +234,23 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
     return stamp(data, **_common([scan.attrs for scan in scans]))
 
 
-def _common(attrs: list[dict]) -> dict:
+def _common(attrs: list[dict[str, Any]]) -> dict[str, Any]:
     """Attributes of all scans; where they differ, joined as text."""
-    result = {}
-    for key in dict.fromkeys(key for one in attrs for key in one):
-        values = [one.get(key) for one in attrs]
+    result: dict[str, Any] = {}
+    for key in dict.fromkeys(key for scan in attrs for key in scan):
+        values = [scan.get(key) for scan in attrs]
+        numbers = [value for value in values if isinstance(value, float)]
         alike = all(value == values[0] for value in values)
         if alike:
             result[key] = values[0]
         elif key == "history":
             result[key] = "\n".join(map(str, values))
-        elif key in _JOINED or not all(isinstance(value, float) for value in values):
+        elif key in _JOINED or len(numbers) < len(values):
             result[key] = "; ".join("" if value is None else str(value) for value in values)
         elif key in ("pitch_m", "length_m"):
             result[key] = values[0]
         elif key in _WORST:
-            result[key] = _WORST[key](values)
+            result[key] = _WORST[key](numbers)
         else:
-            result[key] = "; ".join(f"{value:.9g}" for value in values)
+            result[key] = "; ".join(f"{value:.9g}" for value in numbers)
     return result

@@ -17,8 +17,10 @@ _MEGABYTE = 1 << 20
 _UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
 _RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
 _DEEPEST = 500  # elements of XML within one another; office files have a dozen
-_DAMAGE = (zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError)
-_DAMAGE += (ValueError,)
+_DAMAGE = (
+    *(zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError),
+    ValueError,
+)
 _MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
 _HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
 _LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square

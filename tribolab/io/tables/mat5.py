@@ -56,7 +56,7 @@ def read_variables(path: Path) -> list[Variable]:
         order = {b"IM": "<", b"MI": ">"}.get(bytes(content[126:_HEADER]))
         if order is None:
             raise ValueError("the mark of its byte order is missing")
-        found = []
+        variables = []
         for kind, data in _elements(content[_HEADER:], order):
             if kind == _COMPRESSED:
                 inner = list(_elements(memoryview(zlib.decompress(data)), order))
@@ -64,14 +64,14 @@ def read_variables(path: Path) -> list[Variable]:
                     raise ValueError(f"{len(inner)} variables stand where one should")
                 kind, data = inner[0]
             if kind == _MATRIX:
-                found.append(_variable(data, order))
-        if not found:
+                variables.append(_variable(data, order))
+        if not variables:
             raise ValueError("it holds no variable")
     except (ValueError, struct.error, zlib.error, OSError, MemoryError) as error:
         raise ReadError(
             f"{path}: the MAT file is damaged or cut short: {brief(error)}; copy or save it again"
         ) from error
-    return found
+    return variables
 
 
 def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:

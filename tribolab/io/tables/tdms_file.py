@@ -8,8 +8,10 @@ from typing import Any
 
 from tribolab.errors import ReadError, brief
 
-DAMAGE = (ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error)
-DAMAGE += (MemoryError, OverflowError, NotImplementedError, AttributeError)
+DAMAGE = (
+    *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
+    *(MemoryError, OverflowError, NotImplementedError, AttributeError),
+)
 
 
 def channel_names(path: Path) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -18,9 +18,9 @@ class Violation(NamedTuple):
 
     row: int | None
     column: str
-    value: Any
+    value: object
     constraint: str
-    limit: Any
+    limit: object
 
     def __str__(self) -> str:
         """Say what is wrong, in one line."""
@@ -39,9 +39,9 @@ class Broken(NamedTuple):
 
     column: str
     constraint: str
-    limit: Any
+    limit: object
     rows: np.ndarray
-    values: Sequence[Any]
+    values: Sequence[object] | np.ndarray
 
 
 class Violations(NamedTuple):
@@ -56,35 +56,35 @@ class Violations(NamedTuple):
     @property
     def total(self) -> int:
         """Number of violations."""
-        return sum(max(len(one.rows), 1) for one in self.broken)
+        return sum(max(len(broken.rows), 1) for broken in self.broken)
 
     def first(self, number: int = _SCREEN) -> list[Violation]:
         """Return the first violations, of each rule at least one."""
         share = max(number // max(len(self.broken), 1), 1)
-        found = []
-        for one in self.broken:
-            if len(one.rows) == 0:
-                value = one.values[0] if len(one.values) else None
-                found.append(Violation(None, one.column, value, one.constraint, one.limit))
+        violations = []
+        for rule in self.broken:
+            if len(rule.rows) == 0:
+                value = rule.values[0] if len(rule.values) else None
+                violations.append(Violation(None, rule.column, value, rule.constraint, rule.limit))
                 continue
-            for row, value in zip(one.rows[:share].tolist(), one.values[:share], strict=True):
-                found.append(Violation(row, one.column, value, one.constraint, one.limit))
-        return found[:number]
+            for row, value in zip(rule.rows[:share].tolist(), rule.values[:share], strict=True):
+                violations.append(Violation(row, rule.column, value, rule.constraint, rule.limit))
+        return violations[:number]
 
     def table(self) -> pd.DataFrame:
         """Return every violation as a row: row, column, value, constraint, limit."""
         parts = [
             pd.DataFrame(
                 {
-                    "row": one.rows if len(one.rows) else [None],
-                    "column": one.column,
-                    "value": list(one.values) if len(one.values) else [None],
-                    "constraint": one.constraint,
-                    "limit": one.limit if np.ndim(one.limit) == 0 else str(one.limit),
+                    "row": broken.rows if len(broken.rows) else [None],
+                    "column": broken.column,
+                    "value": list(broken.values) if len(broken.values) else [None],
+                    "constraint": broken.constraint,
+                    "limit": str(broken.limit) if _is_many(broken.limit) else broken.limit,
                 },
                 dtype=object,
             )
-            for one in self.broken
+            for broken in self.broken
         ]
         names = ["row", "column", "value", "constraint", "limit"]
         return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=names)
@@ -92,13 +92,17 @@ class Violations(NamedTuple):
     def __str__(self) -> str:
         """Say the first violations, a line each, and how many there are more."""
         shown = self.first()
-        lines = [str(one) for one in shown]
+        lines = [str(violation) for violation in shown]
         if self.total > len(shown):
             lines.append(f"and {self.total - len(shown):,} more".replace(",", " "))
         return "\n".join(lines) or "as the schema says"
 
 
-def _short(value: Any) -> str:
+def _is_many(limit: object) -> bool:
+    return isinstance(limit, list | tuple | np.ndarray)
+
+
+def _short(value: object) -> str:
     if isinstance(value, float | np.floating):
         return f"{value:.6g}"
     return "no value" if value is None else str(value)

@@ -1,0 +1,100 @@
+"""Ticks of logarithmic axes, drawn quickly: plain text for the decades, one mark for the rest.
+
+Matplotlib sets every ``10^-3`` as a formula, and makes five artists of every small tick: over many
+decades that is most of the time of a figure.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import rcParams
+from matplotlib.artist import Artist
+from matplotlib.axis import Axis
+from matplotlib.backend_bases import RendererBase
+from matplotlib.lines import Line2D
+from matplotlib.markers import TICKDOWN, TICKLEFT, TICKRIGHT, TICKUP
+from matplotlib.ticker import FuncFormatter, Locator, LogLocator, NullFormatter, NullLocator
+
+from tribolab.words import number
+
+_MANY = 1e4
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: bool = True) -> None:
+    """Give a logarithmic axis at most so many decades with a number, and `small` ticks between.
+
+    Over many decades the ticks at 2 to 9 would be a black bar, and slow to draw: then there is one
+    per decade.
+    """
+    axis.set_major_locator(LogLocator(numticks=decades))
+    axis.set_major_formatter(FuncFormatter(power_of_ten))
+    axis.set_minor_locator(NullLocator())
+    axis.set_minor_formatter(NullFormatter())
+    subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
+    if small:
+        axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))
+
+
+def power_of_ten(value: float, place: int | None = None) -> str:
+    """Write a decade as the label of a tick, another value as a number.
+
+    Examples
+    --------
+    >>> power_of_ten(1e-4), power_of_ten(300.0)
+    ('10⁻⁴', '300')
+    """
+    if not value > 0:
+        return ""
+    exponent = round(np.log10(value))
+    if np.isclose(value, 10.0**exponent, rtol=1e-6, atol=0):
+        return "10" + str(exponent).translate(_RAISED)
+    return number(value)
+
+
+class SmallTicks(Artist):
+    """The ticks without a number of an axis, all of them two marks: one for each side of the frame.
+
+    Made inside `paper_style()`, whose minor ticks they look like.
+
+    Parameters
+    ----------
+    axis
+        Whose ticks they are.
+    locator
+        Where they stand.
+    """
+
+    def __init__(self, axis: Axis, locator: Locator) -> None:
+        super().__init__()
+        self.axis, self.locator = axis, locator
+        locator.set_axis(axis)
+        self.name = axis.axis_name
+        key = f"{self.name}tick"
+        look = {
+            "linestyle": "none",
+            "color": rcParams[f"{key}.color"],
+            "markersize": rcParams[f"{key}.minor.size"],
+            "markeredgewidth": rcParams[f"{key}.minor.width"],
+        }
+        far = rcParams["xtick.top" if self.name == "x" else "ytick.right"]
+        inward = (TICKUP, TICKDOWN) if self.name == "x" else (TICKRIGHT, TICKLEFT)
+        self.marks = [Line2D([], [], marker=mark, **look) for mark in inward[: 1 + far]]
+        self.set_zorder(axis.get_zorder())
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Draw them where they stand now."""
+        if not self.get_visible() or not self.axis.get_visible():
+            return
+        low, high = sorted(self.axis.get_view_interval())
+        places = np.asarray(self.locator(), float)
+        places = places[(places >= low) & (places <= high)]
+        axes = self.axis.axes
+        across = getattr(axes, f"get_{self.name}axis_transform")(which="tick1")
+        for edge, mark in enumerate(self.marks):
+            edges = np.full(places.size, float(edge))
+            mark.set_data(*((places, edges) if self.name == "x" else (edges, places)))
+            mark.set_transform(across)
+            mark.set_figure(self.get_figure(root=False))
+            mark.draw(renderer)
+        self.stale = False
