@@ -42,7 +42,7 @@ def refuse(*given, **more):
 
 @pytest.mark.slow
 def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouched(
-    campaign, monkeypatch
+    campaign, monkeypatch, tmp_path
 ):
     first = run(campaign)
     before, folder = fingerprint(first.folder), first.folder.stat()
@@ -57,7 +57,15 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
     assert again.runs == tuple(replace(run, reused=True) for run in first.runs)
     assert (again.curves, again.sources) == (first.curves, first.sources)
     assert [s.name for s in again.surfaces] == [s.name for s in first.surfaces]
-    assert run(campaign, verify=True).runs == again.runs  # each read anew, to the same end
+
+    # copied and touched files are the same: read, and nothing is done
+    elsewhere = copied(campaign, tmp_path / "elsewhere")
+    for path in (elsewhere.parent / "raw").rglob("*.csv"):
+        path.touch()
+    with monkeypatch.context() as guarded:
+        guarded.setattr("tribolab.app.run.process", refuse)
+        assert [one.reused for one in run(elsewhere).runs] == [True, True]
+        assert run(campaign, verify=True).runs == again.runs
 
     # everything that may change is noticed
     assert unchanged(*load_and_plan(campaign), first.folder, OPTIONS)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.ledger import Ledger
 from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.plan import PlannedRun, scans_of, sha256_of_dialect
-from tribolab.campaign.store import Catalogue
+from tribolab.campaign.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.store import Catalogue, Identity
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
     CurveOutcome,
@@ -57,13 +57,15 @@ def fingerprint(
     """Return the checksum of all that results are made from, but of the raw files' content."""
     from tribolab.version import __version__
 
-    surfaces = [[str(path) for path in scans_of(campaign, s)] for s in campaign.surface]
+    surfaces = [
+        [label_of(campaign, path) for path in scans_of(campaign, s)] for s in campaign.surface
+    ]
     dialects = [s.instrument and _dialect(campaign, s.instrument) for s in campaign.surface]
     return sha256_of(
         {
             "tribolab_version": __version__,
             "campaign": sha256_of_file(campaign.file),
-            "runs": [[run.name, run.config_sha256, *map(str, run.files)] for run in runs],
+            "runs": [[run.name, run.config_sha256, *run.labels] for run in runs],
             "surfaces": surfaces,
             "dialects": dialects,
             "options": dict(options),
@@ -90,16 +92,19 @@ def unchanged(
     options
         Of the report.
     verify
-        Whether files are read to tell; then the answer is None, since that is work.
+        Whether every file is read to tell; by default those only whose size, time or inode is not
+        what it was.
     """
     catalogue = Catalogue.of(place)
     made = catalogue.fact(_FACT)
-    if verify or not made or made != fingerprint(campaign, runs, options):
+    if not made or made != fingerprint(campaign, runs, options):
         return None
     ledger = Ledger.read(place)
-    if not ledger.is_whole or not _are_known(_inputs(campaign, runs), catalogue):
-        return None
     sources: list[Source] = [(str(n), str(c), int(b)) for n, c, b in _listed(catalogue)]
+    files = _inputs(campaign, runs)
+    known = {} if verify else catalogue.files()
+    if not ledger.is_whole or not _are_same(files, known, {n: c for n, c, _ in sources}):
+        return None
     return Outcome(
         campaign=campaign,
         folder=place,
@@ -130,19 +135,25 @@ def _dialect(campaign: Campaign, instrument: str) -> str:
     return sha256_of_dialect(instrument_of(campaign, instrument))
 
 
-def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[Path]:
-    files = [file for run in runs for file in run.files]
-    files += [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
-    modulus = campaign.contact.modulus_file
-    return files if modulus is None else [*files, campaign.raw / modulus]
+def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[tuple[Path, str]]:
+    """Return every file that is read, and its label."""
+    files = [pair for run in runs for pair in zip(run.files, run.labels, strict=True)]
+    others = [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
+    if campaign.contact.modulus_file is not None:
+        others.append(campaign.raw / campaign.contact.modulus_file)
+    return files + [(file, label_of(campaign, file)) for file in others]
 
 
-def _are_known(files: Sequence[Path], catalogue: Catalogue) -> bool:
-    known = catalogue.files()
+def _are_same(
+    files: Sequence[tuple[Path, str]], known: Mapping[str, Identity], sums: Mapping[str, str]
+) -> bool:
+    """Whether files are those that were read, the ones known by identity without reading them."""
     try:
-        return all(
-            (identity := known.get(str(file))) is not None and identity.is_of(file.stat())
-            for file in files
-        )
+        for file, label in files:
+            identity = known.get(str(file))
+            same = identity is not None and identity.is_of(file.stat())
+            if not same and sums.get(label) != sha256_of_file(file):
+                return False
     except OSError:
         return False
+    return True
