@@ -10,7 +10,9 @@ import numpy as np
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
+from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
@@ -224,7 +226,28 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "pass" if periods[fewest] >= limits["periods"] else "suspect"
         where, value = subject.segment_label(fewest), float(periods[fewest])
         results.append(Result(status, subject.friction_signal, text, value, "1", where))
-    return results
+    return [*results, *_periods_at_odds(subject, limits)]
+
+
+def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Tell of steady segments that oscillate, whose drops and spectrum tell different periods."""
+    slip = subject.slip
+    odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
+    odd &= slip["false_alarm_probability"].values < CHANCE
+    odd &= subject.friction["steady"].values == steadiness.STEADY
+    odd &= subject.oscillates_strongly(limits["strength"])
+    if not odd.any():
+        return []
+    first, count = int(np.flatnonzero(odd)[0]), int(odd.sum())
+    where = subject.segment_label(first)
+    said = str(slip["remark"].values[first])
+    text = (
+        f"no period of stick-slip is told in {Count(count):segment|segments}: in {where}, "
+        f"{said[said.index(AT_ODDS) :]}"
+    )
+    cure = "Slide further at this speed, or look at the strokes figure which of the two it is."
+    signal = subject.friction_signal or ""
+    return [Result("suspect", signal, text, where=where, count=count, cure=cure)]
 
 
 def _sampling(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

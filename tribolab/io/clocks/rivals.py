@@ -52,6 +52,16 @@ class Candidate(NamedTuple):
         sees_all = self.changes >= _ALL * other.changes
         return bool(sees_all and more > _MORE and likelihood > _DECISIVE)
 
+    def outdoes(self, other: Candidate) -> bool:
+        """Whether this one leaves less unexplained of as many changes of the motion.
+
+        >>> Candidate(0.0, 0.04, 90.0, 5).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        True
+        >>> Candidate(0.0, 0.04, 90.0, 3).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        False
+        """
+        return self.changes >= other.changes and self.unexplained < other.unexplained
+
 
 def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> list[Candidate]:
     """Fit the force by all that the motion does, around each of several shifts.

@@ -44,6 +44,7 @@ _PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit t
 _LOST = 10.0  # times the error by classes: starts that know less contradict one another
 _UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
 _WIDE = 300.0  # times the slowest speed
+_MOVED = 0.5  # of a stroke's duration, between classes and starts: then other shifts are tried
 _LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
 _HELD = 0.15  # least part of the square of the ways' difference that is in the error's
 _AGREE = 3.0  # standard deviations that two ways may lie apart
@@ -215,9 +216,23 @@ def _estimated(
     error = float(np.hypot(combined.uncertainty, part * stroke))
     estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
     estimate = estimate._replace(explained=fit.ratio(combined.shift))
+    if wide and abs(estimate.shift - shift) > _MOVED * stroke:
+        may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
+        return estimate._replace(refused=_doubt_of_moved(may, stroke))
     rivals = [rival for rival in may if rival is not chosen]
     doubt = _doubt(estimate, fit, coarse.half, stroke, chosen, rivals)
     return estimate._replace(refused=doubt)
+
+
+def _doubt_of_moved(may: list[Candidate], stroke: float) -> str:
+    """Say why the first of shifts, that starts moved far from what classes tell, may be wrong."""
+    for rival in may[1:]:
+        if rival.outdoes(may[0]) and abs(rival.shift - may[0].shift) > 0.5 * stroke:
+            return (
+                f"the slow strokes do not tell whether they are seen: {may[0].shift:.4g} s by the "
+                f"starts, but {rival.shift:.4g} s explains more"
+            )
+    return ""
 
 
 def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
