@@ -86,7 +86,7 @@ def estimate_clock_shift(
     expected: float = 0.0,
     dated: bool = False,
 ) -> ShiftEstimate | None:
-    """ShiftEstimate the shift between the clocks of a force log and a motion log.
+    """Estimate the shift between the clocks of a force log and a motion log.
 
     Parameters
     ----------
@@ -186,13 +186,14 @@ def _estimated(
     if estimate.shift != shift:
         ways["starts"] = Told(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
-    paced = motion_time + estimate.rate * (motion_time - middle)
     durations = np.diff(motion_time[changes(way)])
     stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
     ends = durations[[0, -1]]
     least = 5.0 * estimate.uncertainty
     near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
-    joint = told_by_motion(force_time, force, paced, motion, estimate.shift, near, least)
+    if estimate.rate != 0.0:
+        basis = Basis(motion_time + estimate.rate * (motion_time - middle), motion)
+    joint = told_by_motion(force_time, force, basis, estimate.shift, near, least)
     if weak and (joint is None or joint.unexplained > _CONSENT):
         return None
     if joint is not None:
