@@ -121,6 +121,12 @@ def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) ->
     direction = friction["direction"].values
     method = str(friction.attrs.get("offset", ""))
     both = all((direction[wrong] == d).any() for d in (1, -1))
+    if _speed_without_sign(subject) and not wrong[np.isfinite(values)].all():
+        return (
+            "The velocity is nowhere negative, the friction force is: the speed was recorded "
+            "without its sign. Name its column `set_speed` in the dialect, so that the force tells "
+            "the direction, or record the position."
+        )
     if not wrong[np.isfinite(values)].all():
         return (
             "Only some strokes are turned, so it is not the sign of a column: look at the zero "
@@ -142,6 +148,12 @@ def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) ->
         "The loop does not lie about zero: its offset is larger than friction. Look at the zero "
         "first; set `sign = -1` in the dialect only if the zero is right."
     )
+
+
+def _speed_without_sign(subject: RunSubject) -> bool:
+    """Whether the velocity never goes below zero, as that of a tachometer that knows no way."""
+    velocity = subject.signals.get("sliding_velocity")
+    return velocity is not None and not (velocity < 0).any()
 
 
 def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -284,7 +284,7 @@ def _doubt(
         return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - estimate.explained) + _ALMOST_NOTHING
     for rival in rivals:
-        if chosen.beats(rival):
+        if chosen.clears(rival):
             continue
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
