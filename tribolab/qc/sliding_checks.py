@@ -246,8 +246,9 @@ def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[R
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
     odd &= slip["false_alarm_probability"].values < CHANCE
-    odd &= subject.friction["steady"].values == steadiness.STEADY
-    odd &= subject.oscillates_strongly(limits["strength"])
+    if odd.any():
+        odd &= subject.friction["steady"].values == steadiness.STEADY
+        odd &= subject.oscillates_strongly(limits["strength"])
     if not odd.any():
         return []
     first, count = int(np.flatnonzero(odd)[0]), int(odd.sum())

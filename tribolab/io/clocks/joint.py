@@ -164,7 +164,7 @@ class Basis:
         """Way of the last motion, turning before a motion is seen, as far as the stage moves."""
         out = last.astype(float)
         starts = [k for k in self.events if way[k] != 0]
-        for k, after in zip(starts, [*starts[1:], len(way) - 1], strict=True):
+        for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):
             turn = way[k] - (last[k - 1] if k else 0)
             speed = np.abs(velocity[k : min(k + 9, after + 1)]).max(initial=0.0)
             begin = self.time[k] - length / max(speed, 1e-300)

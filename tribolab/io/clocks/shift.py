@@ -137,6 +137,8 @@ def _estimated(
         return None
     force = (force - force.mean()) / force.std()
     basis = Basis(motion_time, motion)
+    if not len(basis.begins):  # it moves from the first sample to the last, or ends moving
+        return None
     apart = APART * basis.stroke
     coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
     if coarse is None:
