@@ -111,10 +111,11 @@ def check_run(
     # of a signal's value
     of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
     for variable in subject.signals:
-        flags: dict[str, list[np.ndarray]] = {}
+        by_check: dict[str, list[np.ndarray]] = {}
         for check, values in (*_flags_on(results, variable), *of_time):
-            flags.setdefault(check.name, []).append(values)
-        flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
+            by_check.setdefault(check.name, []).append(values)
+        combined = {name: combine(found) for name, found in by_check.items()}
+        flagged = attach(flagged, variable, combined, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
