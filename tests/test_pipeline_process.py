@@ -344,7 +344,7 @@ def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, 
     def full(data, path, **options):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
-    monkeypatch.setattr("tribolab.io.netcdf.write_netcdf", full)
+    monkeypatch.setattr("tribolab.io.netcdf.write_groups", full)
     with pytest.raises(OutputError, match="disk is full"):
         process(load_campaign(original), tmp_path)
 

@@ -63,9 +63,17 @@ class Candidate(NamedTuple):
         >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 12))
         False
         """
-        more, likelihood = self._against(other)
-        ends_tell = other.changes < self.changes and more > _WORSE and likelihood > _SURE
+        ends_tell = other.changes < self.changes and self.surpasses(other)
         return bool(ends_tell or self.beats(other))
+
+    def surpasses(self, other: Candidate) -> bool:
+        """Whether this one is much likelier than another, if not as much as to be taken for it.
+
+        >>> Candidate(0.0, 0.06, 130.0, 12).surpasses(Candidate(1.7, 0.16, 67.0, 12))
+        True
+        """
+        more, likelihood = self._against(other)
+        return bool(more > _WORSE and likelihood > _SURE)
 
     def _against(self, other: Candidate) -> tuple[float, float]:
         """Tell how many times more another leaves unexplained, and the log likelihood ratio."""

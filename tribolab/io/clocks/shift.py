@@ -47,8 +47,10 @@ _WIDE = 300.0  # times the slowest speed
 _MOVED = 0.5  # of a stroke's duration, between classes and starts: then other shifts are tried
 _LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
 _HELD = 0.15  # least part of the square of the ways' difference that is in the error's
+_LATE = 0.06  # of a stroke's duration, that classes of speed may differ from the starts
 _AGREE = 3.0  # standard deviations that two ways may lie apart
 _RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
+_AS_WELL = 3.0  # times what the classes leave unexplained
 _AS_GOOD = 0.8  # nor explains less than this part of what the best does
 _PLACED = 0.1  # most that a fit leaves unexplained that tells the shift to half a stroke
 _DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
@@ -214,6 +216,11 @@ def _estimated(
         combined, part = _combined(ways[first], ways["motion"]), _PART
     elif "starts" in ways and _agree(ways["starts"], ways["classes"]):
         combined, part = ways["starts"], _PART
+    elif "starts" in ways and abs(ways["starts"].shift - ways["classes"].shift) < _LATE * stroke:
+        # where friction takes its time to follow the speed, classes of speed are late
+        late = 0.5 * (ways["starts"].shift - ways["classes"].shift)
+        error = float(np.hypot(ways["starts"].uncertainty, late))
+        combined, part = ways["starts"]._replace(uncertainty=error), _PART
     else:
         return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
@@ -291,7 +298,10 @@ def _doubt(
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
         as_good = 1.0 - ratio < left and ratio > _AS_GOOD * estimate.explained
-        as_good |= not np.isnan(chosen.unexplained + rival.unexplained)
+        # a fit that explains far less than the classes do says nothing against what they tell
+        fitted = chosen.unexplained < _AS_WELL * (1.0 - estimate.explained) + _ALMOST_NOTHING
+        fitted &= not np.isnan(rival.unexplained)
+        as_good |= fitted and not chosen.surpasses(rival)
         if abs(at - estimate.shift) > 0.5 * stroke and as_good:
             return f"the motion repeats: {estimate.shift:.4g} s and {at:.4g} s do equally well"
     return ""
