@@ -45,7 +45,7 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
     xarray reads back what it would have read had it written itself. What is rare in results
     (truth values, dates, a group that is there already) is left to it.
     """
-    waiting: list[tuple[netCDF4.Variable, np.ndarray]] = []
+    waiting: list[tuple[netCDF4.Variable[Any], np.ndarray]] = []
     left: dict[str | None, xr.Dataset] = {}
     for name, data in groups.items():
         fresh = name not in file.groups if name else not (file.variables or file.dimensions)
@@ -64,11 +64,13 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
         _by_xarray(file, name, data)
 
 
-def _define(target: netCDF4.Dataset, data: xr.Dataset) -> list[tuple[netCDF4.Variable, np.ndarray]]:
+def _define(
+    target: netCDF4.Dataset, data: xr.Dataset
+) -> list[tuple[netCDF4.Variable[Any], np.ndarray]]:
     variables, attrs = xr.conventions.encode_dataset_coordinates(data)
     target.setncatts(encoded(attrs))
     for dim, length in data.sizes.items():
-        target.createDimension(dim, length)
+        target.createDimension(str(dim), length)
     waiting = []
     for name, variable in variables.items():
         values = variable.values
@@ -128,8 +130,7 @@ def storage(values: np.ndarray) -> dict[str, Any]:
     layout: dict[str, Any] = {"chunksizes": tuple(min(n, CHUNK) for n in values.shape)}
     sample = _sample(values)
     plain, shuffled = (
-        len(zlib.compress(block, _COMPRESSION))
-        for block in (sample, np.ascontiguousarray(sample.T))
+        len(zlib.compress(block, _COMPRESSION)) for block in (sample.tobytes(), sample.T.tobytes())
     )
     if min(plain, shuffled) > _WORTH * sample.size:
         return layout

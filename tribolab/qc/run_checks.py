@@ -109,18 +109,26 @@ def check_run(
     flagged = run
     # what is wrong with the time is wrong with every signal; that the time is right says nothing
     # of a signal's value
-    of_time = [(check, _objections(r.flags)) for check, r in results if _on(r, "time")]
+    of_time = [
+        (check, _objections(of))
+        for check, result in results
+        if (of := _flags_of(result, "time")) is not None
+    ]
     for variable in subject.signals:
         flags: dict[str, list[np.ndarray]] = {}
-        own = [(check, r.flags) for check, r in results if _on(r, variable)]
+        own = [
+            (check, of)
+            for check, result in results
+            if (of := _flags_of(result, variable)) is not None
+        ]
         for check, values in (*own, *of_time):
             flags.setdefault(check.name, []).append(values)
         flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
-def _on(result: Result, variable: str) -> bool:
-    return result.flags is not None and result.variable == variable
+def _flags_of(result: Result, variable: str) -> np.ndarray | None:
+    return result.flags if result.variable == variable else None
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:
