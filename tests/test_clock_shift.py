@@ -122,6 +122,15 @@ def test_a_force_that_does_not_follow_the_motion_tells_nothing(kind, seed):
     assert estimate_clock_shift(time, forces[kind], shown, velocity) is None
 
 
+def test_one_slide_that_is_longer_than_the_motion_log_tells_nothing():
+    """Speeds change, but the table neither starts nor stops nor turns within the log."""
+    time = np.arange(0.0, 60.0, 0.01)
+    speed = np.where(time < 30, 1e-3, 5e-3)
+    force = 3 + np.log10(speed) + 0.01 * np.random.default_rng(0).standard_normal(len(time))
+    inner = slice(300, -300)
+    assert estimate_clock_shift(time, force, time[inner] - 3.0, speed[inner]) is None
+
+
 def test_a_table_that_does_not_move_tells_nothing():
     time, force, shown, velocity = logs()
     assert estimate_clock_shift(time, force, shown, np.zeros_like(velocity)) is None

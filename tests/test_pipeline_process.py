@@ -242,7 +242,7 @@ def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_p
     damaged.unlink()  # not the file of `done`, which it is a link to
     damaged.write_bytes(content[: len(content) // 2])
     assert reused(again(campaign, first, tmp_path / "second")) == [RUNS[0], *RUNS[2:]]
-    monkeypatch.setattr(tribolab, "__version__", "9.9.9")
+    monkeypatch.setattr("tribolab.version.__version__", "9.9.9")
     assert reused(again(campaign, first, tmp_path / "third")) == []
 
 

@@ -278,3 +278,49 @@ def test_checks_and_results_tell_the_same_periods_whatever_drifts():
         else:
             assert rows["distance"]["value"] == slip["periods"].item()
             assert rows["sampling"]["value"] == pytest.approx(100 / 0.7, rel=0.02)
+
+
+def test_distance_tells_that_drops_and_spectrum_are_at_odds():
+    """Only of a segment that is steady and oscillates strongly, by a line that is no chance."""
+    t = 0.01 * np.arange(4000)
+    rng = np.random.default_rng(2)
+    wave = 0.05 * np.sin(2 * np.pi * 0.5 * t)
+    data = {
+        "friction_coefficient": ("time", 0.5 + wave + 0.002 * rng.standard_normal(t.size)),
+        "sliding_velocity": ("time", np.full(t.size, 1e-4)),
+    }
+    run = stamp(xr.Dataset(data, {"time": t}))
+    segments = find_segments(run)
+    slip = stick_slip(run, segments)
+    odd = "not decided: the spectrum tells a period of 2 s, the drops are 5 s apart"
+    said = slip.assign(remark=("segment", np.array([odd], dtype=object)))
+    chance = said.assign(false_alarm_probability=("segment", [0.5]))
+    doubts = {
+        name: [
+            row["message"]
+            for row in check_run(run, segments, slip=found).rows
+            if row["check"] == "distance" and row["status"] == "suspect"
+        ]
+        for name, found in (("as it is", slip), ("at odds", said), ("by chance", chance))
+    }
+    assert len(doubts["at odds"]) == 1
+    assert "no period of stick-slip is told in 1 segment" in doubts["at odds"][0]
+    assert doubts["as it is"] == doubts["by chance"] == []
+
+
+def test_a_speed_without_sign_beside_a_signed_force_is_told_with_what_to_state():
+    rng = np.random.default_rng(0)
+    t = 0.02 * np.arange(4000)
+    way = np.select([t % 20 < 8, (t % 20 >= 10) & (t % 20 < 18)], [1.0, -1.0])
+    data = {
+        "friction_force": ("time", 5 * way + 0.3 + 0.02 * rng.standard_normal(t.size)),
+        "normal_force": ("time", 10 + 0.01 * rng.standard_normal(t.size)),
+        "sliding_velocity": ("time", 1e-3 * np.abs(way)),
+    }
+    run = stamp(xr.Dataset(data, {"time": t}))
+    told = [row for row in check_run(run).rows if row["check"] == "friction_sign"]
+    assert told[0]["status"] == "fail"
+    assert "Name its column `set_speed` in the dialect" in told[0]["cure"]
+    # and that is right: the force tells the direction, and the loop its zero
+    stated = check_run(run.rename(sliding_velocity="set_speed"))
+    assert stated.status == "pass"

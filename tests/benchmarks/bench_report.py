@@ -7,7 +7,7 @@ as asked for, and opens the page in headless Chromium:
 
 Prints, for each number of runs, how large the page is and what of it are finer traces, how long
 until it had loaded and was painted (the best of three), and how long sorting, searching and opening
-a run took. The time of drawing every run's figures is not in it.
+a run took.
 """
 
 import json
@@ -15,17 +15,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-from markupsafe import Markup
-
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from chromium import chromium  # noqa: E402 - after its folder is known
 
 from tribolab import rig  # noqa: E402 - as above
 from tribolab.app.run import run_campaign  # noqa: E402 - as above
-from tribolab.io.netcdf import read_netcdf  # noqa: E402 - as above
-from tribolab.records.traces import as_text, finer_trace, trace, trace_size  # noqa: E402 - as above
-from tribolab.report.page import PageTrace, write_page  # noqa: E402 - as above
+from tribolab.io.netcdf import read_groups  # noqa: E402 - as above
+from tribolab.records.traces import page_trace, trace_size  # noqa: E402 - as above
+from tribolab.report.page import write_page  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("
@@ -47,17 +45,22 @@ def repeated(document, count):
     return document | {"runs": runs, "findings": findings, "sources": sources}
 
 
+class Traces(dict):
+    """The traces of the document's runs, by name, as a catalogue gives them."""
+
+    def trace(self, kind, name):
+        """Return the trace of a run."""
+        return self[name]
+
+
 def traces(document, outcome, count):
     """Return the traces of the document's runs, with what so many runs may have."""
-    points, size = trace_size(count)
     packed = []
-    for number, run in enumerate(outcome.runs):
-        groups = ("run", "segments", "friction")
-        data = [read_netcdf(outcome.folder / run.data_file, group=group) for group in groups]
-        fine = Markup(finer_trace(*data, points, size))
-        packed.append(PageTrace(str(number), Markup(as_text(trace(*data, points))), fine))
+    for run in outcome.runs:
+        groups = read_groups(outcome.folder / run.data_file, ("run", "segments", "friction"))
+        packed.append(page_trace(*groups.values(), *trace_size(count)))
     runs = document["runs"]
-    return {run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)}
+    return Traces({run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)})
 
 
 def measure(page_file, profile):
@@ -99,7 +102,7 @@ def main(counts):
             many = repeated(document, count)
             chosen = traces(many, outcome, count)
             fine = sum(len(one.fine) for one in chosen.values()) / 1e6
-            write_page(many, folder, chosen)
+            write_page(many, folder, lambda many=many: iter(many["runs"]), chosen)
             size = (folder / "report.html").stat().st_size / 1e6
             load, spent = measure(folder / "report.html", place / f"profile{count}")
             acts = ", ".join(f"{name} {took:.2f} s" for name, took in spent.items())

@@ -60,7 +60,7 @@ class Checked:
     """
 
     files: tuple[Path, ...]
-    rows: tuple[dict[str, Any], ...] = ()
+    rows: tuple[FindingRow, ...] = ()
     status: str = "unreadable"
     summary: str = ""
     error: str = ""

@@ -13,7 +13,6 @@ from tribolab.campaign.executor import workers
 from tribolab.campaign.ledger import Ledger
 from tribolab.campaign.load import load_and_plan
 from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.pipeline import process
 from tribolab.campaign.plan import inputs_of, planned_runs
 from tribolab.campaign.staging import resolved, staged
 from tribolab.campaign.store import Catalogue
@@ -92,8 +91,6 @@ def run_campaign(
     >>> made, [(run.name, run.segments, run.quality) for run in outcome.runs]
     (True, [('sb-s_dry_31N_01', 4, 'pass')])
     """
-    from tribolab.report.results import write_report
-
     which = wanted(figures)
     if isinstance(path_or_campaign, Campaign):
         campaign, runs = path_or_campaign, planned_runs(path_or_campaign)
@@ -107,6 +104,10 @@ def run_campaign(
     known = unchanged(campaign, runs, place, options, verify=verify)
     if known is not None:
         return known
+    # imported only now: where nothing has changed, nobody waits for it
+    from tribolab.campaign.pipeline import process
+    from tribolab.report.results import write_report
+
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
         with given as pool:

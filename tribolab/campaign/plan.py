@@ -96,8 +96,14 @@ def plan(campaign: Campaign) -> Plan:
     if problems:
         return Plan((), problems)
     names = unique_names([files for _, files in groups])
+    settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
     runs = tuple(
-        _planned(campaign, entry, files, name)
+        PlannedRun(
+            name=name,
+            files=tuple(files),
+            labels=tuple(label_of(campaign, file) for file in files),
+            **settings[id(entry)],
+        )
         for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
@@ -220,7 +226,8 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     return group_files(files, instrument)
 
 
-def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) -> PlannedRun:
+def _settings(campaign: Campaign, entry: RunEntry) -> dict[str, Any]:
+    """Return what all runs of an entry share, with its checksum."""
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
     settings: dict[str, Any] = {
         "surface": entry.surface or "",
@@ -237,14 +244,7 @@ def _planned(campaign: Campaign, entry: RunEntry, files: list[Path], name: str) 
         "dialect": instrument and sha256_of_dialect(instrument),
         "cycles": entry.cycles,
     }
-    return PlannedRun(
-        name=name,
-        files=tuple(files),
-        labels=tuple(label_of(campaign, file) for file in files),
-        instrument=instrument,
-        config_sha256=sha256_of(shaping),
-        **settings,
-    )
+    return settings | {"instrument": instrument, "config_sha256": sha256_of(shaping)}
 
 
 def sha256_of_dialect(instrument: str) -> str:

@@ -11,6 +11,13 @@ white noise is weighed by how well it describes the record (level and size integ
 The standard error is no less than a third of the distance that the level exceeds with a chance of
 0.6 %: where only the record tells how long its memory is, three errors hold 99 % and more.
 
+What lies beneath white noise tells little of itself. Over 1000 records of 400 samples each, with a
+memory (AR(1)) of 1, 2, 5, 8, 15, 30 % of the record, the truth was beyond three errors in 0.2, 0,
+0, 0.1, 0, 0.2 %; beneath white noise twice as strong as the wander in 0.3, 0.4, 0.4, 0.7, 1.5,
+3.9 %. There a record that stays on one side of its true mean looks like white noise without memory;
+an error that held it would be twice as wide on every calm record (`CALM` 0.2: 1.8 %, and 1.9
+times). Strokes that are repeated show it, one alone does not.
+
 References
 ----------
 .. [1] Box and Jenkins (1976), Time Series Analysis, Holden-Day; the integrals over level and

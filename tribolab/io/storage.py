@@ -130,7 +130,7 @@ def storage(values: np.ndarray) -> dict[str, Any]:
     layout: dict[str, Any] = {"chunksizes": tuple(min(n, CHUNK) for n in values.shape)}
     sample = _sample(values)
     plain, shuffled = (
-        len(zlib.compress(block, _COMPRESSION)) for block in (sample.tobytes(), sample.T.tobytes())
+        len(zlib.compress(block.tobytes(), _COMPRESSION)) for block in (sample, sample.T)
     )
     if min(plain, shuffled) > _WORTH * sample.size:
         return layout

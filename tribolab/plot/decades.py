@@ -6,13 +6,16 @@ decades that is most of the time of a figure.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any, cast
+
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.artist import Artist
-from matplotlib.axis import Axis
+from matplotlib.axis import Axis, XAxis
 from matplotlib.backend_bases import RendererBase
 from matplotlib.lines import Line2D
-from matplotlib.markers import TICKDOWN, TICKLEFT, TICKRIGHT, TICKUP
+from matplotlib.markers import TICKDOWN, TICKLEFT, TICKRIGHT, TICKUP, MarkerStyle
 from matplotlib.ticker import FuncFormatter, Locator, LogLocator, NullFormatter, NullLocator
 
 from tribolab.words import number
@@ -69,17 +72,24 @@ class SmallTicks(Artist):
         super().__init__()
         self.axis, self.locator = axis, locator
         locator.set_axis(axis)
-        self.name = axis.axis_name
+        across = isinstance(axis, XAxis)
+        self.name = "x" if across else "y"
+        rc: Mapping[str, Any] = cast("Mapping[str, Any]", rcParams)
         key = f"{self.name}tick"
-        look = {
-            "linestyle": "none",
-            "color": rcParams[f"{key}.color"],
-            "markersize": rcParams[f"{key}.minor.size"],
-            "markeredgewidth": rcParams[f"{key}.minor.width"],
-        }
-        far = rcParams["xtick.top" if self.name == "x" else "ytick.right"]
-        inward = (TICKUP, TICKDOWN) if self.name == "x" else (TICKRIGHT, TICKLEFT)
-        self.marks = [Line2D([], [], marker=mark, **look) for mark in inward[: 1 + far]]
+        far = rc["xtick.top" if across else "ytick.right"]
+        inward = (TICKUP, TICKDOWN) if across else (TICKRIGHT, TICKLEFT)
+        self.marks = [
+            Line2D(
+                [],
+                [],
+                marker=MarkerStyle(mark),
+                linestyle="none",
+                color=rc[f"{key}.color"],
+                markersize=rc[f"{key}.minor.size"],
+                markeredgewidth=rc[f"{key}.minor.width"],
+            )
+            for mark in inward[: 1 + far]
+        ]
         self.set_zorder(axis.get_zorder())
 
     def draw(self, renderer: RendererBase) -> None:
@@ -95,6 +105,6 @@ class SmallTicks(Artist):
             edges = np.full(places.size, float(edge))
             mark.set_data(*((places, edges) if self.name == "x" else (edges, places)))
             mark.set_transform(across)
-            mark.set_figure(self.get_figure(root=False))
+            mark.set_figure(axes.figure)
             mark.draw(renderer)
         self.stale = False

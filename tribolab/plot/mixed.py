@@ -12,7 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.plot.decades import few_ticks
-from tribolab.plot.frame import colours, legend_above, logarithmic, shaded_band, single_axes
+from tribolab.plot.frame import (
+    colours,
+    legend_above,
+    logarithmic,
+    shaded_band,
+    single_axes,
+)
 from tribolab.plot.labels import column, label, plain
 from tribolab.plot.style import (
     BLACK,

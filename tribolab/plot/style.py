@@ -296,12 +296,12 @@ def _formulas_set_once() -> Iterator[None]:
 
     Every renderer has a parser of its own, whose memory goes with it.
     """
-    own = textpath.MathTextParser
-    textpath.MathTextParser = lambda output: _FORMULAS
+    own = vars(textpath)["MathTextParser"]
+    vars(textpath)["MathTextParser"] = lambda output: _FORMULAS
     try:
         yield
     finally:
-        textpath.MathTextParser = own
+        vars(textpath)["MathTextParser"] = own
 
 
 def svg(figure: Figure) -> str:

@@ -109,26 +109,20 @@ def check_run(
     flagged = run
     # what is wrong with the time is wrong with every signal; that the time is right says nothing
     # of a signal's value
-    of_time = [
-        (check, _objections(of))
-        for check, result in results
-        if (of := _flags_of(result, "time")) is not None
-    ]
+    of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
     for variable in subject.signals:
-        flags: dict[str, list[np.ndarray]] = {}
-        own = [
-            (check, of)
-            for check, result in results
-            if (of := _flags_of(result, variable)) is not None
-        ]
-        for check, values in (*own, *of_time):
-            flags.setdefault(check.name, []).append(values)
-        flagged = attach(flagged, variable, {n: combine(v) for n, v in flags.items()}, bits)
+        by_check: dict[str, list[np.ndarray]] = {}
+        for check, values in (*_flags_on(results, variable), *of_time):
+            by_check.setdefault(check.name, []).append(values)
+        combined = {name: combine(found) for name, found in by_check.items()}
+        flagged = attach(flagged, variable, combined, bits)
     return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
 
 
-def _flags_of(result: Result, variable: str) -> np.ndarray | None:
-    return result.flags if result.variable == variable else None
+def _flags_on(
+    results: tuple[tuple[Check, Result], ...], variable: str
+) -> list[tuple[Check, np.ndarray]]:
+    return [(c, r.flags) for c, r in results if r.flags is not None and r.variable == variable]
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:

@@ -10,7 +10,9 @@ import numpy as np
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
+from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
 from tribolab.qc.per_segment import by_segment, status_of
@@ -119,6 +121,12 @@ def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) ->
     direction = friction["direction"].values
     method = str(friction.attrs.get("offset", ""))
     both = all((direction[wrong] == d).any() for d in (1, -1))
+    if _speed_without_sign(subject) and not wrong[np.isfinite(values)].all():
+        return (
+            "The velocity is nowhere negative, the friction force is: the speed was recorded "
+            "without its sign. Name its column `set_speed` in the dialect, so that the force tells "
+            "the direction, or record the position."
+        )
     if not wrong[np.isfinite(values)].all():
         return (
             "Only some strokes are turned, so it is not the sign of a column: look at the zero "
@@ -140,6 +148,12 @@ def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) ->
         "The loop does not lie about zero: its offset is larger than friction. Look at the zero "
         "first; set `sign = -1` in the dialect only if the zero is right."
     )
+
+
+def _speed_without_sign(subject: RunSubject) -> bool:
+    """Whether the velocity never goes below zero, as that of a tachometer that knows no way."""
+    velocity = subject.signals.get("sliding_velocity")
+    return velocity is not None and not (velocity < 0).any()
 
 
 def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -224,7 +238,29 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "pass" if periods[fewest] >= limits["periods"] else "suspect"
         where, value = subject.segment_label(fewest), float(periods[fewest])
         results.append(Result(status, subject.friction_signal, text, value, "1", where))
-    return results
+    return [*results, *_periods_at_odds(subject, limits)]
+
+
+def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Tell of steady segments that oscillate, whose drops and spectrum tell different periods."""
+    slip = subject.slip
+    odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
+    odd &= slip["false_alarm_probability"].values < CHANCE
+    if odd.any():
+        odd &= subject.friction["steady"].values == steadiness.STEADY
+        odd &= subject.oscillates_strongly(limits["strength"])
+    if not odd.any():
+        return []
+    first, count = int(np.flatnonzero(odd)[0]), int(odd.sum())
+    where = subject.segment_label(first)
+    said = str(slip["remark"].values[first])
+    text = (
+        f"no period of stick-slip is told in {Count(count):segment|segments}: in {where}, "
+        f"{said[said.index(AT_ODDS) :]}"
+    )
+    cure = "Slide further at this speed, or look at the strokes figure which of the two it is."
+    signal = subject.friction_signal or ""
+    return [Result("suspect", signal, text, where=where, count=count, cure=cure)]
 
 
 def _sampling(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -240,12 +240,14 @@ class RunSubject:
         least
             Least standard deviation, relative to the run's typical friction, that matters.
         """
+        return np.where(self.oscillates_strongly(least), self.slip["periods"].values, np.nan)
+
+    def oscillates_strongly(self, least: float) -> np.ndarray:
+        """Tell where friction varies in a segment by more than a part of the typical friction."""
         name = self.friction_signal
         if name is None:
             raise Skip("no friction was recorded")
-        periods = self.slip["periods"].values
-        strong = self.segment_stds(name) > least * self.typical_friction
-        return np.where(strong, periods, np.nan)
+        return self.segment_stds(name) > least * self.typical_friction
 
     @cached_property
     def lines(self) -> list[Line]:

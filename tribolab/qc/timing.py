@@ -211,9 +211,9 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
         return np.zeros(0, dtype=int)
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
-    for first, last in pieces(0, blocks, max(1, PIECE // stretch)):
-        interval = np.diff(time[first * stretch : last * stretch + 1])
-        level[first:last] = np.median(interval.reshape(-1, stretch), axis=1)
+    for begin, end in pieces(0, blocks, max(1, PIECE // stretch)):
+        interval = np.diff(time[begin * stretch : end * stretch + 1])
+        level[begin:end] = np.median(interval.reshape(-1, stretch), axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
     # the block that holds the change may have any median: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)

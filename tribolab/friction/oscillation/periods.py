@@ -13,6 +13,7 @@ from tribolab.friction.oscillation.regularity import IRREGULAR, KINDS, Regularit
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, most_probable
 
+AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell another one
 ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
 _AGREE = 0.15  # drops and spectrum agree on the period to this
 _LOOSE = 0.6  # natural log; the mean over a broad spectrum is not the mean distance between drops
@@ -122,8 +123,7 @@ def period_verdict(
         return _withheld(f"the strongest line stands where the mains hums ({hum[0]})")
     if odd and not several:
         return _withheld(
-            f"the spectrum tells a period of {1 / frequency:.3g} s, the drops are "
-            f"{periods.mean():.3g} s apart"
+            f"{AT_ODDS} of {1 / frequency:.3g} s, the drops are {periods.mean():.3g} s apart"
         )
     if count < CYCLES:
         # a wander has a "period" as well; it counts where one wave is nearly all there is

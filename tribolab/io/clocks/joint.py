@@ -86,7 +86,7 @@ class Basis:
     """Functions of the motion that make up the force, on the motion log's clock."""
 
     def __init__(self, time: Array, motion: Motion):
-        self.time = time
+        self.time, self.averaged = time, motion.averaged
         way = motion.way
         change = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
         path = _path(time, motion.velocity)
@@ -164,7 +164,7 @@ class Basis:
         """Way of the last motion, turning before a motion is seen, as far as the stage moves."""
         out = last.astype(float)
         starts = [k for k in self.events if way[k] != 0]
-        for k, after in zip(starts, [*starts[1:], len(way) - 1], strict=True):
+        for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):
             turn = way[k] - (last[k - 1] if k else 0)
             speed = np.abs(velocity[k : min(k + 9, after + 1)]).max(initial=0.0)
             begin = self.time[k] - length / max(speed, 1e-300)
@@ -215,8 +215,7 @@ def play(position: Array, half: float) -> Array:
 def told_by_motion(
     force_time: Array,
     force: Array,
-    motion_time: Array,
-    motion: Motion,
+    basis: Basis,
     shift: float,
     span: float,
     least: float = 0.0,
@@ -227,8 +226,8 @@ def told_by_motion(
     ----------
     force_time, force
         Force log: its own clock [s] and the friction force.
-    motion_time, motion
-        Motion log: its clock [s] and what it shows.
+    basis
+        What the motion log shows, on its clock.
     shift, span
         Where to begin, and how far on either side of it to look [s]: no further than half of a
         fast stroke, but for at least `least` [s].
@@ -238,15 +237,14 @@ def told_by_motion(
     Joint or None
         None if too few samples lie around the changes of the motion, or nothing is explained.
     """
-    basis = Basis(motion_time, motion)
     period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
     answers = joint_fit(force_time, force, basis, shift, span, period)
     if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
         return None
     mean, error = mixture(answers)
-    least = float(np.hypot(0.5 * period, 0.2 * motion.averaged))
-    when = float(motion_time[basis.events].mean())
+    least = float(np.hypot(0.5 * period, 0.2 * basis.averaged))
+    when = float(basis.time[basis.events].mean())
     return Joint(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
 
 

@@ -2,7 +2,8 @@
 
 A velocity reads a little more than zero at rest: noise of a tachometer, steps of an encoder. It is
 averaged over as few samples as bring that noise below a fiftieth of the fastest speed; what still
-lies within the noise, or leads nowhere, is rest.
+lies within the noise, or leads nowhere, is rest. A stroke so slow that an encoder counts only now
+and then is a stroke: between two counts it moves at the speed that they tell.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ _BLOCK = 16  # samples, in which noise is looked at
 _NOWHERE = 3e-4  # of the longest way in one go: what is shorter is noise at rest
 _QUIETEST = 3.0  # percentile of the noise in blocks that is taken for that at rest
 _FEW = 1.5  # times the changes of the motion: more are those of noise
+_EVEN = 3.0  # times the time between two counts, that the next two may be apart in one stroke
+_COUNTS = 8  # at least, that make a stroke
 _TOP = 99.0  # percentile of the speed that is called the fastest
 
 
@@ -50,6 +53,7 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     ([0], [1])
     """
     path = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (velocity[1:] + velocity[:-1]))])
+    velocity = _between_counts(time, velocity, path)
     half, smooth = 0, velocity
     noise = _noise(velocity, 1)
     while noise > _QUIET * _fastest(smooth) and half < min(_WIDEST, len(time) // 64):
@@ -66,6 +70,37 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
         return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))
     return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
+
+
+def _between_counts(time: Array, velocity: Array, path: Array) -> Array:
+    """Give the time between an encoder's counts the speed that they tell.
+
+    Counts follow each other one way, evenly: those of a table that trembles at rest turn back, and
+    the rest between two strokes lasts longer than what lies between two counts.
+    """
+    way = _way(velocity, 0.0)  # without the dust of rounding
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
+    first, last = edges[:-1][way[edges[:-1]] != 0], edges[1:][way[edges[:-1]] != 0]
+    if len(first) < _COUNTS:
+        return velocity
+    at = 0.5 * (time[first] + time[last - 1])
+    gap = np.diff(at)
+    usual = np.minimum(np.append(gap[1:], np.inf), np.concatenate([[np.inf], gap[:-1]]))
+    bridged = (way[first[1:]] == way[first[:-1]]) & (first[1:] > last[:-1])
+    bridged &= gap < _EVEN * usual
+    # as many of them in a row as make a stroke
+    number = np.concatenate([[0], np.cumsum(~bridged)])
+    bridged &= np.bincount(number)[number[1:]] >= _COUNTS
+    out, between = velocity.copy(), np.append(bridged, False)
+    inside = np.repeat(between, np.diff(np.append(first, len(way))))
+    begun = np.flatnonzero(between)
+    if not len(begun):
+        return velocity
+    middles = np.interp(at, time, path)
+    speed = np.diff(middles) / gap
+    rows = np.arange(first[0], len(way))[inside]
+    out[rows] = speed[np.searchsorted(first, rows, side="right") - 1]
+    return out
 
 
 def _fastest(velocity: Array) -> float:

@@ -23,6 +23,7 @@ _SPAN = 0.3  # of it, in which each is fitted
 _ALL = 0.8  # of a rival's changes of the motion have to lie in the force log, or it is not beaten
 _DECISIVE = 6.0  # log likelihood ratio
 _MORE = 4.0  # times as much unexplained, as no model is quite right
+_SURE, _WORSE = 30.0, 2.0  # the same, for one that explains fewer changes, and those worse
 
 
 class Candidate(NamedTuple):
@@ -47,10 +48,40 @@ class Candidate(NamedTuple):
         >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.05, 80.0, 7))
         False
         """
-        more = other.unexplained / max(self.unexplained, 1e-12)
-        likelihood = 0.5 * min(self.freedom, other.freedom) * np.log(max(more, 1e-12))
+        more, likelihood = self._against(other)
         sees_all = self.changes >= _ALL * other.changes
         return bool(sees_all and more > _MORE and likelihood > _DECISIVE)
+
+    def clears(self, other: Candidate) -> bool:
+        """Whether another one, not chosen, leaves no doubt about this one.
+
+        It does not if it is beaten, nor if it is worse though fewer changes lie in the force log:
+        where the record begins and ends tells the two apart.
+
+        >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 10))
+        True
+        >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 12))
+        False
+        """
+        more, likelihood = self._against(other)
+        ends_tell = other.changes < self.changes and more > _WORSE and likelihood > _SURE
+        return bool(ends_tell or self.beats(other))
+
+    def _against(self, other: Candidate) -> tuple[float, float]:
+        """Tell how many times more another leaves unexplained, and the log likelihood ratio."""
+        more = other.unexplained / max(self.unexplained, 1e-12)
+        freedom = min(self.freedom, other.freedom)
+        return more, 0.5 * freedom * float(np.log(max(more, 1e-12)))
+
+    def outdoes(self, other: Candidate) -> bool:
+        """Whether this one leaves less unexplained of as many changes of the motion.
+
+        >>> Candidate(0.0, 0.04, 90.0, 5).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        True
+        >>> Candidate(0.0, 0.04, 90.0, 3).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        False
+        """
+        return self.changes >= other.changes and self.unexplained < other.unexplained
 
 
 def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> list[Candidate]:

@@ -44,6 +44,7 @@ _PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit t
 _LOST = 10.0  # times the error by classes: starts that know less contradict one another
 _UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
 _WIDE = 300.0  # times the slowest speed
+_MOVED = 0.5  # of a stroke's duration, between classes and starts: then other shifts are tried
 _LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
 _HELD = 0.15  # least part of the square of the ways' difference that is in the error's
 _AGREE = 3.0  # standard deviations that two ways may lie apart
@@ -85,7 +86,7 @@ def estimate_clock_shift(
     expected: float = 0.0,
     dated: bool = False,
 ) -> ShiftEstimate | None:
-    """ShiftEstimate the shift between the clocks of a force log and a motion log.
+    """Estimate the shift between the clocks of a force log and a motion log.
 
     Parameters
     ----------
@@ -136,6 +137,8 @@ def _estimated(
         return None
     force = (force - force.mean()) / force.std()
     basis = Basis(motion_time, motion)
+    if not len(basis.begins):  # it moves from the first sample to the last, or ends moving
+        return None
     apart = APART * basis.stroke
     coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
     if coarse is None:
@@ -185,13 +188,14 @@ def _estimated(
     if estimate.shift != shift:
         ways["starts"] = Told(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
-    paced = motion_time + estimate.rate * (motion_time - middle)
     durations = np.diff(motion_time[changes(way)])
     stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
     ends = durations[[0, -1]]
     least = 5.0 * estimate.uncertainty
     near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))
-    joint = told_by_motion(force_time, force, paced, motion, estimate.shift, near, least)
+    if estimate.rate != 0.0:
+        basis = Basis(motion_time + estimate.rate * (motion_time - middle), motion)
+    joint = told_by_motion(force_time, force, basis, estimate.shift, near, least)
     if weak and (joint is None or joint.unexplained > _CONSENT):
         return None
     if joint is not None:
@@ -215,9 +219,23 @@ def _estimated(
     error = float(np.hypot(combined.uncertainty, part * stroke))
     estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
     estimate = estimate._replace(explained=fit.ratio(combined.shift))
+    if wide and abs(estimate.shift - shift) > _MOVED * stroke:
+        may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
+        return estimate._replace(refused=_doubt_of_moved(may, stroke))
     rivals = [rival for rival in may if rival is not chosen]
     doubt = _doubt(estimate, fit, coarse.half, stroke, chosen, rivals)
     return estimate._replace(refused=doubt)
+
+
+def _doubt_of_moved(may: list[Candidate], stroke: float) -> str:
+    """Say why the first of shifts, that starts moved far from what classes tell, may be wrong."""
+    for rival in may[1:]:
+        if rival.outdoes(may[0]) and abs(rival.shift - may[0].shift) > 0.5 * stroke:
+            return (
+                f"the slow strokes do not tell whether they are seen: {may[0].shift:.4g} s by the "
+                f"starts, but {rival.shift:.4g} s explains more"
+            )
+    return ""
 
 
 def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
@@ -268,7 +286,7 @@ def _doubt(
         return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
     left = _RIVAL * (1.0 - estimate.explained) + _ALMOST_NOTHING
     for rival in rivals:
-        if chosen.beats(rival):
+        if chosen.clears(rival):
             continue
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)

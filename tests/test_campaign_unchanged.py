@@ -1,0 +1,123 @@
+"""Nothing is done where nothing changed, changes are noticed, and failures that may end retried."""
+
+import os
+import time
+from dataclasses import replace
+
+import pytest
+from campaigns import RUNS, copied, fingerprint, simulated
+
+from tribolab.app.run import run_campaign
+from tribolab.campaign import runs as runs_module
+from tribolab.campaign.load import load_and_plan
+from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.store import Store
+from tribolab.campaign.unchanged import note, unchanged
+from tribolab.records.parts import CurveOutcome, RunOutcome
+
+OPTIONS = {"figures": "none", "pdf": False}
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    """A campaign of two runs that were recorded some time ago; not to be changed."""
+    file = simulated(tmp_path_factory.mktemp("unchanged"), repeats=1)
+    for path in (file.parent / "raw").rglob("*.csv"):
+        os.utime(path, (time.time() - 60,) * 2)
+    return file
+
+
+@pytest.fixture
+def campaign(original, tmp_path):
+    return copied(original, tmp_path)
+
+
+def run(campaign, **options):
+    return run_campaign(campaign, jobs=1, **({"figures": "none"} | options))
+
+
+def refuse(*given, **more):
+    raise AssertionError("work was done")
+
+
+@pytest.mark.slow
+def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouched(
+    campaign, monkeypatch
+):
+    first = run(campaign)
+    before, folder = fingerprint(first.folder), first.folder.stat()
+    with monkeypatch.context() as guarded:
+        for name in ("process", "write_report"):
+            place = "app.run" if name == "process" else "report.results"
+            guarded.setattr(f"tribolab.{place}.{name}", refuse)
+        guarded.setattr("tribolab.campaign.store.sha256_of_file", refuse)
+        guarded.setattr("tribolab.io.netcdf.read_netcdf", refuse)
+        again = run(campaign, finish=refuse)
+    assert fingerprint(first.folder) == before and first.folder.stat() == folder
+    assert again.runs == tuple(replace(run, reused=True) for run in first.runs)
+    assert (again.curves, again.sources) == (first.curves, first.sources)
+    assert [s.name for s in again.surfaces] == [s.name for s in first.surfaces]
+    assert run(campaign, verify=True).runs == again.runs  # each read anew, to the same end
+
+    # everything that may change is noticed
+    assert unchanged(*load_and_plan(campaign), first.folder, OPTIONS)
+    assert not unchanged(*load_and_plan(campaign), first.folder, OPTIONS | {"pdf": True})
+    (first.folder / "tables/friction.csv").write_text("mine")
+    assert not unchanged(*load_and_plan(campaign), first.folder, OPTIONS)
+    run(campaign)
+    [mine] = fingerprint(first.folder).keys() - before.keys()
+    assert mine.startswith("tables/friction.changed-") and before.keys() < {
+        *fingerprint(first.folder)
+    }
+    raw = campaign.parent / f"raw/friction/{RUNS[0]}_force.csv"
+    state = raw.stat()
+    raw.write_bytes(raw.read_bytes().replace(b"1", b"2", 1))
+    os.utime(raw, ns=(state.st_atime_ns, state.st_mtime_ns + 1))  # as long, a nanosecond later
+    assert not unchanged(*load_and_plan(campaign), first.folder, OPTIONS)
+    assert [one.reused for one in run(campaign).runs] == [False, True]
+
+
+@pytest.mark.slow
+def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
+    campaign, monkeypatch
+):
+    bad = campaign.parent / f"raw/friction/{RUNS[0]}_force.csv"
+    bad.write_text("Lunch is at noon.\n")
+    os.utime(bad, (time.time() - 60,) * 2)
+    assert [one.error for one in run(campaign).failed] == ["ReadError"]
+    with monkeypatch.context() as guarded:
+        guarded.setattr("tribolab.app.run.process", refuse)
+        assert [one.error for one in run(campaign).failed] == ["ReadError"]
+
+    analyse = runs_module._analyse
+
+    def out_of_memory(task):
+        raise MemoryError("for now")
+
+    monkeypatch.setattr(runs_module, "_analyse", out_of_memory)
+    campaign.write_text(campaign.read_text("utf-8").replace("trim = 0.10", "trim = 0.12"), "utf-8")
+    assert "MemoryError" in {one.error for one in run(campaign).failed} | {
+        one.kept and "MemoryError" for one in run(campaign).runs
+    }
+    monkeypatch.setattr(runs_module, "_analyse", analyse)
+    done = run(campaign)
+    assert [(one.name, one.kept) for one in done.runs if one.done] == [(RUNS[2], "")]
+
+
+def test_what_is_kept_crashed_or_not_readable_is_never_taken_for_final(original, tmp_path):
+    campaign, planned = load_and_plan(original)
+    store = Store(tmp_path)
+    done = RunOutcome("a", ("a.csv",), "", "", None, "done", data_file="data/a.nc")
+    curve = CurveOutcome("c", "", "", None, "data/c.nc", ("a",))
+    whole = Outcome(campaign, tmp_path, store, (done,), (curve,), (("a.csv", "ab" * 32, 3),))
+    for doubtful in (
+        replace(whole, runs=(replace(done, kept="kept from before"),)),
+        replace(whole, runs=(replace(done, status="failed", error="WorkerDied"),)),
+        replace(whole, curves=(replace(curve, status="failed", crash="Traceback"),)),
+        replace(whole, sources=(("a.csv", "", 0),)),
+    ):
+        note(doubtful, planned, OPTIONS)
+        assert store.fact("made from") == ""
+    note(whole, planned, OPTIONS)
+    assert store.fact("made from")
+    store.close()

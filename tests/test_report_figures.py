@@ -1,0 +1,188 @@
+"""Figures when asked for, taken over where nothing changed; tables twice; all from the records."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from campaigns import fingerprint
+from reporting import made_outcome
+
+import tribolab as tl
+from tribolab.app.run import run_campaign
+from tribolab.campaign.store import Store
+from tribolab.errors import ConfigError
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.run_record import RunRecord
+from tribolab.report.figures import wanted
+from tribolab.report.results import write_report
+from tribolab.report.tables import read, write, write_rows
+
+RUNS = [
+    ("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8),
+    ("sb-s_1", "Sb-S", "glycerol", 31.0, 1.1),
+    ("nameless", "", "", None, 0.5),
+]
+FIGURES = ("figures", "surface_figures", "model_figures", "sliding_figures")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A report with all its figures; not to be changed."""
+    folder = tmp_path_factory.mktemp("made")
+    outcome = made_outcome(folder, RUNS, failed=[("broken", "no unit")], samples=60)
+    write_report(outcome, pdf=True)
+    return outcome
+
+
+def report_of(outcome):
+    return json.loads((outcome.folder / "report.json").read_text("utf-8"))
+
+
+def drawn(outcome):
+    return [figure["file"] for key in FIGURES for figure in report_of(outcome)[key]]
+
+
+def the_next(made, folder, **changes):
+    """The same results, of which nothing is written yet but the data."""
+    for name in ("data", "figures"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+    store = Store(folder, made.folder)
+    for kind, record in (("run", RunRecord), ("curve", CurveRecord)):
+        for place, entry in enumerate(made.store.all(kind, record)):
+            if entry.record.outcome.data_file:
+                store.link_beside(entry.record.outcome.data_file)
+            store.put(kind, entry.name, place, entry.fingerprint, entry.record)
+            store.take_trace(kind, entry.name, entry.name)
+
+    return replace(made, folder=folder, store=store, **changes)
+
+
+def test_figures_of_the_same_data_are_taken_over_and_not_drawn(made, tmp_path, monkeypatch):
+    def refuse(*given, **more):
+        raise AssertionError("drawn again")
+
+    monkeypatch.setattr("tribolab.report.figures.draw", refuse)
+    again = the_next(made, tmp_path)
+    write_report(again, pdf=True)
+    assert drawn(again) == drawn(made) and drawn(made)
+    assert fingerprint(again.folder / "figures") == fingerprint(made.folder / "figures")
+
+
+def test_a_figure_whose_data_changed_is_drawn_anew_alone(made, tmp_path, monkeypatch):
+    from tribolab.report import figures
+
+    again = the_next(made, tmp_path)
+    file = again.folder / again.curves[1].data_file  # of Sb-S
+    content = file.read_bytes()
+    file.unlink()
+    file.write_bytes(content)
+    done, draw = [], figures.draw
+
+    def noted(task):
+        done.append(task.file)
+        return draw(task)
+
+    monkeypatch.setattr(figures, "draw", noted)
+    write_report(again)
+    assert sorted(done) == [
+        *("figures/slip_map.svg", "figures/stribeck_load_1.svg", "figures/stribeck_surface_2.svg"),
+    ]
+    assert drawn(again) == drawn(made)
+
+
+def test_as_many_figures_as_are_asked_for(made, tmp_path):
+    kept = {}
+    for which in ("all", "curves", "none"):
+        outcome = the_next(made, tmp_path / which)
+        write_report(outcome, figures=which)
+        report = report_of(outcome)
+        kept[which] = {key: len(report[key]) for key in FIGURES}
+        on_disk = {path.name for path in (outcome.folder / "figures").iterdir()}
+        assert {f"figures/{n}" for n in on_disk if n.endswith(".svg")} == set(drawn(outcome))
+        page = (outcome.folder / "report.html").read_text("utf-8")
+        assert page.count('<figure class="chart" data-key=') == 3  # of each run that is done
+        for name in ("friction", "stribeck"):  # what a figure shows is in the tables in any case
+            tables = [o.folder / f"tables/{name}.csv" for o in (outcome, made)]
+            assert tables[0].read_bytes() == tables[1].read_bytes()
+    assert kept["all"]["figures"] == kept["curves"]["figures"] == 4
+    assert kept["all"]["sliding_figures"] > 0 == kept["curves"]["sliding_figures"]
+    assert not any(kept["none"].values())
+
+
+def test_every_figure_is_a_pdf_too_if_that_is_asked_for(made):
+    for file in drawn(made):
+        assert (made.folder / file).with_suffix(".pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_an_unknown_choice_of_figures_is_refused_with_those_that_there_are():
+    assert [wanted(word) for word in ("all", "curves", "none")] == ["all", "curves", "none"]
+    with pytest.raises(ConfigError, match="figures: 'some' is none of all, curves, none"):
+        wanted("some")
+
+
+def test_nothing_is_read_back_to_be_shown(made, tmp_path, monkeypatch):
+    again = the_next(made, tmp_path)
+    # what judges a curve's sliding mode reads it: done before, it is known
+    write_report(again, figures="none")
+    later = the_next(again, tmp_path / "later")
+
+    def refuse(*given, **more):
+        raise AssertionError("a data file was opened to be shown")
+
+    for name in ("read_netcdf", "read_groups", "opened"):
+        monkeypatch.setattr(f"tribolab.io.netcdf.{name}", refuse)
+    write_report(later, figures="none")
+    here, before = report_of(later), report_of(made)
+    for key in ("runs", "curves", "verdict", "sliding_mode"):
+        assert here[key] == before[key] and here[key]
+    assert not [f for f in here["findings"] if f["severity"] == "error"]
+
+
+def test_every_table_is_parquet_beside_csv_with_the_same_values(made):
+    files = sorted((made.folder / "tables").glob("*.csv"))
+    assert len(files) >= 9
+    for file in files:
+        columnar = pd.read_parquet(file.with_suffix(".parquet"))
+        assert list(columnar.columns) == list(read(file).columns)
+        for name, column in read(file).items():
+            there = columnar[name]
+            if pd.api.types.is_numeric_dtype(there) or pd.api.types.is_bool_dtype(there):
+                np.testing.assert_array_equal(column.to_numpy(float), there.to_numpy(float))
+            else:
+                mine, other = (c.astype(object).where(c.notna(), "") for c in (column, there))
+                assert mine.astype(str).tolist() == other.astype(str).tolist()
+
+
+def test_a_long_table_is_the_same_whole_as_in_pieces(tmp_path, monkeypatch):
+    rows = [
+        {"run": f"=r{n}", "n": n, "x": None if n % 5 == 2 else n / 3, "on": n % 2 == 0}
+        | ({"late": "text"} if n > 6 else {})
+        for n in range(23)
+    ]
+    write(pd.DataFrame(rows), tmp_path / "whole.csv")
+    monkeypatch.setattr("tribolab.report.tables._CHUNK", 4)
+    write_rows(lambda: iter(rows), tmp_path / "pieces.csv", ["run"])
+    assert (tmp_path / "whole.csv").read_text() == (tmp_path / "pieces.csv").read_text()
+    frames = [pd.read_parquet(tmp_path / f"{name}.parquet") for name in ("whole", "pieces")]
+    pd.testing.assert_frame_equal(*frames)
+    assert frames[0]["run"][0] == "=r0"  # no spreadsheet computes it: as it was
+    write_rows(lambda: iter(()), tmp_path / "none.csv", ["run", "x"])
+    assert (tmp_path / "none.csv").read_text() == "run,x\n"
+    assert list(pd.read_parquet(tmp_path / "none.parquet").columns) == ["run", "x"]
+
+
+def test_results_open_by_name_with_every_digit(made):
+    results = tl.read_results(made.folder)
+    rows = [r for run in report_of(made)["runs"] for r in run["segments"]]
+    assert results["friction"]["friction_coefficient"].tolist() == [
+        row["friction_coefficient"] for row in rows
+    ]
+    run = results.data("run0", "run")
+    assert run.sizes["time"] == report_of(made)["runs"][0]["samples"]
+
+
+def test_an_option_that_does_not_exist_is_refused_before_anything_is_read(tmp_path):
+    with pytest.raises(ConfigError, match="is none of"):
+        run_campaign(tmp_path / "nowhere.toml", figures="some")
