@@ -21,7 +21,7 @@ from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
 from tribolab.records.parts import beyond_limits
 from tribolab.records.wording import validity_of
-from tribolab.report.page import _environment
+from tribolab.report.page import environment
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026
@@ -180,6 +180,6 @@ def test_frequencies_outside_the_table_are_said_at_either_end():
 def test_the_page_marks_what_is_beyond_the_limits(reasons, shown, tmp_path):
     text = '{% from "cells.html.j2" import limits, named with context %}{{ named(row) }}'
     row = {"name": "Sb-R", "quality": "pass", "validity": reasons}
-    cell = _environment(tmp_path).from_string(text).render(row=row)
+    cell = environment(tmp_path).from_string(text).render(row=row)
     assert ('class="chip suspect"' in cell) == shown
     assert (f'title="{reasons}"' in cell) == shown

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -97,7 +97,7 @@ def demo(
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
-        code = _show(outcome, debug)
+        code = show_outcome(outcome, debug)
         for line in truth_lines(compared, outcome):
             say(line)
     raise typer.Exit(code)
@@ -189,7 +189,7 @@ def run(
                 pdf=pdf,
                 verify=verify,
             )
-        code = _show(outcome, debug)
+        code = show_outcome(outcome, debug)
     raise typer.Exit(code)
 
 
@@ -397,14 +397,14 @@ def _reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
         _fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
 
 
-def _fail(message: str, code: int, debug: bool) -> None:
+def _fail(message: str, code: int, debug: bool) -> NoReturn:
     if debug:
         raise
     say(f"tribolab: {message}", to_stderr=True)
     raise typer.Exit(code) from None
 
 
-def _show(outcome: Outcome, debug: bool) -> int:
+def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
     from tribolab.app import terminal
     from tribolab.qc.findings import exit_code

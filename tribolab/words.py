@@ -67,9 +67,11 @@ def speed_text(speed: float) -> str:
     return f"{number(speed)} m/s"
 
 
-def force_text(force: float) -> str:
-    """Return a force [N] as text, e.g. ``"31 N"``."""
-    return f"{number(force)} N" if math.isfinite(force) else "load unknown"
+def force_text(force: float | None) -> str:
+    """Return a force [N] as text, e.g. ``"31 N"``; None is one that nobody knows."""
+    if force is None or not math.isfinite(force):
+        return "load unknown"
+    return f"{number(force)} N"
 
 
 def span(values: Iterable[float | None], unit: str = "") -> str:

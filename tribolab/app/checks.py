@@ -20,7 +20,7 @@ from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.runs import group_files, read
 from tribolab.io.scans.results import read_tester_results
-from tribolab.qc.findings import Findings, exit_code, told_of
+from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run
 from tribolab.words import explain
 
@@ -60,7 +60,7 @@ class Checked:
     """
 
     files: tuple[Path, ...]
-    rows: tuple[dict[str, Any], ...] = ()
+    rows: tuple[FindingRow, ...] = ()
     status: str = "unreadable"
     summary: str = ""
     error: str = ""

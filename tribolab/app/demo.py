@@ -15,8 +15,8 @@ from tribolab.campaign.executor import workers
 from tribolab.report import tables
 
 if TYPE_CHECKING:
+    from tribolab.campaign.engine import Progress
     from tribolab.campaign.outcome import Outcome
-    from tribolab.campaign.pipeline import Progress
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 _OTHER_ARRAYS = ("dask", "dask.array", "pint", "cupy", "sparse")
 
@@ -17,7 +18,8 @@ def plain_arrays_only() -> None:
     """
     if any(name in sys.modules for name in ("xarray", *_OTHER_ARRAYS)):
         return
-    sys.modules.update(dict.fromkeys(_OTHER_ARRAYS))  # None: an import of it fails
+    nothing: dict[str, Any] = dict.fromkeys(_OTHER_ARRAYS)  # None: an import of it fails
+    sys.modules.update(nothing)
     try:
         import xarray as xr
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import replace
 from pathlib import Path
 
 from tribolab.campaign.config import Campaign
@@ -126,12 +125,8 @@ def run_campaign(
             finish(outcome)
         note(outcome, runs, options)
         outcome.store.close()
-    return replace(
-        outcome,
-        folder=place,
-        store=Catalogue.of(place),
-        foreign=tuple(Ledger.read(place).foreign()),
-    )
+    foreign = tuple(Ledger.read(place).foreign())
+    return outcome.read_at(place, Catalogue.of(place), foreign)
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:

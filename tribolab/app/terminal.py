@@ -124,8 +124,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
             file = shown(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     if known := [surface for surface in outcome.surfaces if surface.files]:
-        done = sum(surface.done for surface in known)
-        lines.append(f"{done} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
+        computed = sum(surface.done for surface in known)
+        lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
 

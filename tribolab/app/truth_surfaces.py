@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.records.part_records import SurfaceRecord
+from tribolab.records.parts import Row, number_of
 from tribolab.report import tables
 
 if TYPE_CHECKING:
@@ -50,8 +51,8 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     facts = read_truth(folder).facts
     rows: list[dict[str, Any]] = []
 
-    def add(surface: str, quantity: str, force: float | None, found: list, true: float) -> None:
-        value, low, high = found
+    def add(surface: str, quantity: str, force: float | None, row: Row, true: float) -> None:
+        value, low, high = (_known(row, name) for name in _with_bounds(quantity))
         rows.append(
             {
                 "surface": surface,
@@ -72,18 +73,27 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         if mine is None or surface.name not in facts["surfaces"]:
             continue
         spectrum = SelfAffine(**facts["surfaces"][surface.name]["spectrum"])
-        rough, ends = mine.roughness, ("", "_low", "_high")
-        height = [rough[f"rms_roughness{end}_m"] for end in ends]
-        add(surface.name, "rms_roughness_m", None, height, rms_roughness(spectrum))
-        slope = [rough[f"rms_slope{end}"] for end in ends]
-        add(surface.name, "rms_slope", None, slope, rms_slope(spectrum))
+        add(surface.name, "rms_roughness_m", None, mine.roughness, rms_roughness(spectrum))
+        add(surface.name, "rms_slope", None, mine.roughness, rms_slope(spectrum))
         system = facts["system"]
         modulus = system["youngs_modulus"] / (1 - system["poisson_ratio"] ** 2)
         for row in mine.contact:
-            true = contact_area_ratio(row["pressure_Pa"], tabulate(spectrum), modulus)
-            area = [row[f"contact_area_ratio{end}"] for end in ends]
-            add(surface.name, "contact_area_ratio", row["normal_force_N"], area, float(true))
+            true = contact_area_ratio(_known(row, "pressure_Pa"), tabulate(spectrum), modulus)
+            force = number_of(row, "normal_force_N")
+            add(surface.name, "contact_area_ratio", force, row, float(true))
     return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _with_bounds(column: str) -> list[str]:
+    """Return a column and those of its bounds; the unit stays at the end of a name."""
+    name, unit = (column.removesuffix("_m"), "_m") if column.endswith("_m") else (column, "")
+    return [f"{name}{end}{unit}" for end in ("", "_low", "_high")]
+
+
+def _known(row: Row, column: str) -> float:
+    """Return a number of a row; NaN, which lies within no bounds, where it is not known."""
+    value = number_of(row, column)
+    return float("nan") if value is None else value
 
 
 def write_truth_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:

@@ -2,92 +2,19 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    PrivateAttr,
-    ValidationInfo,
-    WithJsonSchema,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
-from tribolab.errors import ConfigError, TribolabError, UnitError, nearest, shown
-from tribolab.units import to_si
+from tribolab.campaign.fields import Patterns, PositiveSi, Si, Spread, Text
+from tribolab.errors import ConfigError, TribolabError, nearest, shown
+
+if TYPE_CHECKING:
+    from tribolab.contact.geometry import LineContact
 
 SCHEMA_FILE = "campaign.schema.json"
-_NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
-
-
-def _si(unit: str, example: str) -> Any:
-    """Type of a quantity: text with a unit in the file, a float in SI afterwards."""
-
-    def convert(value: Any, info: ValidationInfo) -> float:
-        in_file = bool(info.context and info.context.get("in_file"))
-        if in_file and not isinstance(value, str):
-            raise ValueError(f"{shown(repr(value))} has no unit; write e.g. {example!r}")
-        try:
-            return to_si(value, unit, name="")
-        except UnitError as error:
-            raise ValueError(f"{str(error).removeprefix(': ')} (e.g. {example!r})") from error
-
-    schema = {
-        "type": "string",
-        "pattern": _NUMBER_WITH_UNIT,
-        "examples": [example],
-        "unit": unit,  # no word of JSON Schema: our own, as in run.schema.json
-    }
-    return Annotated[float, BeforeValidator(convert), WithJsonSchema(schema)]
-
-
-def _positive(value: float) -> float:
-    if not value > 0:
-        raise ValueError(f"{value:g} is not greater than zero")
-    return value
-
-
-def _positive_si(unit: str, example: str) -> Any:
-    return Annotated[_si(unit, example), AfterValidator(_positive)]
-
-
-Text = Annotated[str, Field(min_length=1)]
-Patterns = Annotated[
-    tuple[Text, ...],
-    BeforeValidator(lambda value: (value,) if isinstance(value, str) else value),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "string", "minLength": 1},
-                {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1},
-            ]
-        }
-    ),
-]
-
-
-def _spread(value: Any) -> str:
-    """Check an uncertainty of a force, or of a coefficient where only that was recorded."""
-    if isinstance(value, str):
-        for unit in ("N", "1"):
-            with contextlib.suppress(UnitError):
-                if to_si(value, unit, name="") >= 0:
-                    return value
-    raise ValueError(f"{value!r} is no force and no pure number; write e.g. '0.2 N' or '2 %'")
-
-
-# text until the signal that it is for says its unit
-Spread = Annotated[
-    str,
-    BeforeValidator(_spread),
-    WithJsonSchema({"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["0.2 N", "2 %"]}),
-]
 
 
 class Table(BaseModel):
@@ -112,14 +39,18 @@ class About(Table):
 class Contact(Table):
     """The cylinder and the elastomer, as far as they are known."""
 
-    radius: _positive_si("m", "7 cm") | None = None
+    radius: Annotated[float, PositiveSi("m", "7 cm")] | None = None
     """Radius of the cylinder."""
-    length: _positive_si("m", "10 cm") | None = None
+    length: Annotated[float, PositiveSi("m", "10 cm")] | None = None
     """Length of the line contact."""
-    youngs_modulus: _positive_si("Pa", "1.5 MPa") | None = None
+    youngs_modulus: Annotated[float, PositiveSi("Pa", "1.5 MPa")] | None = None
     """Young's modulus of the elastomer at low frequency."""
     youngs_modulus_range: (
-        tuple[_positive_si("Pa", "1.35 MPa"), _positive_si("Pa", "1.65 MPa")] | None
+        tuple[
+            Annotated[float, PositiveSi("Pa", "1.35 MPa")],
+            Annotated[float, PositiveSi("Pa", "1.65 MPa")],
+        ]
+        | None
     ) = None
     """Between which values it is uncertain; model curves get a band from it."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
@@ -131,21 +62,35 @@ class Contact(Table):
         """Return the arguments of `LineContact`, as far as they are known."""
         return self.model_dump(include={"radius", "length", "youngs_modulus", "poisson_ratio"})
 
+    def whole(self) -> LineContact | None:
+        """Return the line contact; None as long as something of it is not known."""
+        from tribolab.contact.geometry import LineContact
+
+        known = {name: value for name, value in self.line().items() if value is not None}
+        return LineContact(**known) if len(known) == len(self.line()) else None
+
 
 class Medium(Table):
     """What is between the surfaces, as far as it is known."""
 
-    viscosity: _positive_si("Pa s", "1.4 Pa s") | None = None
+    viscosity: Annotated[float, PositiveSi("Pa s", "1.4 Pa s")] | None = None
     """Dynamic viscosity."""
     viscosity_range: (
-        tuple[_positive_si("Pa s", "1.2 Pa s"), _positive_si("Pa s", "1.6 Pa s")] | None
+        tuple[
+            Annotated[float, PositiveSi("Pa s", "1.2 Pa s")],
+            Annotated[float, PositiveSi("Pa s", "1.6 Pa s")],
+        ]
+        | None
     ) = None
     """Between which values it is uncertain; model curves get a band from it."""
-    work_of_adhesion: _si("J/m2", "51 mJ/m^2") | None = None
+    work_of_adhesion: Annotated[float, Si("J/m2", "51 mJ/m^2")] | None = None
     """Work of adhesion of the surfaces in this medium."""
-    work_of_adhesion_range: tuple[_si("J/m2", "21 mJ/m^2"), _si("J/m2", "59 mJ/m^2")] | None = None
+    work_of_adhesion_range: (
+        tuple[Annotated[float, Si("J/m2", "21 mJ/m^2")], Annotated[float, Si("J/m2", "59 mJ/m^2")]]
+        | None
+    ) = None
     """Between which values it is uncertain; contact areas get bounds from it."""
-    temperature: _positive_si("K", "20 °C") | None = None
+    temperature: Annotated[float, PositiveSi("K", "20 °C")] | None = None
     """Temperature at which it was measured."""
 
 
@@ -154,7 +99,9 @@ class Segments(Table):
 
     trim: Annotated[float, Field(ge=0, lt=0.5)] = 0.10
     """Share of a segment that is left out at each end."""
-    position_range: tuple[_si("m", "5 mm"), _si("m", "32 mm")] | None = None
+    position_range: (
+        tuple[Annotated[float, Si("m", "5 mm")], Annotated[float, Si("m", "32 mm")]] | None
+    ) = None
     """Only this part of the track is used."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
     """Relative difference of speed that separates two neighbouring plateaus."""
@@ -162,11 +109,11 @@ class Segments(Table):
     """Relative change of speed within one plateau above which it is a ramp."""
     min_samples: Annotated[int, Field(ge=2)] | None = None
     """Fewest samples in a segment."""
-    min_duration: _positive_si("s", "0.5 s") | None = None
+    min_duration: Annotated[float, PositiveSi("s", "0.5 s")] | None = None
     """Shorter segments are left out."""
-    max_gap: _positive_si("s", "2 s") | None = None
+    max_gap: Annotated[float, PositiveSi("s", "2 s")] | None = None
     """Longest pause between two samples within a segment; by default a twentieth of it."""
-    rest_speed: _positive_si("m/s", "0.1 um/s") | None = None
+    rest_speed: Annotated[float, PositiveSi("m/s", "0.1 um/s")] | None = None
     """Speed below which the slider is at rest; by default 1e-5 of the highest."""
 
 
@@ -184,13 +131,19 @@ class Roughness(Table):
 
     form: Literal["auto", "none", "mean", "tilt", "circle", "polynomial"] = "auto"
     """What is taken away from the scans first; by default a circle from profiles."""
-    q_low: _positive_si("1/m", "423 1/m") | None = None
+    q_low: Annotated[float, PositiveSi("1/m", "423 1/m")] | None = None
     """Smallest wavenumber; by default pi over the Hertz width at the lowest load."""
-    q_high: _positive_si("1/m", "3.14e9 1/m") | None = None
+    q_high: Annotated[float, PositiveSi("1/m", "3.14e9 1/m")] | None = None
     """Largest wavenumber; by default pi / 1 nm."""
-    fit_decade: tuple[_positive_si("1/m", "1e5 1/m"), _positive_si("1/m", "1e6 1/m")] | None = None
+    fit_decade: (
+        tuple[
+            Annotated[float, PositiveSi("1/m", "1e5 1/m")],
+            Annotated[float, PositiveSi("1/m", "1e6 1/m")],
+        ]
+        | None
+    ) = None
     """Wavenumbers between which the power law is fitted that goes on to the largest."""
-    tip_radius: _positive_si("m", "2 um") | None = None
+    tip_radius: Annotated[float, PositiveSi("m", "2 um")] | None = None
     """Radius of the stylus, if the files do not say it."""
 
 
@@ -214,11 +167,11 @@ class RunEntry(Table):
     """Name of a [[surface]]."""
     medium: Text | None = None
     """Name of a [medium.*] table."""
-    normal_force: _positive_si("N", "31 N") | None = None
+    normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
     """Set-point of the normal force."""
-    sliding_speed: _positive_si("m/s", "6 mm/min") | None = None
+    sliding_speed: Annotated[float, PositiveSi("m/s", "6 mm/min")] | None = None
     """Set-point of the speed; it is the sliding speed where the files record none."""
-    clock_shift: _si("s", "0.42 s") | None = None
+    clock_shift: Annotated[float, Si("s", "0.42 s")] | None = None
     """What added to the companion log's clock gives the main log's; else the signals tell."""
     instrument: Text | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
@@ -237,9 +190,9 @@ class Model(Table):
 
     compute: bool = True
     """Whether they are computed."""
-    slowest: _positive_si("m/s", "1 nm/s") = 1e-9
+    slowest: Annotated[float, PositiveSi("m/s", "1 nm/s")] = 1e-9
     """Lowest sliding speed."""
-    fastest: _positive_si("m/s", "10 cm/s") = 0.1
+    fastest: Annotated[float, PositiveSi("m/s", "10 cm/s")] = 0.1
     """Highest sliding speed."""
     points: Annotated[int, Field(ge=5, le=200)] = 33
     """Number of speeds, evenly over their logarithm."""
@@ -247,9 +200,15 @@ class Model(Table):
     """Which body is the rough one: it sets the sign of the shear flow factor."""
     friction_factors: bool = True
     """Whether the fluid's friction takes the friction factors of the roughness."""
-    inlet_length: _positive_si("m", "20 mm") | None = None
+    inlet_length: Annotated[float, PositiveSi("m", "20 mm")] | None = None
     """Where the liquid begins, before the contact's middle; by default it is everywhere."""
-    fit_speeds: tuple[_positive_si("m/s", "1 um/s"), _positive_si("m/s", "1 cm/s")] | None = None
+    fit_speeds: (
+        tuple[
+            Annotated[float, PositiveSi("m/s", "1 um/s")],
+            Annotated[float, PositiveSi("m/s", "1 cm/s")],
+        ]
+        | None
+    ) = None
     """Between which speeds the shear stress is fitted; by default all that were measured."""
     uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
     """For which loads of a surface the model's own uncertainty is computed."""
@@ -329,14 +288,12 @@ class Campaign(Table):
         from tribolab.qc.run_checks import RUN_CHECKS
 
         options = self.qc.options(RUN_CHECKS)
-        known = self.contact
-        load, modulus = entry.normal_force, known.youngs_modulus
-        if None not in (known.radius, known.length, modulus, known.poisson_ratio, load):
-            from tribolab.contact.geometry import LineContact
+        contact = self.contact.whole()
+        if contact is not None and entry.normal_force is not None:
             from tribolab.contact.hertz import hertz_half_width
 
-            contact = LineContact(known.radius, known.length, modulus, known.poisson_ratio)
-            options["contact_width"] = 2 * float(hertz_half_width(load / known.length, contact))
+            load = contact.load(entry.normal_force)
+            options["contact_width"] = 2 * float(hertz_half_width(load, contact))
         return options
 
     def scan_quality_options(self) -> dict[str, Any]:

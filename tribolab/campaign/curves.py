@@ -140,7 +140,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
         levels = curve["run_level"].values.tolist()
-    groups: dict[str | None, xr.Dataset] = {}
+    groups: dict[str, xr.Dataset] = {}
     reason = ""
     try:
         groups[SLIP] = stick_slip_curve([part[SLIP] for part in parts])

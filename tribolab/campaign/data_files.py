@@ -8,6 +8,7 @@ import os
 import shutil
 import threading
 import uuid
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,7 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, 
 _LITTLE = 1 << 20
 
 
-def write_data(groups: dict[str | None, xr.Dataset], path: Path) -> None:
+def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
     """Write a data file, whole or not at all.
 
     A scheduler may repeat work whose worker died after it was done: readers of the file then go
@@ -102,8 +103,11 @@ def digest(*parts: xr.Dataset | None) -> str:
     """Return the checksum of datasets' names and values; when they were made does not matter."""
     checksum = hashlib.sha256()
     for data in parts:
-        checksum.update(b"none" if data is None else b"data")
-        for name in sorted(map(str, () if data is None else data.variables)):
+        if data is None:
+            checksum.update(b"none")
+            continue
+        checksum.update(b"data")
+        for name in sorted(map(str, data.variables)):
             checksum.update(name.encode())
             values = np.asarray(data[name])
             text = values.dtype.kind in "OUS"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 from tribolab.campaign.executor import completed
 from tribolab.errors import OutputError
@@ -28,14 +28,18 @@ class Stage(ABC, Generic[Task, Record, Came]):
     ----------
     name
         What the progress calls it.
-    work
-        Function of the module, that it may travel to a worker: a task in, a record out. What goes
-        wrong with the task itself is in the record; it raises `OutputError` where results cannot
-        be written, and nothing else on purpose.
     """
 
     name: ClassVar[str]
-    work: ClassVar[Callable[[Any], Any]]
+
+    @staticmethod
+    @abstractmethod
+    def work(task: Task) -> Record:
+        """Do one task; static, that it may travel to a worker.
+
+        What goes wrong with the task itself is in the record; it raises `OutputError` where
+        results cannot be written, and nothing else on purpose.
+        """
 
     @abstractmethod
     def plan(self) -> Sequence[Task]:

@@ -65,7 +65,7 @@ def default_jobs() -> int:
 
 def completed(
     executor: Executor | None, function: Callable[[Any], Any], tasks: Iterable[Any]
-) -> Iterator[tuple[Any, Future]]:
+) -> Iterator[tuple[Any, Future[Any]]]:
     """Give (task, its finished future) as the tasks end; without executor, here and in order.
 
     With an executor the tasks begin at once, whenever the caller asks for what they came to. If
@@ -83,9 +83,11 @@ def completed(
     return _as_they_end(futures, lost)
 
 
-def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tuple[Any, Future]]:
+def _here(
+    function: Callable[[Any], Any], tasks: Iterable[Any]
+) -> Iterator[tuple[Any, Future[Any]]]:
     for task in tasks:
-        future: Future = Future()
+        future: Future[Any] = Future()
         try:
             future.set_result(function(task))
         except Exception as error:  # handed on: whoever asks for the result gets it
@@ -94,10 +96,10 @@ def _here(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[tupl
 
 
 def _as_they_end(
-    futures: dict[Future, Any], lost: Callable[[], str] | None
-) -> Iterator[tuple[Any, Future]]:
+    futures: dict[Future[Any], Any], lost: Callable[[], str] | None
+) -> Iterator[tuple[Any, Future[Any]]]:
     count = len(futures)
-    ended: SimpleQueue[Future] = SimpleQueue()
+    ended: SimpleQueue[Future[Any]] = SimpleQueue()
     for future in futures:
         future.add_done_callback(ended.put)
     try:
@@ -213,7 +215,7 @@ class _Cluster(Executor):
         self._inner = client.get_executor(pure=False)
         self._missed: float | None = None
 
-    def submit(self, function: Callable, /, *args: Any, **kwargs: Any) -> Future:
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
         return self._inner.submit(function, *args, **kwargs)
 
@@ -256,12 +258,12 @@ class LastingPool(Executor):
         self._alone = _Lane(1)
         self._closed = False
 
-    def submit(self, function: Callable, /, *args: Any, **kwargs: Any) -> Future:
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
         with self._lock:
             if self._closed:
                 raise RuntimeError("the pool is closed")
-            future: Future = Future()
+            future: Future[Any] = Future()
             self._main.waiting.append((future, partial(function, *args, **kwargs)))
             self._feed(self._main)
         return future
@@ -302,7 +304,9 @@ class LastingPool(Executor):
             lane.under_way[future] = call
             inner.add_done_callback(partial(self._ended, lane, pool, future))
 
-    def _ended(self, lane: _Lane, pool: ProcessPoolExecutor, future: Future, inner: Future) -> None:
+    def _ended(
+        self, lane: _Lane, pool: ProcessPoolExecutor, future: Future[Any], inner: Future[Any]
+    ) -> None:
         with self._lock:
             call = lane.under_way.pop(future)
             error = None if inner.cancelled() else inner.exception()
@@ -329,8 +333,8 @@ class _Lane:
 
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
-        self.waiting: deque[tuple[Future, Callable]] = deque()
-        self.under_way: dict[Future, Callable] = {}
+        self.waiting: deque[tuple[Future[Any], Callable[[], Any]]] = deque()
+        self.under_way: dict[Future[Any], Callable[[], Any]] = {}
         self.killed = False
         self._pool: ProcessPoolExecutor | None = None
         self._context = _Context()
@@ -348,7 +352,7 @@ class _Lane:
         if self._pool is pool:
             self._pool = None
 
-    def futures(self) -> list[Future]:
+    def futures(self) -> list[Future[Any]]:
         return [*self.under_way, *(future for future, _ in self.waiting)]
 
     def cancel_waiting(self) -> None:
@@ -374,7 +378,10 @@ class _Context(SpawnContext):
     def __init__(self) -> None:
         self.started: list[SpawnProcess] = []
 
-    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # noqa: N802 - multiprocessing's name
+    # multiprocessing's name, and there a class; whoever calls it wants a process and no more
+    def Process(  # type: ignore[override]  # noqa: N802
+        self, *args: Any, **kwargs: Any
+    ) -> SpawnProcess:
         process = _OneThreadProcess(*args, **kwargs)
         self.started.append(process)
         return process

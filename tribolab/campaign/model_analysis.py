@@ -18,7 +18,7 @@ from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
-    from tribolab.fit.shear_stress import ShearStressFit
+    from tribolab.fit.shear_stress_fit import ShearStressFit
 
 _PROFILES = 5
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are shown
@@ -43,7 +43,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     measured = read_data(folder / model.curve.data_file)
     psd = read_data(folder / model.surface_file, "psd")
     contact = LineContact(**model.contact)
-    load = contact.load(model.curve.normal_force)
+    load = contact.load(model.normal_force)
     settings = model.settings
     body = {name: settings[name] for name in ("rough_body", "friction_factors")}
     body["inlet_length"] = settings["inlet_length"] or np.inf
@@ -59,12 +59,12 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         except AnalysisError as error:  # recorded: the curve stands without it
             findings.append(Finding("suspect", f"{what}: {explain(error)[0]}"))
 
+    fit = None
     try:
         fit = _fit(model, measured, contact, psd, load, computed, folder)
     except AnalysisError as error:  # recorded, as above
         findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
-        fit = None
-    else:
+    if fit is not None:
         # friction that helps the motion is no model: the best that is one has no shear stress
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         _, low, high = _enhancement(model, folder)
@@ -114,12 +114,13 @@ def _fit(
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
     """Area with adhesion over that without, at the load, and the bounds on it."""
     path = folder / model.surface_file
-    found = optional_data(path, "adhesion_loads")
-    if found is None or model.curve.medium not in found.medium.values:
+    adhesion = optional_data(path, "adhesion_loads")
+    if adhesion is None or model.curve.medium not in adhesion.medium.values:
         return 1.0, 1.0, 1.0
-    at = int(np.argmin(np.abs(found["normal_force"].values.ravel() - model.curve.normal_force)))
-    mine = found.sel(medium=model.curve.medium).isel(load=at)
-    return tuple(float(mine[f"area_enhancement{ending}"]) for ending in ("", "_low", "_high"))
+    at = int(np.argmin(np.abs(adhesion["normal_force"].values.ravel() - model.normal_force)))
+    mine = adhesion.sel(medium=model.curve.medium).isel(load=at)
+    best, low, high = (float(mine[f"area_enhancement{end}"]) for end in ("", "_low", "_high"))
+    return best, low, high
 
 
 def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
@@ -178,15 +179,15 @@ def _profiles(
     moving = points[points > 0]
     body = model.settings["rough_body"]
     begins = model.settings["inlet_length"] or np.inf
-    found = [
+    films = [
         film_profile(contact, psd, model.viscosity, load, v, body, inlet_length=begins)
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")
         for v in (float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES))
     ]
-    profiles = xr.concat(found, "sliding_speed", combine_attrs="drop_conflicts")
-    return stamp(profiles, **together([one.attrs for one in found]))
+    profiles = xr.concat(films, "sliding_speed", combine_attrs="drop_conflicts")
+    return stamp(profiles, **together([film.attrs for film in films]))
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:

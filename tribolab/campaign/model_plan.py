@@ -72,6 +72,11 @@ class PlannedModel:
         return "model_" + self.curve.name.removeprefix("curve_")
 
     @property
+    def normal_force(self) -> float:
+        """Of the measured curve [N]; 0 where it is not known, and then that is `missing`."""
+        return self.curve.normal_force or 0.0
+
+    @property
     def data_file(self) -> str:
         """Path of the data file relative to the results folder."""
         return f"data/{self.name}.nc"
@@ -107,7 +112,7 @@ def plan_models(
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
-        missing = _missing(curve, contact, surface and surface.outcome)
+        missing = _missing(curve, contact, surface.outcome if surface else None)
         first = not missing and (curve.surface, curve.medium) not in led
         if first:
             led.add((curve.surface, curve.medium))
@@ -155,6 +160,11 @@ def _sealed(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> 
         "source": "; ".join(label for label, _, _ in surface.sources),
         "source_sha256": "; ".join(checksum for _, checksum, _ in surface.sources),
     }
-    model = replace(model, **joined_sources([asdict(curve.origin), scans]))
+    joined = joined_sources([asdict(curve.origin), scans])
+    model = replace(
+        model,
+        source=joined.get("source", ""),
+        source_sha256=joined.get("source_sha256", ""),
+    )
     facts = asdict(model) | {"data": [curve.digest, surface.digest]}
     return replace(model, config_sha256=sha256_of(facts))

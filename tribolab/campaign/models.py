@@ -131,7 +131,7 @@ def process_model(task: ModelTask) -> ModelRecord:
         groups, findings = analyse(model, task.folder)
         write_data({None: _root(model)} | groups, task.folder / model.data_file)
         adhesion = optional_data(task.folder / model.surface_file, "adhesion_loads")
-        rows = model_rows(groups, curve.medium, curve.normal_force or 0.0, adhesion)
+        rows = model_rows(groups, curve.medium, model.normal_force, adhesion)
     except OutputError:
         raise
     except Exception as error:  # recorded: one model that fails must not stop the others
@@ -179,7 +179,7 @@ def _root(model: PlannedModel) -> xr.Dataset:
     attrs: dict[str, Any] = {
         "surface": curve.surface,
         "medium": curve.medium,
-        "normal_force_N": float(curve.normal_force or 0.0),
+        "normal_force_N": float(model.normal_force),
         "curve": curve.name,
         "repeatability": model.repeatability,
         "freedom": model.freedom,

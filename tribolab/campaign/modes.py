@@ -17,7 +17,7 @@ from tribolab.mode.model import Mode
 from tribolab.provenance import sha256_of
 from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.records.parts import CurveOutcome
+from tribolab.records.parts import CurveOutcome, Row, number_of
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -224,20 +224,23 @@ def _known(campaign: Campaign, record: CurveRecord, surface: SurfaceRecord | Non
     wanted = curve.normal_force or 0.0
     loads = [abs(float(row["normal_force_N"] or 0) - wanted) for row in adhesion]
     row = adhesion[int(np.argmin(loads))]
-    bounds = [row.get(f"macroscopic_work_of_adhesion_{end}_J_m2") for end in ("low", "high")]
+    work, low, high = (
+        number_of(row, f"macroscopic_work_of_adhesion{end}_J_m2") for end in ("", "_low", "_high")
+    )
     return replace(
         mode,
-        work_of_adhesion=row["macroscopic_work_of_adhesion_J_m2"],
-        work_of_adhesion_range=tuple(bounds) if None not in bounds else None,
-        area_ratio=row["contact_area_ratio"],
-        pressure=row["pressure_Pa"],
+        work_of_adhesion=work,
+        work_of_adhesion_range=None if low is None or high is None else (low, high),
+        area_ratio=number_of(row, "contact_area_ratio"),
+        pressure=number_of(row, "pressure_Pa"),
     )
 
 
-def _stress(record: CurveRecord, fit: dict | None, known: Mode) -> float | None:
+def _stress(record: CurveRecord, fit: Row | None, known: Mode) -> float | None:
     """Shear stress in the real contact area with adhesion: fitted, else from mu p = sigma A/A0."""
-    if fit is not None and fit["corrected_shear_stress_Pa"] > 0:
-        return float(fit["corrected_shear_stress_Pa"])
+    fitted = None if fit is None else number_of(fit, "corrected_shear_stress_Pa")
+    if fitted is not None and fitted > 0:
+        return float(fitted)
     mu = [row["friction_coefficient"] for row in record.points]
     if not mu or known.fluid or not known.area_ratio or not known.pressure:
         return None

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
-    from tribolab.campaign.store import Store
+    from tribolab.campaign.store import Catalogue, Store
     from tribolab.records.parts import (
         CurveOutcome,
         ModelOutcome,
+        PartOutcome,
         RunOutcome,
         Source,
         SurfaceOutcome,
@@ -29,7 +30,7 @@ class Outcome:
     folder
         Where the results lie (while they are being written: the staging folder).
     store
-        The catalogue of all that is recorded.
+        The catalogue of all that is recorded, for reading.
     runs, curves
         One record each, in the order of the campaign file.
     sources
@@ -45,7 +46,7 @@ class Outcome:
 
     campaign: Campaign
     folder: Path
-    store: Store
+    store: Catalogue
     runs: tuple[RunOutcome, ...]
     curves: tuple[CurveOutcome, ...]
     sources: tuple[Source, ...]
@@ -56,7 +57,7 @@ class Outcome:
     @property
     def kept(self) -> dict[str, str]:
         """Names of the parts that are earlier results, and why."""
-        parts = (*self.runs, *self.surfaces, *self.models)
+        parts: tuple[PartOutcome, ...] = (*self.runs, *self.surfaces, *self.models)
         return {part.name: part.kept for part in parts if part.kept}
 
     @property
@@ -73,3 +74,15 @@ class Outcome:
     def segments(self) -> int:
         """Number of segments found in all runs."""
         return sum(run.segments for run in self.runs)
+
+
+@dataclass(frozen=True)
+class OpenOutcome(Outcome):
+    """What a campaign came to while it is being written: its store takes more."""
+
+    store: Store
+
+    def read_at(self, folder: Path, store: Catalogue, foreign: tuple[str, ...]) -> Outcome:
+        """Return what it came to, as it now lies in a folder for reading."""
+        parts = {part.name: getattr(self, part.name) for part in fields(self)}
+        return Outcome(**parts | {"folder": folder, "store": store, "foreign": foreign})

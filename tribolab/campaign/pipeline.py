@@ -14,7 +14,7 @@ from tribolab.campaign.engine import Progress, perform
 from tribolab.campaign.executor import WorkerDied
 from tribolab.campaign.kept import keep_runs
 from tribolab.campaign.models import Models
-from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.outcome import OpenOutcome
 from tribolab.campaign.plan import PlannedRun, planned_runs
 from tribolab.campaign.runs import RunCame, Runs
 from tribolab.campaign.store import Store
@@ -34,7 +34,7 @@ def process(
     previous: Path | None = None,
     progress: Progress | None = None,
     verify: bool = False,
-) -> Outcome:
+) -> OpenOutcome:
     """Process every run and surface, combine the repeats, and compute models beside them.
 
     What fails is recorded with the reason; the rest is done. Parts of `previous` are taken over
@@ -59,7 +59,7 @@ def process(
 
     Returns
     -------
-    Outcome
+    OpenOutcome
         With one small record per run, curve, surface and model; all else is in its store.
 
     Raises
@@ -88,7 +88,7 @@ def process(
     sources = [source for run in came for source in run.sources]
     sources += [source for surface in surfaces for source in surface.sources]
     store.save()
-    return Outcome(
+    return OpenOutcome(
         campaign=campaign,
         folder=staging,
         store=store,

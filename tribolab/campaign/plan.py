@@ -77,13 +77,13 @@ def plan(campaign: Campaign) -> Plan:
         what = f"there is no folder {campaign.raw}"
         return Plan((), [Problem(("campaign", "raw"), what)])
     problems: list[Problem] = []
-    found: list[tuple[RunEntry, list[Path]]] = []
+    groups: list[tuple[RunEntry, list[Path]]] = []
     owner: dict[Path, int] = {}
     for number, surface in enumerate(campaign.surface):
         _resolve(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
     if (name := campaign.contact.modulus_file) and not (campaign.raw / name).is_file():
-        where = ("contact", "modulus_file")
-        problems.append(Problem(where, f"there is no file {campaign.raw / name}"))
+        what = f"there is no file {campaign.raw / name}"
+        problems.append(Problem(("contact", "modulus_file"), what))
     for number, entry in enumerate(campaign.run):
         where = ("run", number, "files")
         files = _resolve(campaign.raw, entry.files, where, problems)
@@ -92,10 +92,10 @@ def plan(campaign: Campaign) -> Plan:
                 what = f"{label_of(campaign, file)} belongs to run {other + 1} already"
                 problems.append(Problem(where, what))
                 break
-        found += [(entry, group) for group in _groups(campaign, entry, files)]
+        groups += [(entry, group) for group in _groups(campaign, entry, files)]
     if problems:
         return Plan((), problems)
-    names = unique_names([files for _, files in found])
+    names = unique_names([files for _, files in groups])
     settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
     runs = tuple(
         PlannedRun(
@@ -104,7 +104,7 @@ def plan(campaign: Campaign) -> Plan:
             labels=tuple(label_of(campaign, file) for file in files),
             **settings[id(entry)],
         )
-        for (entry, files), name in zip(found, names, strict=True)
+        for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
 
@@ -131,22 +131,24 @@ def scan_files(campaign: Campaign) -> list[Path]:
 
 def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
     """Return the topography scans of one surface, each once."""
-    found = (path for pattern in surface.scans or () for path in _matching(campaign.raw, pattern))
-    return list(dict.fromkeys(found))
+    named = (path for pattern in surface.scans or () for path in _matching(campaign.raw, pattern))
+    return list(dict.fromkeys(named))
 
 
 def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
     """Return every file that a campaign reads, and what it is in words."""
-    found = [(campaign.file, "the campaign file")]
+    inputs = [(campaign.file, "the campaign file")]
     for entry in campaign.run:
-        found += [(f, "a raw file") for p in entry.files for f in _matching(campaign.raw, p)]
-    found += [(file, "a scan") for file in scan_files(campaign)]
+        inputs += [(f, "a raw file") for p in entry.files for f in _matching(campaign.raw, p)]
+    inputs += [(file, "a scan") for file in scan_files(campaign)]
     if (name := campaign.contact.modulus_file) is not None:
-        found.append((campaign.raw / name, "the modulus file"))
-    for one in (*campaign.run, *campaign.surface):
-        if one.instrument and one.instrument.endswith(".toml"):
-            found.append((Path(instrument_of(campaign, one.instrument)), "a dialect"))
-    return found
+        inputs.append((campaign.raw / name, "the modulus file"))
+    instruments = [entry.instrument for entry in campaign.run]
+    instruments += [surface.instrument for surface in campaign.surface]
+    for instrument in instruments:
+        if instrument and instrument.endswith(".toml"):
+            inputs.append((Path(instrument_of(campaign, instrument)), "a dialect"))
+    return inputs
 
 
 def instrument_of(campaign: Campaign, name: str) -> str:
@@ -159,12 +161,12 @@ def _resolve(
 ) -> list[Path]:
     files: dict[Path, None] = {}
     for pattern in patterns:
-        found = _matching(raw, pattern)
-        if not found:
+        matching = _matching(raw, pattern)
+        if not matching:
             problems.append(
                 Problem(where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}")
             )
-        files.update(dict.fromkeys(found))
+        files.update(dict.fromkeys(matching))
     return list(files)
 
 
@@ -173,10 +175,10 @@ def _matching(raw: Path, pattern: str) -> list[Path]:
     try:
         if exact.is_file():  # brackets in a real name are no wildcards
             return [exact]
-        found = [path for path in raw.glob(pattern) if path.is_file()]
+        files = [path for path in raw.glob(pattern) if path.is_file()]
     except (OSError, ValueError, NotImplementedError):  # absolute, empty, or too long a name
         return []
-    return sorted(found, key=lambda path: _natural(str(path)))
+    return sorted(files, key=lambda path: _natural(str(path)))
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
@@ -265,12 +267,12 @@ def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
     >>> unique_names([[Path("a/x_1_force.csv"), Path("a/x_1_motion.csv")], [Path("b/x_1.csv")]])
     ['a_x_1', 'b_x_1']
     """
-    groups = [list(group) for group in groups]
-    names = [safe_name(_common(group)) for group in groups]
+    members = [list(group) for group in groups]
+    names = [safe_name(_common(files)) for files in members]
     taken = Counter(name.casefold() for name in names)
     names = [
-        safe_name(f"{group[0].parent.name}_{name}") if taken[name.casefold()] > 1 else name
-        for name, group in zip(names, groups, strict=True)
+        safe_name(f"{files[0].parent.name}_{name}") if taken[name.casefold()] > 1 else name
+        for name, files in zip(names, members, strict=True)
     ]
     return distinct(names)
 

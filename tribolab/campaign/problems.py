@@ -154,8 +154,10 @@ def _walk(
             table = None
             where.append(part)
             inner = typing.get_args(here)
-            numbered = isinstance(part, int) and Ellipsis not in inner and part < len(inner)
-            here = inner[part] if numbered else inner[1 if typing.get_origin(here) is dict else 0]
+            place = 1 if typing.get_origin(here) is dict else 0
+            if isinstance(part, int) and Ellipsis not in inner and part < len(inner):
+                place = part
+            here = inner[place]
         else:
             break
     return tuple(where), table

@@ -301,12 +301,12 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     friction = friction_coefficient(signals, segments, **run.friction)
     friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
-    found = check_run(signals, segments, friction, slip, **run.quality)
-    signals = found.flagged
-    signals.attrs.update({QUALITY: found.status, FINDINGS: found.rows})
+    said = check_run(signals, segments, friction, slip, **run.quality)
+    signals = said.marked
+    signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
     for data in (signals, segments, friction, slip):
         data.attrs.update(_labels(run), config_sha256=run.config_sha256)
-    return signals, segments, friction, slip, found.status
+    return signals, segments, friction, slip, said.status
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:

@@ -10,7 +10,6 @@ recognised by size, time and inode, without reading it again.
 from __future__ import annotations
 
 import contextlib
-import functools
 import os
 import sqlite3
 import time
@@ -299,9 +298,14 @@ class Store(Catalogue):
 _SELECT = "SELECT name, fingerprint, record FROM part"
 
 
-@functools.cache
+_ADAPTERS: dict[object, TypeAdapter[Any]] = {}
+
+
 def _adapter(record: type[Kept]) -> TypeAdapter[Kept]:
-    return TypeAdapter(record)
+    """Return what reads and writes a record; to make one takes a while, so each is made once."""
+    if record not in _ADAPTERS:
+        _ADAPTERS[record] = TypeAdapter(record)
+    return _ADAPTERS[record]
 
 
 def _opened(folder: Path | None) -> sqlite3.Connection | None:
@@ -317,7 +321,7 @@ def _opened(folder: Path | None) -> sqlite3.Connection | None:
     return None
 
 
-def _entries(rows: Iterable[tuple], record: type[Kept]) -> Iterator[Entry[Kept]]:
+def _entries(rows: Iterable[tuple[str, str, bytes]], record: type[Kept]) -> Iterator[Entry[Kept]]:
     for name, fingerprint, text in rows:
         try:
             yield Entry(name, fingerprint, _adapter(record).validate_json(zlib.decompress(text)))

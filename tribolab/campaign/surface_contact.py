@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
 
 Groups = dict[str, xr.Dataset]
+# what is attempted, which groups come of it, and how
+Attempt = Callable[[str, tuple[str, ...], Callable[[], tuple[xr.Dataset, ...]]], None]
 _STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
 _SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's
 _PER_DECADE = 10
@@ -74,7 +76,9 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
     contact = line_contact(surface)
     forces = np.array(surface.forces)
 
-    def attempt(what: str, names: tuple[str, ...], compute: Callable[[], tuple]) -> None:
+    def attempt(
+        what: str, names: tuple[str, ...], compute: Callable[[], tuple[xr.Dataset, ...]]
+    ) -> None:
         try:
             groups.update(zip(names, compute(), strict=True))
         except Exception as error:  # recorded: the other parts have their place in the results
@@ -144,7 +148,7 @@ def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
     load = forces / contact.length
     coords = {"load": load}
 
-    def over_load(values: np.ndarray) -> xr.DataArray:
+    def over_load(values: np.ndarray | float) -> xr.DataArray:
         return xr.DataArray(values, coords, ["load"])
 
     pressure = over_load(hertz_mean_pressure(load, contact))
@@ -280,13 +284,13 @@ def _rubber(
     psd: xr.Dataset,
     groups: Groups,
     findings: list[Finding],
-    attempt: Callable,
+    attempt: Attempt,
 ) -> None:
     """Viscoelastic friction with the measured modulus, else with a stand-in for a rubber."""
     from dataclasses import replace
 
     from tribolab.rubber.friction import viscoelastic_friction
-    from tribolab.rubber.modulus import PDMS_STAND_IN, read_modulus
+    from tribolab.rubber.modulus import PDMS_STAND_IN, Modulus, read_modulus
 
     stiffness = surface.contact["youngs_modulus"]
     if surface.modulus_file is None and stiffness > _STIFFEST_RUBBER:
@@ -299,25 +303,25 @@ def _rubber(
 
     def compute() -> tuple[xr.Dataset, xr.Dataset]:
         if surface.modulus_file is None:
-            modulus = replace(PDMS_STAND_IN, relaxed=stiffness)
+            network = replace(PDMS_STAND_IN, relaxed=stiffness)
             origin = (
                 f"Stand-in of a PDMS network for orders of magnitude: {stiffness / 1e6:g} MPa at "
-                f"rest, {modulus.unrelaxed / 1e9:g} GPa as a glass, fractional Zener with tau = "
-                f"{modulus.relaxation_time:g} s and exponent {modulus.exponent:g}"
+                f"rest, {network.unrelaxed / 1e9:g} GPa as a glass, fractional Zener with tau = "
+                f"{network.relaxation_time:g} s and exponent {network.exponent:g}"
             )
+            modulus: Modulus = network
+            omega = np.geomspace(1e-2, 1e13, 15 * _PER_DECADE + 1)
         else:
             path, label = surface.modulus_file
-            modulus, origin = read_modulus(path), label
-            softest = modulus.angular_frequency[0]
+            table = read_modulus(path)
+            modulus, origin, omega = table, label, table.angular_frequency
+            softest = omega[0]
             findings.extend(_far_from(stiffness, float(modulus(softest).real), softest, label))
         speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
         ratio = surface.contact["poisson_ratio"]
         friction = viscoelastic_friction(speed, loads.pressure, psd, modulus, ratio)
-        omega = np.geomspace(1e-2, 1e13, 15 * _PER_DECADE + 1)
-        if surface.modulus_file is not None:
-            omega = modulus.angular_frequency
         value = modulus(omega)
-        table = xr.Dataset(
+        over_frequency = xr.Dataset(
             {
                 "storage_modulus": ("angular_frequency", value.real),
                 "loss_modulus": ("angular_frequency", value.imag),
@@ -325,7 +329,7 @@ def _rubber(
             {"angular_frequency": omega},
         )
         friction = friction.assign(normal_force=loads.normal_force)
-        return friction.assign_attrs(modulus=origin), stamp(table, modulus=origin)
+        return friction.assign_attrs(modulus=origin), stamp(over_frequency, modulus=origin)
 
     attempt("rubber friction", ("rubber", "modulus"), compute)
     if surface.modulus_file is None:

@@ -107,7 +107,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
     for surface, file in zip(campaign.surface, files, strict=True):
         scans = scans_of(campaign, surface)
         instrument = surface.instrument and instrument_of(campaign, surface.instrument)
-        facts = {
+        facts: dict[str, Any] = {
             "name": surface.name,
             "data_file": f"data/{file}.nc",
             "instrument": instrument,

@@ -67,11 +67,11 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
     if not scans:
         raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
     label = dict(zip(surface.files, surface.labels, strict=True))
-    found = dict(zip(scans, check_scan_set(list(scans.values()), **surface.quality), strict=True))
-    for path, said in found.items():
+    checked = dict(zip(scans, check_scan_set(list(scans.values()), **surface.quality), strict=True))
+    for path, said in checked.items():
         findings += _objections(label[path], said)
     shapes = {path: _shape(scan) for path, scan in scans.items()}
-    sound = [path for path in scans if found[path].status not in _FAILED] or list(scans)
+    sound = [path for path in scans if checked[path].status not in _FAILED] or list(scans)
     usual = Counter(shapes[path] for path in sound).most_common(1)[0][0]
     alike = [path for path in sound if shapes[path] == usual]
     for path in scans:
@@ -81,7 +81,7 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         if path not in sound:  # the failure itself is a finding already
             why, severity = "its checks failed", "note"
         findings.append(Finding(severity, f"scan {label[path]} is left out: {why}"))
-    quality = max((found[path].status for path in alike), key=STATUSES.index)
+    quality = max((checked[path].status for path in alike), key=STATUSES.index)
     if quality in _FAILED:
         text = "no scan passed its checks, so all that follows from them is marked"
         findings.append(Finding("note", text))
@@ -91,9 +91,9 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         share = 100 * filled.attrs["dropout_share"]
         text = f"{number} dropouts were filled ({share:.2g} % of heights)"
         findings.append(Finding("note", text))
-    rows = [{"scan": label[path]} | row for path, said in found.items() for row in said.rows]
+    rows = [{"scan": label[path], **row} for path, said in checked.items() for row in said.rows]
     checks = [{key: row[key] for key in _ROW} for row in rows]
-    flagged = [found[path].flagged for path in alike]
+    flagged = [checked[path].marked for path in alike]
     return CheckedScans(filled, _with_flags(together, flagged), findings, quality, checks)
 
 
@@ -138,12 +138,12 @@ def _objections(label: str, said: Findings) -> list[Finding]:
 def _with_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
     """Put the flags of each scan on the heights of all."""
     height = scans.height.assign_attrs(ancillary_variables="height_qc height_qc_tests")
-    flags = {}
+    variables: dict[str, Any] = {"height": height}
     for name in ("height_qc", "height_qc_tests"):
-        parts = [one[name].values for one in flagged]
+        parts = [scan[name].values for scan in flagged]
         values = np.stack(parts) if "scan" in scans.dims else parts[0]
-        flags[name] = (height.dims, values, flagged[0][name].attrs)
-    return scans.assign(height=height, **flags)
+        variables[name] = (height.dims, values, flagged[0][name].attrs)
+    return scans.assign(variables)
 
 
 def _without_folder(message: str, path: Path) -> str:

@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from tribolab.campaign.ledger import Ledger
+<<<<<<< HEAD
 from tribolab.campaign.outcome import Outcome
 from tribolab.campaign.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
 from tribolab.campaign.store import Catalogue, Identity
+=======
+from tribolab.campaign.outcome import OpenOutcome, Outcome
+from tribolab.campaign.plan import PlannedRun, scans_of, sha256_of_dialect
+from tribolab.campaign.store import Catalogue
+>>>>>>> types2
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
     CurveOutcome,
     ModelOutcome,
+    PartOutcome,
     RunOutcome,
     Source,
     SurfaceOutcome,
@@ -22,15 +30,15 @@ from tribolab.records.parts import (
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
-    from tribolab.campaign.store import Store
 
+Part = TypeVar("Part", RunOutcome, SurfaceOutcome, ModelOutcome)
 _FACT = "made from"
 _SOURCES = "sources"
 # Errors that the files themselves give: with the same files they would come again.
 _LASTING = ("ReadError", "AnalysisError", "UnitError", "ConfigError")
 
 
-def note(outcome: Outcome, runs: Sequence[PlannedRun], options: Mapping[str, object]) -> None:
+def note(outcome: OpenOutcome, runs: Sequence[PlannedRun], options: Mapping[str, object]) -> None:
     """Write down what results are made from, so that `unchanged` finds it.
 
     Parameters
@@ -42,13 +50,12 @@ def note(outcome: Outcome, runs: Sequence[PlannedRun], options: Mapping[str, obj
     options
         Of the report.
     """
-    parts = (*outcome.runs, *outcome.surfaces, *outcome.models)
+    parts: tuple[PartOutcome, ...] = (*outcome.runs, *outcome.surfaces, *outcome.models)
     lasting = all(part.status != "failed" or part.error in _LASTING for part in parts)
     readable = all(checksum for _, checksum, _ in outcome.sources)
     if lasting and readable and not outcome.kept and not any(c.crash for c in outcome.curves):
-        store: Store = outcome.store
-        store.say(_FACT, fingerprint(outcome.campaign, runs, options))
-        store.say(_SOURCES, json.dumps(outcome.sources))
+        outcome.store.say(_FACT, fingerprint(outcome.campaign, runs, options))
+        outcome.store.say(_SOURCES, json.dumps(outcome.sources))
 
 
 def fingerprint(
@@ -123,9 +130,7 @@ def _listed(catalogue: Catalogue) -> list[list[str]]:
     return listed
 
 
-def _as_before(parts: Sequence) -> tuple:
-    from dataclasses import replace
-
+def _as_before(parts: Sequence[Part]) -> tuple[Part, ...]:
     return tuple(replace(part, reused=part.status == "done") for part in parts)
 
 

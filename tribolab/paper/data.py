@@ -48,7 +48,7 @@ class PaperData:
     @property
     def forces(self) -> list[float]:
         """Normal forces [N] in glycerol, from low to high."""
-        return sorted({curve.normal_force for curve in self.curves})
+        return sorted({f for curve in self.curves if (f := curve.normal_force) is not None})
 
     def read(self, kind: str, surface: str, group: str) -> xr.Dataset:
         """Read a group of a task's data file."""
@@ -84,14 +84,14 @@ class PaperData:
             for run in self.runs
             if (run.surface, run.medium, run.normal_force) == (surface, medium, self.forces[0])
         )
-        parts = [
+        signals, segments, friction = (
             _read(self.folder / run.data_file, group) for group in ("run", "segments", "friction")
-        ]
-        v = parts[1]["sliding_speed"].values
-        off = np.abs(np.log(v / speed)) + (parts[1]["direction"].values < 0)
+        )
+        v = segments["sliding_speed"].values
+        off = np.abs(np.log(v / speed)) + (segments["direction"].values < 0)
         segment = int(np.nanargmin(off))
         label = f"{surface}, {medium}, {speed_text(float(f'{v[segment]:.2g}'))}"
-        return Trace(label, *parts, segment, surface)
+        return Trace(label, signals, segments, friction, segment, surface)
 
 
 @functools.lru_cache(_KEPT)

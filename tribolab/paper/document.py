@@ -12,10 +12,12 @@ import pandas as pd
 from tribolab.errors import AnalysisError
 from tribolab.paper.figures import BY_NAME, FIGURES
 from tribolab.paper.laboratory import Laboratory
+from tribolab.records.frames import rows_of
 from tribolab.records.wording import plain_value
 from tribolab.report.document import versions
 from tribolab.report.sections import Section
 from tribolab.studies import xu2026
+from tribolab.studies.published import Published
 from tribolab.studies.verdict import BOUNDS, DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
 from tribolab.words import many
 
@@ -100,7 +102,7 @@ def paper_document(
             },
             "numbers": rows,
             "figures": list(figures),
-            "shear_stress": fits.to_dict("records"),
+            "shear_stress": rows_of(fits),
             "laboratory": asdict(laboratory),
             "sources": [
                 dict(zip(("file", "sha256", "bytes"), one, strict=True)) for one in sources
@@ -132,16 +134,16 @@ def _in_words(counts: dict[str, int]) -> str:
     return f"{total}: {', '.join(said)}".replace(" 1 differ,", " 1 differs,")
 
 
-def _paired(table: pd.DataFrame) -> list[tuple[dict[str, Any], Any]]:
+def _paired(table: pd.DataFrame) -> list[tuple[dict[str, Any], Published]]:
     """Put every row beside the published number that it is about, of which the order is known."""
-    pairs = list(zip(table.to_dict("records"), xu2026.published, strict=True))
+    pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
         if (record["quantity"], record["condition"]) != (known.quantity, known.condition):
             raise AnalysisError(f"the table of numbers is not in the paper's order: {record}")
     return pairs
 
 
-def _row(record: dict[str, Any], known: Any) -> dict[str, Any]:
+def _row(record: dict[str, Any], known: Published) -> dict[str, Any]:
     figure = next((one for one in FIGURES if one.has(record)), None)
     section = BY_NAME[figure.name].section if figure else _section(known.where)
     note = str(record["note"])
@@ -155,7 +157,7 @@ def _row(record: dict[str, Any], known: Any) -> dict[str, Any]:
     }
 
 
-def _difference(record: dict[str, Any], known: Any) -> str:
+def _difference(record: dict[str, Any], known: Published) -> str:
     """Say how a number differs that has no relative difference; "" if it has one or is unknown."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] == REPRODUCED:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
+from tribolab.records.frames import rows_of
 from tribolab.records.wording import with_error
 from tribolab.words import force_text, number, span, speed_text, speeds
 
@@ -166,8 +167,10 @@ def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
     traces = [data.trace(*one) for one in wanted]
     said = []
     for trace in traces:
-        one = trace.friction.isel(segment=trace.segment)
-        mean, spread = (float(one[f"friction_coefficient{end}"]) for end in ("", "_std"))
+        if trace.friction is None:
+            continue
+        stroke = trace.friction.isel(segment=trace.segment)
+        mean, spread = (float(stroke[f"friction_coefficient{end}"]) for end in ("", "_std"))
         said.append(f"{trace.label}: µ = {with_error(mean, spread)} (standard deviation)")
     ends = [
         float((row.trimmed_stop - row.trimmed_start) * row.sliding_speed)
@@ -241,9 +244,10 @@ def shear_stress(data: PaperData) -> Drawn:
     from tribolab import plot
 
     said = _listed(
-        f"{row.surface}, {force_text(row.normal_force_N)}: {row.shear_stress_Pa / 1e6:.3g} MPa, "
-        f"in the adhesive area {row.corrected_shear_stress_Pa / 1e6:.3g} MPa"
-        for row in data.fits.itertuples()
+        f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
+        f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
+        f"in the adhesive area {fit['corrected_shear_stress_Pa'] / 1e6:.3g} MPa"
+        for fit in rows_of(data.fits)
     )
     return plot.shear_stress(data.fits, surfaces=SURFACES), said
 

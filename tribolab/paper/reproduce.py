@@ -18,6 +18,7 @@ from tribolab.paper.data import SURFACES, PaperData
 from tribolab.paper.document import context_of, paper_document, shown_sections
 from tribolab.paper.figures import FIGURES, DrawTask, draw
 from tribolab.paper.work import Task, compute
+from tribolab.records.frames import rows_of
 from tribolab.report import tables
 from tribolab.report.page import framed
 
@@ -104,7 +105,8 @@ def _computed(
     for name in SURFACES:
         wet = [c for c in outcome.curves if (c.surface, c.medium) == (name, "glycerol")]
         # of Smooth the paper computes the lowest load only
-        forces = sorted(c.normal_force for c in wet)[: 1 if name == "Smooth" else None]
+        forces = sorted(c.normal_force for c in wet if c.normal_force is not None)
+        forces = forces[: 1 if name == "Smooth" else None]
         tasks.append(Task("wet", name, folder, tuple(forces), tuple(wet)))
     tasks += [Task("dry", name, folder) for name in SURFACES]
     tasks += [Task("spectrum", surface.name, folder, scans=surface) for surface in scans]
@@ -121,9 +123,9 @@ def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """Divide the fitted shear stresses by the growth of the area by adhesion in glycerol."""
     data = PaperData(folder, (), (), fits)
     growth = []
-    for row in fits.itertuples():
-        loads = data.read("dry", row.surface, "loads").swap_dims(load="normal_force")
-        mine = loads.area_enhancement.sel(medium="glycerol", normal_force=row.normal_force_N)
+    for fit in rows_of(fits):
+        loads = data.read("dry", fit["surface"], "loads").swap_dims(load="normal_force")
+        mine = loads.area_enhancement.sel(medium="glycerol", normal_force=fit["normal_force_N"])
         growth.append(float(mine))
     return fits.assign(
         area_enhancement=growth,

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribolab.errors import AnalysisError
 from tribolab.provenance import made, sha256_of
 from tribolab.studies import xu2026
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.surface_plan import PlannedSurface
     from tribolab.records.parts import CurveOutcome
 
+Computed = tuple[dict[str, "xr.Dataset"], list[dict[str, Any]]]  # groups of a file, and rows
 _LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
 
 
@@ -84,36 +86,44 @@ def _origin(task: Task) -> dict[str, str]:
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
 
 
-def _published(task: Task) -> tuple[dict, list[dict[str, Any]]]:
+def _published(task: Task) -> Computed:
+    from tribolab.records.frames import rows_of
     from tribolab.studies.comparison import compare_with_paper
 
-    return {}, compare_with_paper().to_dict("records")
+    return {}, rows_of(compare_with_paper())
 
 
-def _dry(task: Task) -> tuple[dict, list]:
+def _dry(task: Task) -> Computed:
     from tribolab.studies.tables import dry_contact
 
     return dry_contact(task.surface), []
 
 
-def _spectrum(task: Task) -> tuple[dict, list]:
+def _spectrum(task: Task) -> Computed:
     """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
     from tribolab.campaign.surface_scans import spectra, usable_scans
 
+    if task.scans is None:
+        raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
     return spectra(task.scans, checked.scans, _LOWEST_WAVENUMBER)[0], []
 
 
-def _wet(task: Task) -> tuple[dict, list[dict[str, Any]]]:
+def _wet(task: Task) -> Computed:
     from tribolab.studies.tables import lubricated
 
     known = dict(xu2026.surface(task.surface).shear_stress)
     groups = lubricated(task.surface, task.forces)
-    fitted = [c for c in task.curves if c.normal_force in known and task.surface != "Smooth"]
-    return groups, [_fit(task, curve, known[curve.normal_force]) for curve in fitted]
+    fitted = [] if task.surface == "Smooth" else [(c, c.normal_force) for c in task.curves]
+    rows = [
+        _fit(task, curve, force, known[force])
+        for curve, force in fitted
+        if force is not None and force in known
+    ]
+    return groups, rows
 
 
-def _fit(task: Task, curve: CurveOutcome, printed: float) -> dict[str, Any]:
+def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> dict[str, Any]:
     """Fit the shear stress to a simulated curve, as the authors did to theirs."""
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.io.netcdf import read_netcdf
@@ -124,13 +134,13 @@ def _fit(task: Task, curve: CurveOutcome, printed: float) -> dict[str, Any]:
         xu2026.contact,
         xu2026.psd(task.surface),
         xu2026.system.viscosity,
-        xu2026.contact.load(curve.normal_force),
+        xu2026.contact.load(force),
         # one run at each load does not tell how well it would repeat; the rig's is known
         common_error=Scatter().repeat,
     )
     return {
         "surface": task.surface,
-        "normal_force_N": curve.normal_force,
+        "normal_force_N": force,
         "printed_shear_stress_Pa": printed,
         "shear_stress_Pa": fit.shear_stress,
         "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,

@@ -59,6 +59,19 @@ class Findings:
     limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
 
     @property
+    def marked(self) -> xr.Dataset:
+        """The data with their quality flags.
+
+        Raises
+        ------
+        LookupError
+            If these checks set none: of an instrument's own results there are only the findings.
+        """
+        if self.flagged is None:
+            raise LookupError(f"{self.name}: its checks set no flags")
+        return self.flagged
+
+    @property
     def rows(self) -> list[FindingRow]:
         """One dict for each result, graver ones first; numbers that are unknown are None."""
         rows: list[FindingRow] = [

@@ -217,9 +217,9 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     level = np.log(np.maximum(level, np.finfo(float).tiny))
     # the block that holds the change may have any median: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
-    first = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
+    begins = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
     changes = []
-    for block in first:  # a loop over changes of the rate, few by their nature
+    for block in begins:  # a loop over changes of the rate, few by their nature
         start = block * stretch
         cut = rate_change(time[start : start + 3 * stretch + 1], factor)
         if cut is not None:

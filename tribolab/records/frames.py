@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from tribolab.friction.coefficient.steadiness import WORDS
 from tribolab.plot.labels import column
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +74,17 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
         values = np.asarray(data[name])
         columns[name if values.dtype.kind in "OUS" else column(name)] = values
     return pd.DataFrame(columns)
+
+
+def rows_of(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the rows of a table, each by the names of the columns.
+
+    Examples
+    --------
+    >>> rows_of(pd.DataFrame({"medium": ["dry"], "normal_force_N": [31.0]}))
+    [{'medium': 'dry', 'normal_force_N': 31.0}]
+    """
+    return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
 
 
 def friction_table(friction: xr.Dataset) -> pd.DataFrame:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def judgement(fit: xr.Dataset) -> str:
     return "; ".join(parts)
 
 
-def _verdict(attrs: dict, largest: float) -> str:
+def _verdict(attrs: Mapping[str, Any], largest: float) -> str:
     """Say first whether the two agree, then whether what is left has an order."""
     ordered = attrs["runs_p_value"] < _UNLIKELY
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:

@@ -95,6 +95,27 @@ class CurveOutcome:
 
 Cell = float | int | str | bool | None
 Row = dict[str, Cell]  # of a table: by the column's name, with its unit; None where not known
+
+
+def number_of(row: Row, column: str) -> float | None:
+    """Return the number in a column of a row; None where it is not known.
+
+    Raises
+    ------
+    TypeError
+        If the column has texts.
+
+    Examples
+    --------
+    >>> number_of({"medium": "dry", "pressure_Pa": 2.5e5}, "pressure_Pa")
+    250000.0
+    """
+    value = row.get(column)
+    if isinstance(value, str):
+        raise TypeError(f"{column} is a text, {value!r}, not a number")
+    return value
+
+
 Source = tuple[str, str, int]  # label, sha256 ("" if it cannot be read), bytes
 
 
@@ -239,3 +260,6 @@ class ModelOutcome:
     def done(self) -> bool:
         """Whether there is a model."""
         return self.status == "done"
+
+
+PartOutcome = RunOutcome | SurfaceOutcome | ModelOutcome  # what files are read for

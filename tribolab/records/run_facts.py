@@ -124,8 +124,8 @@ def facts_of(
 
 def position_range(segments: xr.Dataset) -> tuple[float, float] | None:
     """Return the part of the track that counts [m], where the campaign file names one."""
-    ends = [segments.attrs.get(f"position_{end}_m") for end in ("low", "high")]
-    return None if None in ends else (float(ends[0]), float(ends[1]))
+    low, high = (segments.attrs.get(f"position_{end}_m") for end in ("low", "high"))
+    return None if low is None or high is None else (float(low), float(high))
 
 
 def main_quantity(friction: xr.Dataset) -> str:
@@ -214,13 +214,13 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
     if not moving.any():  # without a speed, standing still may be among the sliding
         return Waveform(STEADY, "" if over_speed else "if it slides: speed not known")
     names, counts = np.unique(kind[moving], return_counts=True)
-    names = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
+    ordered = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
     detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
     if not over_speed:
         detail = f"in {moving.sum()} of {many(kind.size, 'segment')}"
-    if names[1:]:
-        detail += f"; also {', '.join(names[1:])}"
-    return Waveform(names[0], detail)
+    if ordered[1:]:
+        detail += f"; also {', '.join(ordered[1:])}"
+    return Waveform(ordered[0], detail)
 
 
 def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:

@@ -73,7 +73,7 @@ def plan_figures(curves: Sequence[CurveOutcome]) -> list[CurveFigure]:
         mine = [curve for curve in curves if curve.normal_force == load and curve.surface]
         if len({curve.surface for curve in mine}) > 1:
             file = f"figures/stribeck_load_{number + 1}.svg"
-            title = force_text(float("nan") if load is None else load)
+            title = force_text(load)
             chosen = tuple(mine[:_MOST_IN_ONE])
             planned.append(CurveFigure(chosen, title, file, "load", surfaces))
     return planned

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal, Protocol, TypeVar
 
 from tribolab.campaign.engine import Stage
 from tribolab.campaign.store import Store
@@ -18,6 +19,7 @@ from tribolab.words import explain
 
 KIND = "figure"
 Wanted = Literal["all", "curves", "none"]
+_WANTED: dict[str, Wanted] = {"all": "all", "curves": "curves", "none": "none"}
 
 
 @dataclass(frozen=True)
@@ -33,12 +35,9 @@ class FigureTask:
     title
         What it shows.
     draw
-        Function of a module, that it may travel: `what` in, and the results folder; the figure,
-        its caption, what it says in words, and its kind out. None where there is nothing to show.
-    what
-        What `draw` wants to know.
-    files
-        Data files that it reads.
+        The results folder in; the figure, its caption, what it says in words, and its kind out,
+        or None where there is nothing to show. A function of a module, with what it wants to know,
+        that it may travel.
     pdf
         Whether to write it as PDF, too.
     """
@@ -46,15 +45,33 @@ class FigureTask:
     section: str
     file: str
     title: str
-    draw: Callable[[Any, Path], Drawn | None]
-    what: Any
-    files: tuple[str, ...]
+    draw: Callable[[Path], Drawn | None]
     folder: Path = Path()
     pdf: bool = False
     fingerprint: str = ""
 
 
-class Figures(Stage[FigureTask, "FigureRecord | None", "tuple[str, FigureRecord | Notice | None]"]):
+class Planned(Protocol):
+    """What knows a figure before it is drawn: its kinds of figures do, each in its own way."""
+
+    @property
+    def file(self) -> str:
+        """Path of the picture relative to the results folder."""
+
+    @property
+    def title(self) -> str:
+        """What it shows."""
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Data files that it reads."""
+
+
+Figured = FigureRecord | Notice | None  # a figure, why there is none, or nothing to show
+What = TypeVar("What", bound=Planned)
+
+
+class Figures(Stage[FigureTask, Figured, tuple[str, Figured]]):
     """The stage of the figures.
 
     Parameters
@@ -75,9 +92,7 @@ class Figures(Stage[FigureTask, "FigureRecord | None", "tuple[str, FigureRecord 
         """Return the figures, each with the checksum of what it is drawn from."""
         return self._tasks
 
-    def known(
-        self, task: FigureTask, place: int
-    ) -> tuple[str, FigureRecord | Notice | None] | None:
+    def known(self, task: FigureTask, place: int) -> tuple[str, Figured] | None:
         """Take over a figure whose data are the same."""
         entry = self._store.before.get(KIND, task.file, FigureRecord)
         if entry is None or entry.fingerprint != task.fingerprint:
@@ -97,13 +112,11 @@ class Figures(Stage[FigureTask, "FigureRecord | None", "tuple[str, FigureRecord 
         """Draw one figure into the results."""
         return draw(task)
 
-    def failed(self, task: FigureTask, error: BaseException) -> Any:
+    def failed(self, task: FigureTask, error: BaseException) -> Notice:
         """Return why a figure could not be drawn."""
         return Notice("error", "", f"figure {task.title}", explain(error)[0])
 
-    def keep(
-        self, task: FigureTask, place: int, record: Any
-    ) -> tuple[str, FigureRecord | Notice | None]:
+    def keep(self, task: FigureTask, place: int, record: Figured) -> tuple[str, Figured]:
         """Write down a figure."""
         if isinstance(record, FigureRecord):
             self._store.put(KIND, task.file, place, task.fingerprint, record)
@@ -113,7 +126,7 @@ class Figures(Stage[FigureTask, "FigureRecord | None", "tuple[str, FigureRecord 
 def draw(task: FigureTask) -> FigureRecord | None:
     """Draw one figure, and write it with the numbers that it shows."""
     with DRAWING:
-        drawn = task.draw(task.what, task.folder)
+        drawn = task.draw(task.folder)
         if drawn is None:
             return None
         return save_figure(drawn, task.folder, task.file, pdf=task.pdf)
@@ -121,13 +134,13 @@ def draw(task: FigureTask) -> FigureRecord | None:
 
 def planned(
     section: str,
-    figures: Sequence[Any],
-    draw: Callable[[Any, Path], Drawn | None],
+    figures: Sequence[What],
+    draw: Callable[[What, Path], Drawn | None],
     store: Store,
     *,
     pdf: bool = False,
 ) -> list[FigureTask]:
-    """Make tasks of what is to be drawn: things with `file`, `title` and the `files` they read."""
+    """Make tasks of what is to be drawn."""
     from tribolab.version import __version__
 
     tasks = []
@@ -139,9 +152,7 @@ def planned(
                 section=section,
                 file=what.file,
                 title=what.title,
-                draw=draw,
-                what=what,
-                files=tuple(what.files),
+                draw=partial(draw, what),
                 folder=store.folder,
                 pdf=pdf,
                 fingerprint=sha256_of(shaping),
@@ -158,6 +169,6 @@ def wanted(word: str) -> Wanted:
     ConfigError
         If the word is none of ``"all"``, ``"curves"``, ``"none"``.
     """
-    if word == "all" or word == "curves" or word == "none":
-        return word
+    if word in _WANTED:
+        return _WANTED[word]
     raise ConfigError(f"figures: '{shown(word)}' is none of all, curves, none")

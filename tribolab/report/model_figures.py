@@ -198,8 +198,11 @@ def _curve(task: _Opened) -> tuple[Figure, str]:
 def _loads(task: _Opened) -> tuple[Figure, str]:
     measured, models = [], []
     for model in task.figure.models:
-        labels = {"surface": model.surface, "medium": model.medium}
-        labels["normal_force_N"] = model.normal_force
+        labels: dict[str, str | float | None] = {
+            "surface": model.surface,
+            "medium": model.medium,
+            "normal_force_N": model.normal_force,
+        }
         fit, curve = (_read(task, model, group) for group in ("fit", "curve"))
         measured.append(fit.assign_attrs(labels))
         if has_shear_stress(fit):

@@ -96,48 +96,44 @@ def complete(rows: Sequence[ModelRow]) -> None:
     The spectrum's error is known where the model's uncertainty was computed; at the other loads of
     the surface it is taken from there, since it moves the whole plateau by one factor.
     """
-    fitted = [one for one in rows if one.fit is not None]
-    for one in fitted:
-        same = [
-            other
-            for other in rows
-            if other.shift and (other.model.surface, other.model.medium) == _kind(one)
+    fitted = [(row.model, row.fit) for row in rows if row.fit is not None]
+    shifts = [(row.model, row.shift) for row in rows if row.shift is not None]
+    for model, fit in fitted:
+        known = [pair for pair in shifts if _kind(pair[0]) == _kind(model)]
+        own = [pair for pair in known if pair[0] is model]
+        stress, half = (fit[f"shear_stress_{k}Pa"] for k in ("", "statistical_half_interval_"))
+        if known:
+            source, (low, high) = (own or known)[0]
+            fit |= {"spectrum_error_low": low, "spectrum_error_high": high}
+            fit["spectrum_error_from"] = source.curve
+            _add_spectrum(fit, (high - low) / (2 * _95))
+        else:
+            low = high = 0.0
+            fit |= dict.fromkeys(("spectrum_error_low", "spectrum_error_high"))
+            fit["spectrum_error_from"] = ""
+            fit["interval_says"] = f"{STATISTICAL}; {fit['interval_says']}"
+        fit["shear_stress_low_Pa"] = stress - float(np.hypot(half, stress * low))
+        fit["shear_stress_high_Pa"] = stress + float(np.hypot(half, stress * high))
+    for place, (model, fit) in enumerate(fitted):
+        fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
+        # those before it at the same load and in the same medium, in the order of the campaign
+        earlier = [
+            (other, of)
+            for other, of in fitted[:place]
+            if (other.medium, other.normal_force) == (model.medium, model.normal_force)
         ]
-        source = one if one.shift else (same or [None])[0]
-        low, high = source.shift if source else (None, None)
-        names = ("", "statistical_half_interval_")
-        stress, half = (one.fit[f"shear_stress_{k}Pa"] for k in names)
-        if not source:
-            one.fit["interval_says"] = f"{STATISTICAL}; {one.fit['interval_says']}"
-        one.fit |= {
-            "spectrum_error_low": low,
-            "spectrum_error_high": high,
-            "spectrum_error_from": "" if not source else source.model.curve,
-            "shear_stress_low_Pa": stress - float(np.hypot(half, stress * (low or 0))),
-            "shear_stress_high_Pa": stress + float(np.hypot(half, stress * (high or 0))),
-        }
-        if source:
-            _add_spectrum(one.fit, (high - low) / (2 * _95))
-    for one in fitted:
-        one.fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
-        # the others at the same load and in the same medium, in the order of the campaign
-        alike = [
-            other
-            for other in fitted
-            if (other.model.medium, other.model.normal_force)
-            == (one.model.medium, one.model.normal_force)
-        ]
-        earlier = alike[: alike.index(one)]
-        reference = earlier[-1] if earlier else None
-        if reference and _is_known(reference.fit) and one.fit["shear_stress_Pa"] > 0:
+        if not earlier:
+            continue
+        reference, beside = earlier[-1]
+        if _is_known(beside) and fit["shear_stress_Pa"] > 0:
             value, error = (
-                [other.fit[f"corrected_shear_stress_{k}Pa"] for other in (one, reference)]
+                [of[f"corrected_shear_stress_{k}Pa"] for of in (fit, beside)]
                 for k in ("", "error_")
             )
             ratio = value[0] / value[1]
             parts = [e / v for e, v in zip(error, value, strict=True)]
-            one.fit |= {
-                "ratio_to": reference.model.surface,
+            fit |= {
+                "ratio_to": reference.surface,
                 "ratio": ratio,
                 "ratio_error": float(abs(ratio) * np.hypot(*parts)),
             }
@@ -155,25 +151,25 @@ def _is_known(fit: dict[str, Any]) -> bool:
     return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
 
-def _kind(one: ModelRow) -> tuple[str, str]:
-    return one.model.surface, one.model.medium
+def _kind(model: ModelOutcome) -> tuple[str, str]:
+    return model.surface, model.medium
 
 
 def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return all fits, a row each."""
-    fits = [one.labels | one.fit for one in rows if one.fit is not None]
+    fits = [row.labels | row.fit for row in rows if row.fit is not None]
     return pd.DataFrame(fits, columns=SHEAR_STRESS)
 
 
 def curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return all model curves, a row per speed."""
-    points = [one.labels | row for one in rows for row in one.curve]
+    points = [model.labels | row for model in rows for row in model.curve]
     return pd.DataFrame(points, columns=CURVE)
 
 
 def sensitivity_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return what moves the curves, a row per variation."""
-    varied = [one.labels | row for one in rows for row in one.sensitivity]
+    varied = [model.labels | row for model in rows for row in model.sensitivity]
     return pd.DataFrame(varied, columns=SENSITIVITY)
 
 

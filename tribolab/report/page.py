@@ -42,8 +42,8 @@ class Detail(NamedTuple):
     """What stands under one run: all of it, its trace, its place from 1, or all that compressed."""
 
     run: dict[str, Any]
-    trace: dict[str, Markup] | None
-    index: int
+    trace: dict[str, str] | None
+    place: int
     packed: str
 
 
@@ -69,8 +69,7 @@ def write_page(document: Mapping[str, Any], folder: Path, runs: Runs, store: Tra
     path = folder / "report.html"
     stream = template.stream(context | frame)
     stream.enable_buffering(256)
-    with path.open("w", encoding="utf-8") as file:
-        stream.dump(file)
+    stream.dump(str(path), encoding="utf-8")
     return path
 
 
@@ -91,20 +90,20 @@ def _context(
         "places": {run["name"]: place + 1 for place, run in enumerate(document["runs"])},
     }
     many = len(document["runs"]) > _MOST_OPEN
-    template = _environment(folder).get_template("run.html.j2")
+    template = environment(folder).get_template("run.html.j2")
 
     def details() -> Iterator[Detail]:
-        for index, run in enumerate(runs(), start=1):
-            found = store.trace("run", run["name"])
-            trace = None
-            if found is not None:
+        for place, run in enumerate(runs(), start=1):
+            points = store.trace("run", run["name"])
+            trace: dict[str, str] | None = None
+            if points is not None:
                 key = Path(run["data_file"]).stem
-                trace = {"json": Markup(found.coarse), "fine": Markup(found.fine), "key": key}
+                trace = {"json": Markup(points.coarse), "fine": Markup(points.fine), "key": key}
             packed = ""
             if many:
-                text = template.render(context, run=run, trace=trace, index=index)
+                text = template.render(context, run=run, trace=trace, index=place)
                 packed = deflated(text.encode())
-            yield Detail(run, trace, index, packed)
+            yield Detail(run, trace, place, packed)
 
     return context | {"details": details}
 
@@ -142,7 +141,7 @@ def _framing(
         f"form-action 'none'; style-src '{fingerprint(style)}'; script-src {hashes}"
     )
     frame = {"style": style, "scripts": scripts, "sections": sections, "policy": policy}
-    return _environment(folder).get_template(template), frame
+    return environment(folder).get_template(template), frame
 
 
 def _script(name: str) -> str:
@@ -151,15 +150,16 @@ def _script(name: str) -> str:
     return notice + asset(name)
 
 
-def _environment(folder: Path) -> jinja2.Environment:
-    environment = jinja2.Environment(
+def environment(folder: Path) -> jinja2.Environment:
+    """Return what fills the templates of pages whose figures lie in a folder."""
+    jinja = jinja2.Environment(
         loader=jinja2.PackageLoader("tribolab.report"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
+    jinja.filters |= {
         "number": lambda value, digits=3: "–" if value is None else number(value, digits),
         "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
         "scaled": lambda value, factor, digits=3: (
@@ -179,7 +179,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "numbers": lambda file: deflated((folder / file).read_bytes()),
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }
-    environment.globals |= {
+    jinja.globals |= {
         "with_error": wording.with_error,
         "span": words.span,
         "speeds": words.speeds,
@@ -191,7 +191,7 @@ def _environment(folder: Path) -> jinja2.Environment:
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }
-    return environment
+    return jinja
 
 
 def asset(name: str) -> str:

@@ -28,14 +28,14 @@ from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import surface_record, table
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.outcome import OpenOutcome, Outcome
     from tribolab.records.parts import RunOutcome
 
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 
 
 def write_report(
-    outcome: Outcome,
+    outcome: OpenOutcome,
     *,
     executor: Executor | None = None,
     progress: Progress | None = None,
@@ -75,7 +75,7 @@ def write_report(
     models = [entry.record for entry in store.all("model", ModelRecord)]
     briefs, said = _runs(outcome)
     findings = _of_parts(outcome, surfaces, models) + said
-    shown, missing = _curves(curves, {run["name"]: run["quantity"] for run in briefs})
+    shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
     modes, unjudged = _modes(outcome, curves, surfaces, models, executor)
     findings += unjudged
@@ -93,12 +93,12 @@ def write_report(
     if figures == "all":
         done = [surface.outcome for surface in surfaces if surface.rows is not None]
         known = [curve.outcome for curve in shown]
-        for section, plans, draw in (
-            ("surface_figures", plan_surface_figures(done), draw_surfaces),
-            ("model_figures", plan_model_figures(outcome, list(rows.values())), draw_model),
-            ("sliding_figures", plan_sliding_figures(known, modes, outcome), draw_sliding),
-        ):
-            tasks += planned(section, plans, draw, store, pdf=pdf)
+        surfaced = plan_surface_figures(done)
+        tasks += planned("surface_figures", surfaced, draw_surfaces, store, pdf=pdf)
+        modelled = plan_model_figures(outcome, list(rows.values()))
+        tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
+        sliding = plan_sliding_figures(known, modes, outcome)
+        tasks += planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
     drawn: dict[str, list[dict[str, str]]] = {section: [] for section in SECTIONS}
     for section, record in perform(Figures(tasks, store), executor, tell):
         if isinstance(record, Notice):
@@ -136,7 +136,8 @@ def _documents(outcome: Outcome) -> Iterator[dict[str, Any]]:
 
 def _runs(outcome: Outcome) -> tuple[list[dict[str, Any]], list[Notice]]:
     """Return what is brief of every run, and what is said of it."""
-    briefs, said = [], []
+    briefs: list[dict[str, Any]] = []
+    said: list[Notice] = []
     for entry in outcome.store.all("run", RunRecord):
         briefs.append(brief_run(run_document(entry.record)))
         said += entry.record.notices
@@ -157,11 +158,12 @@ def _of_parts(
         for run in outcome.runs
         if run.quality in ("fail", "error")
     ]
-    for where, part in (
-        *((f"surface {one.outcome.name}", one.outcome) for one in surfaces),
-        *((f"model {one.outcome.name.removeprefix('model_')}", one.outcome) for one in models),
-    ):
-        findings += [Notice(f.severity, "", where, f.message) for f in part.findings]
+    said = [(f"surface {part.outcome.name}", part.outcome.findings) for part in surfaces]
+    said += [
+        (f"model {part.outcome.name.removeprefix('model_')}", part.outcome.findings)
+        for part in models
+    ]
+    findings += [Notice(f.severity, "", where, f.message) for where, of in said for f in of]
     return findings
 
 
@@ -169,7 +171,7 @@ def _failure(run: RunOutcome) -> Notice:
     return Notice("fail", run.name, "run", run.reason or run.error or "no reason was given")
 
 
-def _curves(
+def shown_curves(
     curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
 ) -> tuple[list[CurveRecord], list[Notice]]:
     """Return the curves that can be shown, and why the others cannot."""
@@ -191,7 +193,7 @@ def _curves(
 
 
 def _modes(
-    outcome: Outcome,
+    outcome: OpenOutcome,
     curves: Sequence[CurveRecord],
     surfaces: Sequence[SurfaceRecord],
     models: Sequence[ModelRecord],

@@ -11,6 +11,7 @@ import numpy as np
 
 from tribolab.campaign.curves import SLIP
 from tribolab.records.mode_record import ModeRecord, condition
+from tribolab.records.parts import number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.records.wording import with_error
 from tribolab.report.figure_files import Drawn
@@ -169,9 +170,10 @@ def _slow_segments(curve: CurveOutcome, outcome: Outcome) -> list[tuple[str, int
         entry = outcome.store.get("run", name, RunRecord)
         rows = [] if entry is None else entry.record.slip
         moving = [
-            (float(row["sliding_speed_m_s"] or 0.0), k)
+            (speed, k)
             for k, row in enumerate(rows)
-            if (row["sliding_speed_m_s"] or 0.0) > 0 and (row.get("direction") or 0) >= 0
+            if (speed := float(number_of(row, "sliding_speed_m_s") or 0.0)) > 0
+            and (number_of(row, "direction") or 0) >= 0
         ]
         apart: list[tuple[str, int, float]] = []
         for speed, k in sorted(moving):
@@ -196,24 +198,28 @@ def _traces(what: SlipFigure, folder: Path) -> Made:
     from tribolab.io.netcdf import read_groups
 
     stack: list[Trace] = []
-    parts: dict[str, list[xr.Dataset]] = {}
+    opened: dict[str, list[xr.Dataset]] = {}
     surface = what.title.partition(":")[0]
     for medium, file, segment in what.shown:
-        if file not in parts:
+        if file not in opened:
             groups = read_groups(folder / file, ("run", "segments", "friction"))
-            parts[file] = list(groups.values())
-        speed = speed_text(float(parts[file][1]["sliding_speed"][segment]))
-        stack.append(plot.Trace(f"{speed}, {medium}", *parts[file], segment, surface))
+            opened[file] = list(groups.values())
+        run, segments, friction = opened[file]
+        speed = speed_text(float(segments["sliding_speed"][segment]))
+        label = f"{speed}, {medium}"
+        stack.append(plot.Trace(label, run, segments, friction, segment, surface))
     return plot.slip_traces(stack, what.surfaces), "; ".join(map(_in_words, stack)), []
 
 
 def _in_words(trace: Trace) -> str:
     """Say what a trace shows: how much friction varies about its mean."""
-    one = trace.friction.isel(segment=trace.segment)
+    if trace.friction is None:
+        return trace.label
+    mean = trace.friction.isel(segment=trace.segment)
     for name, what, unit in (("friction_coefficient", "µ", ""), ("friction_force", "F", " N")):
-        if name in one:
-            error = float(one[f"{name}_std"]) if f"{name}_std" in one else None
-            return f"{trace.label}: {what} = {with_error(float(one[name]), error, unit)}"
+        if name in mean:
+            error = float(mean[f"{name}_std"]) if f"{name}_std" in mean else None
+            return f"{trace.label}: {what} = {with_error(float(mean[name]), error, unit)}"
     return trace.label
 
 

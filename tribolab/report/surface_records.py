@@ -10,18 +10,18 @@ import pandas as pd
 from tribolab.records.surface_rows import SurfaceRows
 
 if TYPE_CHECKING:
-    from tribolab.records.parts import SurfaceOutcome
+    from tribolab.records.parts import Row, SurfaceOutcome
 
 
 def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.DataFrame:
     """Return one of the three tables over all surfaces."""
-    parts = [
-        {"surface": one.name, "quality": one.quality} | row
-        for one in rows
+    parts: list[Row] = [
+        {"surface": surface.name, "quality": surface.quality, **row}
+        for surface in rows
         for row in (
-            [one.roughness]
+            [surface.roughness]
             if name == "roughness"
-            else (one.contact if name == "contact" else one.adhesion)
+            else (surface.contact if name == "contact" else surface.adhesion)
         )
     ]
     return pd.DataFrame(parts, columns=["surface", "quality", *columns])

@@ -6,7 +6,7 @@ import functools
 import glob
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
 import numpy as np
 import xarray as xr
@@ -25,6 +25,28 @@ PathLike = str | Path
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
 _ONE_BY_ONE = Cure(notebook="read them with stack=False")
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: str | Path | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[True] = True,
+) -> xr.Dataset: ...
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: str | Path | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[False],
+) -> list[xr.Dataset]: ...
 
 
 def read_scans(

@@ -1,0 +1,115 @@
+"""What the keys of the campaign file hold: texts, patterns, quantities and uncertainties."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import (
+    BeforeValidator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    WithJsonSchema,
+)
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import core_schema
+
+from tribolab.errors import UnitError, shown
+from tribolab.units import to_si
+
+_NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
+
+
+@dataclass(frozen=True)
+class Si:
+    """Mark of a quantity: text with a unit in the file, a float in SI afterwards.
+
+    Parameters
+    ----------
+    unit
+        Of the float.
+    example
+        What the file may say.
+    """
+
+    unit: str
+    example: str
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Convert what the file says before it is taken as a float."""
+        return core_schema.with_info_before_validator_function(self._converted, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Return what an editor knows of it."""
+        return {
+            "type": "string",
+            "pattern": _NUMBER_WITH_UNIT,
+            "examples": [self.example],
+            "unit": self.unit,  # no word of JSON Schema: our own, as in run.schema.json
+        }
+
+    def _converted(self, value: Any, info: core_schema.ValidationInfo[Any]) -> float:
+        in_file = bool(info.context and info.context.get("in_file"))
+        if in_file and not isinstance(value, str):
+            raise ValueError(f"{shown(repr(value))} has no unit; write e.g. {self.example!r}")
+        try:
+            return to_si(value, self.unit, name="")
+        except UnitError as error:
+            text = f"{str(error).removeprefix(': ')} (e.g. {self.example!r})"
+            raise ValueError(text) from error
+
+
+class PositiveSi(Si):
+    """Mark of a quantity that is greater than zero."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Refuse zero and what is below."""
+        converted = super().__get_pydantic_core_schema__(source, handler)
+        return core_schema.no_info_after_validator_function(_positive, converted)
+
+
+def _positive(value: float) -> float:
+    if not value > 0:
+        raise ValueError(f"{value:g} is not greater than zero")
+    return value
+
+
+Text = Annotated[str, Field(min_length=1)]
+Patterns = Annotated[
+    tuple[Text, ...],
+    BeforeValidator(lambda value: (value,) if isinstance(value, str) else value),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "minLength": 1},
+                {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1},
+            ]
+        }
+    ),
+]
+
+
+def _spread(value: Any) -> str:
+    """Check an uncertainty of a force, or of a coefficient where only that was recorded."""
+    if isinstance(value, str):
+        for unit in ("N", "1"):
+            with contextlib.suppress(UnitError):
+                if to_si(value, unit, name="") >= 0:
+                    return value
+    raise ValueError(f"{value!r} is no force and no pure number; write e.g. '0.2 N' or '2 %'")
+
+
+# text until the signal that it is for says its unit
+Spread = Annotated[
+    str,
+    BeforeValidator(_spread),
+    WithJsonSchema({"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["0.2 N", "2 %"]}),
+]
