@@ -18,7 +18,7 @@ from tribolab.app.terminal import truth_lines
 from tribolab.app.truth import Comparison
 from tribolab.app.truth_shear_stress import compare_shear_stress
 from tribolab.campaign.load import load_campaign
-from tribolab.campaign.model_analysis import _beside
+from tribolab.campaign.model_analysis import beside
 from tribolab.campaign.pipeline import process
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -331,7 +331,7 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     measured["friction_coefficient_std"] = measured.friction_coefficient_sem
     found = fit_shear_stress(measured, xu2026.contact, xu2026.psd("Sb-S"), 1.4, 310.0)
     assert found.shear_stress < 0
-    fit = _beside(found, measured)
+    fit = beside(found, measured)
     np.testing.assert_allclose(fit.friction_coefficient_model, fluid)
     np.testing.assert_allclose(fit.friction_coefficient_residual, -0.5 * fluid)
     assert not fit.friction_coefficient_solid.any()

@@ -11,12 +11,13 @@ from rich.console import Console
 
 from tribolab import cli
 from tribolab.app import terminal
-from tribolab.campaign import pipeline
+from tribolab.campaign import curves
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run
-from tribolab.records.run_facts import _of_friction
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.run_facts import friction_facts
 from tribolab.report import results
 
 TEXT = """
@@ -41,6 +42,11 @@ def steps_of_an_instrument(shared_data, folder, surface=True, number="*"):
     return process(load_campaign(file), folder / "new")
 
 
+def curves_of(outcome):
+    """What is recorded of the measured curves."""
+    return [entry.record for entry in outcome.store.all("curve", CurveRecord)]
+
+
 @pytest.fixture(scope="module")
 def together(shared_data, tmp_path_factory):
     return steps_of_an_instrument(shared_data, tmp_path_factory.mktemp("together"))
@@ -49,9 +55,9 @@ def together(shared_data, tmp_path_factory):
 def test_repeats_without_a_speed_make_an_empty_curve_and_no_crash(together):
     (curve,) = together.curves
     assert (curve.status, curve.reason, curve.crash) == ("done", "", "")
-    findings = []
-    results._curves(together, {}, findings)
-    assert [row["message"] for row in findings] == [
+    shown, missing = results.shown_curves(curves_of(together), {})
+    assert shown == []
+    assert [notice.message for notice in missing] == [
         "no measured curve: no segment has both a speed and a friction coefficient"
     ]
 
@@ -62,14 +68,13 @@ def test_a_mistake_of_ours_in_a_curve_is_an_error_and_traced_on_demand(
     def broken(task):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr(pipeline, "process_curve", broken)
+    monkeypatch.setattr(curves, "process_curve", broken)
     outcome = steps_of_an_instrument(shared_data, tmp_path, number="1")
-    findings = []
-    results._curves(outcome, {}, findings)
-    assert [row["severity"] for row in findings] == ["error"]
-    assert cli._show(outcome, debug=False) == 3
+    _, missing = results.shown_curves(curves_of(outcome), {})
+    assert [notice.severity for notice in missing] == ["error"]
+    assert cli.show_outcome(outcome, debug=False) == 3
     assert "Traceback" not in capsys.readouterr().err
-    assert cli._show(outcome, debug=True) == 3
+    assert cli.show_outcome(outcome, debug=True) == 3
     assert "ZeroDivisionError: float division by zero" in capsys.readouterr().err
 
 
@@ -122,7 +127,7 @@ def test_a_trend_that_can_be_told_is_still_told_and_many_samples_show_that_there
 def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
     for run in together.runs:
         friction = read_netcdf(together.folder / run.data_file, group="friction")
-        assert _of_friction(friction)["relative_drift"] is None
+        assert friction_facts(friction)["relative_drift"] is None
 
 
 def printed(outcome):

@@ -70,11 +70,13 @@ def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     try:
         campaign = Campaign.model_validate(content, context={"in_file": True})
     except ValidationError as error:
-        found = problems.from_pydantic(error, Campaign)
+        wrong = problems.from_pydantic(error, Campaign)
     else:
         campaign.lies_at(path)
-        runs, wrong = plan(campaign)
-        found = of_names(campaign) or wrong
-    if found:
-        raise ConfigError(problems.message(found, path, text))
-    return campaign, runs
+        # names first: no file is looked at with an instrument that nobody knows
+        wrong = of_names(campaign)
+        if not wrong:
+            runs, wrong = plan(campaign)
+        if not wrong:
+            return campaign, runs
+    raise ConfigError(problems.message(wrong, path, text))

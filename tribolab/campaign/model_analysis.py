@@ -69,7 +69,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         _, low, high = _enhancement(model, folder)
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
-        groups["fit"] = _beside(fit, measured).assign_attrs(bounds)
+        groups["fit"] = beside(fit, measured).assign_attrs(bounds)
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
@@ -123,7 +123,7 @@ def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float
     return best, low, high
 
 
-def _beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
+def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
     """Model and points at the measured speeds; the fit among the attributes.
 
     Where the fitted shear stress is negative, the model is the one with none.

@@ -113,7 +113,7 @@ def facts_of(
     """
     return RunFacts(
         **_of_record(run),
-        **_of_friction(friction),
+        **friction_facts(friction),
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
         omitted=tuple(_omitted(segments)),
@@ -163,7 +163,8 @@ _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
 _CHECK = ("check", "status", "variable", "message", "value", "unit")
 
 
-def _of_friction(friction: xr.Dataset) -> dict[str, Any]:
+def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
+    """Return what `RunFacts` says of a run's friction, by its fields."""
     name = main_quantity(friction)
     value = np.asarray(friction[name], float) if name in friction else np.array([])
     of = SPREAD_OF.get(name, name)
