@@ -9,15 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from tribolab.campaign.ledger import Ledger
-<<<<<<< HEAD
-from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.outcome import OpenOutcome, Outcome
 from tribolab.campaign.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
 from tribolab.campaign.store import Catalogue, Identity
-=======
-from tribolab.campaign.outcome import OpenOutcome, Outcome
-from tribolab.campaign.plan import PlannedRun, scans_of, sha256_of_dialect
-from tribolab.campaign.store import Catalogue
->>>>>>> types2
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
     CurveOutcome,
