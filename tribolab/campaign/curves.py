@@ -136,10 +136,10 @@ def process_curve(task: CurveTask) -> CurveRecord:
         parts = [read_groups(task.folder / n, ("friction", SLIP)) for n in task.data_files]
     frictions = [part["friction"] for part in parts]
     curve = measured_stribeck_curve(frictions)
-    levels: list[float] = []
+    levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
-        levels = curve["run_level"].values.tolist()
+        levels = plain_value(curve["run_level"].values)
     groups: dict[str, xr.Dataset] = {}
     reason = ""
     try:

@@ -150,7 +150,7 @@ def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
     """Pool the run levels of all curves that were repeated."""
     from tribolab.friction.coefficient.repeatability import repeatability
 
-    spread, freedom = repeatability([np.array(c.levels) for c in curves if c.levels])
+    spread, freedom = repeatability([np.array(c.levels, float) for c in curves if c.levels])
     return float(f"{spread:.{_DIGITS}g}"), freedom
 
 

@@ -28,7 +28,8 @@ class CurveRecord:
     points
         A row per sliding speed.
     levels
-        Friction level of each run over that of all [1]; none of a curve of one run.
+        Friction level of each run over that of all [1], None where it is not known; none of a
+        curve of one run.
     digest
         Checksum of the curve's values.
     origin
@@ -39,7 +40,7 @@ class CurveRecord:
 
     outcome: CurveOutcome
     points: tuple[Row, ...] = ()
-    levels: tuple[float, ...] = ()
+    levels: tuple[float | None, ...] = ()
     digest: str = ""
     origin: Origin = Origin()
     no_slip: str = ""
