@@ -309,12 +309,12 @@ def info(
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             tell = progress or (lambda stage, done, total: None)
             described = perform(Descriptions(files, instrument), pool, tell)
-        for one in described:
-            if one.error:
-                say(f"tribolab: {one.error}", to_stderr=True)
+        for description in described:
+            if description.error:
+                say(f"tribolab: {description.error}", to_stderr=True)
             else:
-                say("\n".join(one.lines))
-    raise typer.Exit(UNREADABLE if any(one.error for one in described) else 0)
+                say("\n".join(description.lines))
+    raise typer.Exit(UNREADABLE if any(description.error for description in described) else 0)
 
 
 @app.command()

@@ -173,7 +173,7 @@ def check_files(
     stage = Checks(paths, instrument, repeats)
     done = perform(stage, executor, progress or (lambda stage, done, total: None))
     place = {file: number for number, group in enumerate(stage.groups) for file in group}
-    return sorted((one for part in done for one in part), key=lambda one: place[one.files[0]])
+    return sorted((c for part in done for c in part), key=lambda c: place[c.files[0]])
 
 
 def _check_run(task: CheckTask) -> list[Checked]:
@@ -254,13 +254,13 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
     """
     from tribolab.app import terminal
 
-    for one in checked:
-        if one.error:
-            say(f"{one.name}: unreadable")
-            say(f"tribolab: {one.error}", to_stderr=True)
+    for checked_file in checked:
+        if checked_file.error:
+            say(f"{checked_file.name}: unreadable")
+            say(f"tribolab: {checked_file.error}", to_stderr=True)
             continue
-        say(f"{one.name}: {one.summary}")
-        table = findings_table(one.rows, notes=notes, everything=everything)
+        say(f"{checked_file.name}: {checked_file.summary}")
+        table = findings_table(checked_file.rows, notes=notes, everything=everything)
         if table.row_count:
             terminal.console().print(table)
     if len(checked) > 1:
@@ -278,10 +278,10 @@ def count_lines(checked: Sequence[Checked]) -> list[str]:
     ['2 checked: 1 fail, 1 pass', 'to look at: 1.csv (fail)']
     """
     ranked = ("error", "unreadable", "fail", "suspect", "skipped", "pass")
-    counts = Counter(one.status for one in checked)
+    counts = Counter(c.status for c in checked)
     parts = [f"{counts[status]} {status}" for status in ranked if counts[status]]
     wanted = [s for s in ranked if s not in ("pass", "skipped")]
-    names = [f"{one.name} ({s})" for s in wanted for one in checked if one.status == s]
+    names = [f"{c.name} ({s})" for s in wanted for c in checked if c.status == s]
     lines = [f"{len(checked)} checked: {', '.join(parts)}"]
     return [*lines, f"to look at: {', '.join(names)}"] if names else lines
 

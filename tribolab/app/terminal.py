@@ -42,7 +42,7 @@ class _Harmless(RenderHook):
     """What is printed, with the marks of the console's own styles only."""
 
     def process_renderables(self, renderables: list[ConsoleRenderable]) -> list[ConsoleRenderable]:
-        return [_Cleaned(one) for one in renderables]
+        return [_Cleaned(part) for part in renderables]
 
 
 class _Cleaned:
@@ -116,9 +116,9 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         # a campaign of hundreds of runs is not read again for a handful of lines
         names = [f"{run.name}{_why(run, outcome)}" for run in runs[:_HANDFUL]]
         names += [run.name for run in runs[_HANDFUL:]]
-        for one in outcome.surfaces:
-            if quality in one.objections:
-                names.append(f"scans of {one.name}{_because(one.checks, quality)}")
+        for surface in outcome.surfaces:
+            if quality in surface.objections:
+                names.append(f"scans of {surface.name}{_because(surface.checks, quality)}")
         lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
         if len(names) > _HANDFUL:
             file = shown(outcome.folder / "tables" / "findings.csv")

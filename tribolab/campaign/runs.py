@@ -147,7 +147,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
             )
         mark = fingerprint(task.run)
         if self._lent is not None:  # it stands where it stood
-            place = next(k for k, one in enumerate(self._runs) if one.name == task.run.name)
+            place = next(k for k, run in enumerate(self._runs) if run.name == task.run.name)
         self._store.put(KIND, task.run.name, place, mark, run, record.trace)
         self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
         return RunCame(run.outcome, run.sources, run.zero, mark)

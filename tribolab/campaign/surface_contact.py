@@ -169,12 +169,12 @@ def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
     """Dry rough line contact at each load; every load has its own x."""
     from tribolab.contact.line import rough_line_contact
 
-    found = []
+    parts = []
     for force in forces:
         line = rough_line_contact(contact.load(float(force)), contact, psd)
-        found.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
-    lines = xr.concat(found, "load", combine_attrs="drop_conflicts")
-    valid = together([line.attrs for line in found])
+        parts.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
+    lines = xr.concat(parts, "load", combine_attrs="drop_conflicts")
+    valid = together([line.attrs for line in parts])
     return stamp(lines.assign(normal_force=("load", forces)), **valid)
 
 
@@ -209,11 +209,14 @@ def _adhesion(
     spectra = _bounds(psd)
     curves, points, valid = [], [], []
     for medium in surface.media:
-        found = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
-        valid.append(found.attrs)
-        curve = found.isel(pressure=slice(1 + at_loads.size, None))
+        solved = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
+        valid.append(solved.attrs)
+        curve = solved.isel(pressure=slice(1 + at_loads.size, None))
         curve = curve[["contact_area_ratio", "area_enhancement"]]
-        rest, under_load = found.isel(pressure=0), found.isel(pressure=slice(1, 1 + at_loads.size))
+        rest, under_load = (
+            solved.isel(pressure=0),
+            solved.isel(pressure=slice(1, 1 + at_loads.size)),
+        )
         point = under_load[
             [
                 "contact_area_ratio",

@@ -105,7 +105,7 @@ def paper_document(
             "shear_stress": rows_of(fits),
             "laboratory": asdict(laboratory),
             "sources": [
-                dict(zip(("file", "sha256", "bytes"), one, strict=True)) for one in sources
+                dict(zip(("file", "sha256", "bytes"), source, strict=True)) for source in sources
             ],
             "versions": versions(),
         }
@@ -119,7 +119,7 @@ def context_of(document: dict[str, Any]) -> dict[str, Any]:
         "parts": {
             key: {
                 "about": _ABOUT.get(key, ""),
-                "figures": [one for one in document["figures"] if one["section"] == key],
+                "figures": [figure for figure in document["figures"] if figure["section"] == key],
                 "rows": [row for row in rows if row["section"] == key and not row["figure"]],
             }
             for key, _, _ in PARTS

@@ -29,12 +29,12 @@ def spectra(data: PaperData) -> Drawn:
     from tribolab import plot
     from tribolab.surface.moments import rms_roughness, rms_slope
 
-    found = data.dry("psd")
+    psds = data.dry("psd")
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
-        for name, psd in found.items()
+        for name, psd in psds.items()
     )
-    return plot.spectra(found, surfaces=SURFACES), said
+    return plot.spectra(psds, surfaces=SURFACES), said
 
 
 def scanned_spectra(data: PaperData) -> Drawn:
@@ -42,12 +42,12 @@ def scanned_spectra(data: PaperData) -> Drawn:
     from tribolab import plot
     from tribolab.surface.moments import rms_roughness
 
-    found = {name: data.read("spectrum", name, "psd") for name in SURFACES}
+    psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
-        for name, psd in found.items()
+        for name, psd in psds.items()
     )
-    return plot.spectra(found, surfaces=SURFACES), said
+    return plot.spectra(psds, surfaces=SURFACES), said
 
 
 def contact_area(data: PaperData) -> Drawn:
@@ -56,9 +56,9 @@ def contact_area(data: PaperData) -> Drawn:
 
     loads = data.dry("loads")
     said = _listed(
-        f"{name}: A/A0 {float(one.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
-        f"{1e-6 * float(one.pressure[0]):.3g} MPa"
-        for name, one in loads.items()
+        f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
+        f"{1e-6 * float(contact.pressure[0]):.3g} MPa"
+        for name, contact in loads.items()
     )
     figure = plot.contact_area(data.dry("contact"), loads[SURFACES[0]], surfaces=SURFACES)
     return figure, said
@@ -68,17 +68,17 @@ def effective_work(data: PaperData) -> Drawn:
     """gamma_eff over magnification."""
     from tribolab import plot
 
-    found = data.dry("effective_work")
+    works = data.dry("effective_work")
     said = _listed(
         f"{name}: "
         + ", ".join(
-            f"{medium} {1e3 * float(one.effective_work_of_adhesion.sel(medium=medium)[0]):.3g}"
-            for medium in one.medium.values.tolist()
+            f"{medium} {1e3 * float(work.effective_work_of_adhesion.sel(medium=medium)[0]):.3g}"
+            for medium in work.medium.values.tolist()
         )
         + " mJ/m² at magnification 1"
-        for name, one in found.items()
+        for name, work in works.items()
     )
-    return plot.effective_work(found, surfaces=SURFACES), said
+    return plot.effective_work(works, surfaces=SURFACES), said
 
 
 def adhesive_area(data: PaperData) -> Drawn:
@@ -89,11 +89,11 @@ def adhesive_area(data: PaperData) -> Drawn:
     said = _listed(
         f"{name}: "
         + ", ".join(
-            f"{medium} {float(one.contact_area_ratio.sel(medium=medium)[0]):.3g}"
-            for medium in one.medium.values.tolist()
+            f"{medium} {float(contact.contact_area_ratio.sel(medium=medium)[0]):.3g}"
+            for medium in contact.medium.values.tolist()
         )
-        + f" at {1e-6 * float(one.pressure[0]):.3g} MPa"
-        for name, one in loads.items()
+        + f" at {1e-6 * float(contact.pressure[0]):.3g} MPa"
+        for name, contact in loads.items()
     )
     contacts, adhesions = data.dry("contact"), data.dry("adhesion")
     figure = plot.adhesive_area(contacts, adhesions, loads[SURFACES[0]], surfaces=SURFACES)
@@ -131,13 +131,13 @@ def viscoelastic(data: PaperData) -> Drawn:
     """mu_visc(v)."""
     from tribolab import plot
 
-    found = data.dry("rubber")
-    found["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
+    rubbers = data.dry("rubber")
+    rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
     said = _listed(
-        f"{name}: µ at most {number(float(one.friction_coefficient.max()), 2)}"
-        for name, one in found.items()
+        f"{name}: µ at most {number(float(rubber.friction_coefficient.max()), 2)}"
+        for name, rubber in rubbers.items()
     )
-    return plot.viscoelastic(found, surfaces=SURFACES), said
+    return plot.viscoelastic(rubbers, surfaces=SURFACES), said
 
 
 def dry_shear_stress(data: PaperData) -> Drawn:
@@ -155,7 +155,7 @@ def dry_shear_stress(data: PaperData) -> Drawn:
                 "shear_stress_std": factor * mu.friction_coefficient_std,
             }
         )
-    means = {name: float(one.shear_stress.mean()) for name, one in stresses.items()}
+    means = {name: float(stress.shear_stress.mean()) for name, stress in stresses.items()}
     said = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
     said.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
     return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)
@@ -164,7 +164,7 @@ def dry_shear_stress(data: PaperData) -> Drawn:
 def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
     from tribolab import plot
 
-    traces = [data.trace(*one) for one in wanted]
+    traces = [data.trace(*stroke) for stroke in wanted]
     said = []
     for trace in traces:
         if trace.friction is None:
@@ -198,7 +198,7 @@ def rough_dry_and_wet(data: PaperData) -> Drawn:
 def smooth_dry_and_wet(data: PaperData) -> Drawn:
     """Traces of Smooth, and of Sb-R in glycerol."""
     wanted = [("Sb-R", "glycerol"), ("Smooth", "glycerol"), ("Smooth", "dry")]
-    return _traces(data, [(*one, 1e-6) for one in wanted])
+    return _traces(data, [(*stroke, 1e-6) for stroke in wanted])
 
 
 def both_rough(data: PaperData) -> Drawn:
@@ -270,26 +270,26 @@ def separation(data: PaperData) -> Drawn:
     """p_cont over separation."""
     from tribolab import plot
 
-    found = data.dry("separation")
+    tables = data.dry("separation")
     said = _listed(
         f"{name}: falls by a factor e in "
         f"{d.attrs['decay_length_m'] / d.attrs['rms_roughness_m']:.3g} h_rms = "
         f"{1e6 * d.attrs['decay_length_m']:.3g} µm"
-        for name, d in found.items()
+        for name, d in tables.items()
     )
-    return plot.contact_separation(found, surfaces=SURFACES), said
+    return plot.contact_separation(tables, surfaces=SURFACES), said
 
 
 def factors(data: PaperData) -> Drawn:
     """Flow and friction factors."""
     from tribolab import plot
 
-    found = {name: data.read("wet", name, "factors") for name in SURFACES}
+    factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
-        d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in found.values()
+        d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
     ]
     said = f"Flow stops at a mean separation of {span(closed)} h_rms."
-    return plot.lubrication_factors(found, surfaces=SURFACES), said
+    return plot.lubrication_factors(factors, surfaces=SURFACES), said
 
 
 def friction_factor_effect(data: PaperData) -> Drawn:
@@ -297,12 +297,12 @@ def friction_factor_effect(data: PaperData) -> Drawn:
     from tribolab import plot
 
     force = data.forces[-1]
-    found = {name: data.model(name, force) for name in ROUGH}
+    pairs = {name: data.model(name, force) for name in ROUGH}
     said = _listed(
         f"{name}, {force_text(force)}: they raise µ by at most {_largest_rise(curve)}"
-        for name, curve in found.items()
+        for name, curve in pairs.items()
     )
-    return plot.friction_factor_effect(found, surfaces=SURFACES), said
+    return plot.friction_factor_effect(pairs, surfaces=SURFACES), said
 
 
 def _largest_rise(curve: xr.Dataset) -> str:
@@ -316,19 +316,19 @@ def _largest_rise(curve: xr.Dataset) -> str:
 def _profiles(data: PaperData, name: str) -> Drawn:
     from tribolab import plot
 
-    found = data.read("wet", name, "profiles")
+    profiles = data.read("wet", name, "profiles")
     said = _listed(
         f"{speed_text(float(v))}: smallest separation "
-        f"{1e6 * float(found.separation.sel(sliding_speed=v).min()):.3g} µm, pressures of contact "
-        f"and fluid at most "
+        f"{1e6 * float(profiles.separation.sel(sliding_speed=v).min()):.3g} µm, "
+        f"pressures of contact and fluid at most "
         + " and ".join(
-            f"{1e-6 * float(found[key].sel(sliding_speed=v).max()):.3g}"
+            f"{1e-6 * float(profiles[key].sel(sliding_speed=v).max()):.3g}"
             for key in ("contact_pressure", "fluid_pressure")
         )
         + " MPa"
-        for v in found.sliding_speed.values
+        for v in profiles.sliding_speed.values
     )
-    return plot.film_profiles(found), said
+    return plot.film_profiles(profiles), said
 
 
 def profiles_less_rough(data: PaperData) -> Drawn:

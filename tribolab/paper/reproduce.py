@@ -136,7 +136,7 @@ def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
 
 def _drawn(data: PaperData, pool: Executor | None, tell: Progress) -> list[dict[str, Any]]:
     done: dict[str, dict[str, Any]] = {}
-    for task, future in completed(pool, draw, [DrawTask(one.name, data) for one in FIGURES]):
+    for task, future in completed(pool, draw, [DrawTask(figure.name, data) for figure in FIGURES]):
         done[task.name] = future.result()
         tell("figures", len(done), len(FIGURES))
-    return [done[one.name] for one in FIGURES]
+    return [done[figure.name] for figure in FIGURES]

@@ -190,7 +190,7 @@ Made = tuple["Figure", str, list[str]]
 def _slips(what: SlipFigure, folder: Path, group: str = "stick_slip") -> list[xr.Dataset]:
     from tribolab.io.netcdf import read_netcdf
 
-    return [read_netcdf(folder / one.data_file, group=group) for one in what.shown]
+    return [read_netcdf(folder / trace.data_file, group=group) for trace in what.shown]
 
 
 def _traces(what: SlipFigure, folder: Path) -> Made:
@@ -226,14 +226,14 @@ def _in_words(trace: Trace) -> str:
 def _spectra(what: SlipFigure, folder: Path) -> Made:
     from tribolab import plot
 
-    shown = [(one, slip) for one, slip in zip(what.shown, _slips(what, folder), strict=True)]
-    figure = plot.slip_spectra({one.label: (slip, one.segment) for one, slip in shown})
-    said = [f"{one.label}: {_strongest(slip, one.segment)}" for one, slip in shown]
+    shown = [(trace, slip) for trace, slip in zip(what.shown, _slips(what, folder), strict=True)]
+    figure = plot.slip_spectra({trace.label: (slip, trace.segment) for trace, slip in shown})
+    said = [f"{trace.label}: {_strongest(slip, trace.segment)}" for trace, slip in shown]
     marks = {"dominant": "Blue: the strongest oscillation.", "mains": "Violet: the mains."}
     drawn = [
         text
         for name, text in marks.items()
-        if any(np.isfinite(slip[f"{name}_frequency"][one.segment]) for one, slip in shown)
+        if any(np.isfinite(slip[f"{name}_frequency"][trace.segment]) for trace, slip in shown)
     ]
     return figure, "; ".join(said), drawn
 
@@ -241,7 +241,7 @@ def _spectra(what: SlipFigure, folder: Path) -> Made:
 def _with(what: SlipFigure, slips: Sequence[xr.Dataset], dim: str) -> dict[str, xr.Dataset]:
     """Return what has something along a dimension, by its label."""
     pairs = zip(what.shown, slips, strict=True)
-    return {one.label: slip for one, slip in pairs if slip.sizes.get(dim, 0)}
+    return {trace.label: slip for trace, slip in pairs if slip.sizes.get(dim, 0)}
 
 
 def _spectrogram(what: SlipFigure, folder: Path) -> Made | None:

@@ -104,35 +104,35 @@ def _optional(task: _Opened, group: str) -> dict[str, xr.Dataset]:
     from tribolab.errors import ReadError
     from tribolab.io.netcdf import read_netcdf
 
-    found = {}
+    opened = {}
     for name, file in task.figure.shown:
         try:
-            found[name] = read_netcdf(task.folder / file, group=group)
+            opened[name] = read_netcdf(task.folder / file, group=group)
         except ReadError:  # the campaign knows too little for it; its findings say so
             continue
-    return found
+    return opened
 
 
 def _loads(task: _Opened) -> xr.Dataset | None:
     """Return the loads of the surface that has most of them: its Hertz pressures are marked."""
-    found = _optional(task, "loads").values()
-    return max(found, key=lambda loads: loads.sizes["load"], default=None)
+    opened = _optional(task, "loads").values()
+    return max(opened, key=lambda loads: loads.sizes["load"], default=None)
 
 
 def _at_lowest(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    return {name: found.isel(load=0) for name, found in data.items()}
+    return {name: contact.isel(load=0) for name, contact in data.items()}
 
 
 def _with_loads(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    return {name: found for name, found in data.items() if found.sizes.get("load")}
+    return {name: contact for name, contact in data.items() if contact.sizes.get("load")}
 
 
 def _lowest(data: dict[str, xr.Dataset]) -> str:
     """Say at which load each curve was computed."""
     forces = {
-        float(found.normal_force.values.flat[0])
-        for found in data.values()
-        if "normal_force" in found and found.normal_force.size
+        float(contact.normal_force.values.flat[0])
+        for contact in data.values()
+        if "normal_force" in contact and contact.normal_force.size
     }
     return " or ".join(force_text(force) for force in sorted(forces)) or "its lowest load"
 
