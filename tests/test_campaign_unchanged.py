@@ -48,7 +48,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
     before, folder = fingerprint(first.folder), first.folder.stat()
     with monkeypatch.context() as guarded:
         for name in ("process", "write_report"):
-            place = "app.run" if name == "process" else "report.results"
+            place = "campaign.pipeline" if name == "process" else "report.results"
             guarded.setattr(f"tribolab.{place}.{name}", refuse)
         guarded.setattr("tribolab.campaign.store.sha256_of_file", refuse)
         guarded.setattr("tribolab.io.netcdf.read_netcdf", refuse)
@@ -63,7 +63,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
     for path in (elsewhere.parent / "raw").rglob("*.csv"):
         path.touch()
     with monkeypatch.context() as guarded:
-        guarded.setattr("tribolab.app.run.process", refuse)
+        guarded.setattr("tribolab.campaign.pipeline.process", refuse)
         assert [one.reused for one in run(elsewhere).runs] == [True, True]
         assert run(campaign, verify=True).runs == again.runs
 
@@ -94,7 +94,7 @@ def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
     os.utime(bad, (time.time() - 60,) * 2)
     assert [one.error for one in run(campaign).failed] == ["ReadError"]
     with monkeypatch.context() as guarded:
-        guarded.setattr("tribolab.app.run.process", refuse)
+        guarded.setattr("tribolab.campaign.pipeline.process", refuse)
         assert [one.error for one in run(campaign).failed] == ["ReadError"]
 
     analyse = runs_module._analyse

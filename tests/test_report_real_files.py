@@ -5,6 +5,7 @@ import json
 import pytest
 
 from tribolab.app.run import run_campaign
+from tribolab.campaign.store import Catalogue
 
 CAMPAIGN = """[campaign]
 name = "real files"
@@ -32,14 +33,18 @@ FOLDERS = {
 
 
 @pytest.fixture(scope="module")
-def report(shared_data, tmp_path_factory):
+def results(shared_data, tmp_path_factory):
     folder = tmp_path_factory.mktemp("real")
     (folder / "raw").mkdir()
     for name, place in FOLDERS.items():
         (folder / "raw" / name).symlink_to(shared_data / place)
     (folder / "campaign.toml").write_text(CAMPAIGN)
-    outcome = run_campaign(folder / "campaign.toml", jobs=1)
-    return json.loads((outcome.folder / "report.json").read_text())
+    return run_campaign(folder / "campaign.toml", jobs=1).folder
+
+
+@pytest.fixture(scope="module")
+def report(results):
+    return json.loads((results / "report.json").read_text())
 
 
 def by_instrument(report, name):
@@ -47,15 +52,17 @@ def by_instrument(report, name):
 
 
 @pytest.mark.slow
-def test_every_run_is_shown(report):
+def test_every_run_is_shown(report, results):
     assert [run["reason"] for run in report["runs"] if run["status"] != "done"] == []
     assert [entry for entry in report["findings"] if entry["severity"] == "error"] == []
     missing = {f["run"] for f in report["findings"] if f["message"].startswith("no measured curve")}
     without = {run["name"] for run in report["runs"] if run["quantity"] == "half_loop"}
     speedless = {run["name"] for run in by_instrument(report, "cetr_umt2")}
     assert missing == without | speedless
+    catalogue = Catalogue.of(results)
     for run in report["runs"]:
-        assert {"trace", "strokes"} <= {figure["kind"] for figure in run["figures"]}
+        trace = catalogue.trace("run", run["name"])
+        assert trace is not None and json.loads(trace.coarse)["samples"] == run["samples"]
 
 
 @pytest.mark.slow
