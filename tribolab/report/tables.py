@@ -67,7 +67,8 @@ def write(table: pd.DataFrame, path: Path) -> None:
     """Write a table as CSV, and as Parquet beside it."""
     write_csv(table, path)
     rows = table.astype({name: "float64" for name in table if table[name].isna().all()})
-    rows.to_parquet(path.with_suffix(".parquet"), index=False)
+    with path.with_suffix(".parquet").open("wb") as packed:
+        rows.to_parquet(packed, index=False)
 
 
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
@@ -95,7 +96,9 @@ def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[
     schema = pa.schema([(name, _ARROW[dtype]) for name, dtype in types.items()])
     with (
         path.open("w", encoding="utf-8", newline="") as file,
-        parquet.ParquetWriter(path.with_suffix(".parquet"), schema) as columnar,
+        # an open file: arrow takes no path that is not UTF-8
+        path.with_suffix(".parquet").open("wb") as packed,
+        parquet.ParquetWriter(packed, schema) as columnar,
     ):
         _append(pd.DataFrame(columns=list(types)), file, header=True)
         for part in _batches(rows(), _CHUNK):
