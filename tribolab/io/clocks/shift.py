@@ -214,10 +214,9 @@ def _estimated(
         known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
         first = "starts" if known else "classes"
         combined, part = _combined(ways[first], ways["motion"]), _PART
-    elif "starts" in ways and _agree(ways["starts"], ways["classes"]):
-        combined, part = ways["starts"], _PART
-    elif "starts" in ways and abs(ways["starts"].shift - ways["classes"].shift) < _LATE * stroke:
-        # where friction takes its time to follow the speed, classes of speed are late
+    elif "starts" in ways and _confirmed(ways["starts"], ways["classes"], stroke):
+        # where friction takes its time to follow the speed, classes of speed are late, and the
+        # starts may be: what only classes confirm is known no better than half of that
         late = 0.5 * (ways["starts"].shift - ways["classes"].shift)
         error = float(np.hypot(ways["starts"].uncertainty, late))
         combined, part = ways["starts"]._replace(uncertainty=error), _PART
@@ -256,6 +255,11 @@ def _agree(first: Told, second: Told) -> bool:
     """Whether two ways lie no further apart than their errors allow."""
     error = np.hypot(first.uncertainty, second.uncertainty)
     return bool(abs(first.shift - second.shift) <= _AGREE * error)
+
+
+def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
+    """Whether classes of speed confirm what the starts of strokes of a duration [s] tell."""
+    return _agree(starts, classes) or abs(starts.shift - classes.shift) < _LATE * stroke
 
 
 def _refined(fit: Classes, shift: float, around: float) -> float:
