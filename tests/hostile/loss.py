@@ -189,25 +189,31 @@ import os, signal, subprocess, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # else left ignored by what started us
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 process = subprocess.Popen([sys.executable, "-m", "tribolab", "run", sys.argv[1], "-q", "-j", "2"])
-time.sleep(float(sys.argv[3]))
+until, folder = time.monotonic() + 60.0, os.path.dirname(sys.argv[1])
+while time.monotonic() < until:  # until so many files of the new results are written
+    rooms = [name for name in os.listdir(folder) if name.startswith(".")]
+    made = [files for room in rooms for _, _, files in os.walk(os.path.join(folder, room))]
+    if sum(map(len, made)) >= int(sys.argv[3]):
+        break
+    time.sleep(0.01)
 process.send_signal(int(sys.argv[2]))
 sys.exit(process.wait(60))
 """
 
-for _signal, _seconds in ((15, 3.0), (1, 3.0), (2, 3.0), (15, 8.0)):
+for _signal, _files in ((15, 1), (1, 1), (2, 1), (15, 3), (15, 6)):
 
     @case(
-        f"loss 5: signal {_signal} after {_seconds:g} s",
-        *(_signal, _seconds),
+        f"loss 5: signal {_signal} after {_files} files",
+        *(_signal, _files),
         codes=(128 + _signal,),
         says="results of before are as they were",
         after=_old,
         **LONG,
     )
-    def _(folder: Path, number: int, seconds: float) -> Command:
+    def _(folder: Path, number: int, files: int) -> Command:
         file = campaign(folder, True, lambda text: text.replace("trim = 0.10", "trim = 0.12"))
         (folder / "stopped.py").write_text(_STOPPED)
-        return [sys.executable, str(folder / "stopped.py"), str(file), str(number), str(seconds)]
+        return [sys.executable, str(folder / "stopped.py"), str(file), str(number), str(files)]
 
 
 def _in_the_volume(folder: Path) -> str:

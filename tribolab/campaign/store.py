@@ -310,9 +310,10 @@ def _adapter(record: type[Kept]) -> TypeAdapter[Kept]:
 
 def _opened(folder: Path | None) -> sqlite3.Connection | None:
     """Open the catalogue of earlier results for reading."""
-    if folder is None or not (folder / CATALOGUE).is_file():
+    if folder is None:
         return None
-    with contextlib.suppress(sqlite3.Error, OSError):
+    with contextlib.suppress(sqlite3.Error, OSError):  # OSError: none is there, or a name too long
+        (folder / CATALOGUE).stat()
         address = f"{(folder / CATALOGUE).resolve().as_uri()}?mode=ro&immutable=1"
         known = sqlite3.connect(address, uri=True, check_same_thread=False)
         if list(known.execute("SELECT value FROM fact WHERE name='format'")) == [(_FORMAT,)]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import functools
 import mmap
 import re
 from itertools import islice
@@ -238,17 +239,26 @@ def _read_header(
             start = _line(file, content, start, dialect)[1]
         return start, (), ()
     line, here = _line(file, content, start, dialect)
-    cells = split_row(line, delimiter)
-    names, units = tuple(cells), tuple[str | None, ...](None for _ in cells)
-    if header.units == "brackets":
-        names, units = zip(*map(split_name, cells), strict=True)
-    elif header.units == "row":
+    names, units = _columns(line, delimiter, header.units == "brackets")
+    if header.units == "row":
         line, here = _line(file, content, here, dialect)
         row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
-        units = tuple((row + [None] * len(cells))[: len(cells)])
+        units = tuple((row + [None] * len(names))[: len(names)])
     for _ in range(header.skip):
         here = _line(file, content, here, dialect)[1]
     return here, names, units
+
+
+@functools.lru_cache(maxsize=2)  # a dozen dialects look at the same header, one after the other
+def _columns(
+    line: str, delimiter: str, brackets: bool
+) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
+    """Names of the columns in a header's line, and their units if these stand in brackets."""
+    cells = split_row(line, delimiter)
+    if not brackets:
+        return tuple(cells), (None,) * len(cells)
+    names, units = zip(*map(split_name, cells), strict=True)
+    return names, units
 
 
 def _line(file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect) -> tuple[str, int]:
