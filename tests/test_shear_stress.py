@@ -278,3 +278,21 @@ def measured_at(slowest, fastest):
 def test_what_cannot_be_fitted_is_refused(call, error, words):
     with pytest.raises(error, match=words):
         call()
+
+
+def test_a_fit_shows_number_unit_and_error_at_once_and_the_rest_as_a_table():
+    found = fit(measured(0.02, 1), common_error=0.01)
+    table = found.to_dataframe()
+    assert (table.unit[["shear_stress", "interval_low", "chi_square"]] == ["Pa", "Pa", "1"]).all()
+    assert tuple(table.value[["interval_low", "interval_high"]]) == found.interval
+    shown, folded = found._repr_html_().split("<details>")
+    assert f"{found.shear_stress / 1e6:.3g} ± {found.total_error / 1e6:.2g} MPa" in shown
+    assert "statistical only" not in shown and folded.count("<tr>") > len(table)
+    assert "statistical only" in fit(measured(0.02, 1))._repr_html_()
+
+
+def test_a_fit_on_a_measured_spectrum_shows_no_interval_that_it_has_not():
+    scanned = PSD.assign(psd_2d_low=0.9 * PSD.psd_2d, psd_2d_high=1.1 * PSD.psd_2d)
+    found = fit_shear_stress(measured(0.02), CONTACT, scanned, 1.4, 310.0)
+    assert "no 95 % interval" in found._repr_html_()
+    assert "interval_low" not in found.to_dataframe().index

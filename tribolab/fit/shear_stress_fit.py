@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 from scipy import stats
 
 from tribolab.errors import AnalysisError, Cure
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
 
 _FEW = 30  # degrees of freedom under which Student's t is worth a word
 
@@ -148,6 +154,67 @@ class ShearStressFit:
         return abs(self.corrected_shear_stress) * np.hypot(
             self.total_error / self.shear_stress,
             self.area_enhancement_error / self.area_enhancement,
+        )
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return what was found as a table: ``value``, ``unit`` and ``meaning`` by name.
+
+        ``interval_low`` and ``interval_high`` are the ends of the 95 % interval. Where the error
+        of the spectrum is not known there is no such interval, and half the statistical one stands
+        there instead.
+        """
+        import pandas as pd
+
+        half = self.statistical_half_interval
+        if self.spectrum_scanned and self.spectrum_error is None:
+            ends = [("statistical_half_interval", half, "Pa", "half of it, spectrum as given")]
+        else:
+            low, high = self.interval
+            ends = [
+                ("interval_low", low, "Pa", "lower end of the 95 % interval"),
+                ("interval_high", high, "Pa", "upper end of the 95 % interval"),
+            ]
+        slowest, fastest = self.valid_speed_range
+        rows = [
+            ("shear_stress", self.shear_stress, "Pa", "shear stress in the real contact"),
+            ("total_error", self.total_error, "Pa", "its standard error but for the spectrum's"),
+            *ends,
+            ("common_error", self.common_error, "Pa", "what all points share of the error"),
+            ("chi_square", self.chi_square, "1", "sum of squares of residual / error"),
+            ("degrees_of_freedom", self.degrees_of_freedom, "1", "points less parameters"),
+            ("chi_square_p_value", self.chi_square_p_value, "1", "chance of so large a sum"),
+            ("runs_p_value", self.runs_p_value, "1", "chance of so few changes of sign"),
+            ("residual_correlation", self.residual_correlation, "1", "of neighbouring speeds"),
+            ("slowest_valid_speed", slowest, "m/s", "from where on one stress describes all"),
+            ("fastest_valid_speed", fastest, "m/s", "up to where one stress describes all"),
+            ("area_enhancement", self.area_enhancement, "1", "area with adhesion over without"),
+            ("corrected_shear_stress", self.corrected_shear_stress, "Pa", "in the adhesive area"),
+            ("corrected_shear_stress_error", self.corrected_shear_stress_error, "Pa",
+             "its standard error"),
+        ]  # fmt: skip
+        rows += [
+            (name, value, UNITS[name], "fitted as well")
+            for name, value in self.parameters.items()
+            if name != "shear_stress"
+        ]
+        columns = ["name", "value", "unit", "meaning"]
+        return pd.DataFrame(rows, columns=columns).set_index("name")
+
+    def _repr_html_(self) -> str:
+        """Shear stress, error and fit in a sentence each; everything else folded away."""
+        stress, error = 1e-6 * self.shear_stress, 1e-6 * self.total_error
+        without = "" if self.common_error else ", statistical only"
+        if self.spectrum_scanned and self.spectrum_error is None:
+            ends = "no 95 % interval: the error of the measured spectrum is not in this fit"
+        else:
+            low, high = (1e-6 * end for end in self.interval)
+            ends = f"95 % interval {low:.3g} to {high:.3g} MPa; {self.interval_says}"
+        table = self.to_dataframe().to_html(float_format=lambda number: f"{number:.4g}")
+        return (
+            f"<p><b>shear stress {stress:.3g} ± {error:.2g} MPa</b> (standard error{without})<br>"
+            f"{ends}<br>chi-square {self.chi_square:.3g} of {self.degrees_of_freedom} degrees of "
+            f"freedom (probability {self.chi_square_p_value:.2g})</p>"
+            f"<details><summary>all numbers in SI</summary>{table}</details>"
         )
 
 
