@@ -2,7 +2,7 @@
 
 from tribolab.draft.draft import draft_dialect, save_draft
 from tribolab.io.dialects.find import load_dialect
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.io.runs import read
+from tribolab.io.read import read
 
 
 def actuator(folder: Path, name: str) -> xr.Dataset:

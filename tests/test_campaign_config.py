@@ -50,7 +50,7 @@ instrument = "linear_slider"
 files = ["friction/cycle_*.csv"]
 cycles = true
 [run.segments]
-trim = 0.2
+trim = "20 %"
 
 [qc]
 fail_on = "suspect"
@@ -160,7 +160,7 @@ def test_the_settings_of_a_run_and_no_others_change_its_checksum(folder):
 
     before = sums(WHOLE)
     assert sums(WHOLE.replace("PMMA on PDMS", "Another title")) == before
-    after = sums(WHOLE.replace("trim = 0.2\n", "trim = 0.3\n"))
+    after = sums(WHOLE.replace('trim = "20 %"\n', "trim = 0.3\n"))
     assert (after[0] == before[0], after[2] == before[2]) == (True, False)
     after = sums(WHOLE.replace('"31 N"', '"32 N"'))
     assert (after[0] == before[0], after[2] == before[2]) == (False, True)
@@ -176,7 +176,7 @@ WRONG = {
     ),
     "unknown table": ("[contact]", "[contakt]", 5, "contakt", "did you mean 'contact'?"),
     "unknown key of a run": ("cycles = true", "cycle = true", 34, "run 2, cycle", "'cycles'?"),
-    "key in a run's own table": ("trim = 0.2", "trimm = 0.2", 36, "segments.trimm", "'trim'?"),
+    "key in a run's own table": ('trim = "20 %"', "trimm = 0.2", 36, "segments.trimm", "'trim'?"),
     "unknown surface": ('surface = "Sb-R"', 'surface = "Sb-S"', 27, "run 1, surface", "'Sb-R'?"),
     "unknown medium": ('medium = "glycerol"', 'medium = "glycerin"', 28, "medium", "'glycerol'?"),
     "unknown instrument": (
@@ -192,6 +192,7 @@ WRONG = {
     "a bare number": ('"7 cm"', "7", 6, "contact.radius", "has no unit; write e.g. '7 cm'"),
     "a unit within a list": ('"32 mm"', '"32 s"', 19, "segments.position_range", "'s' cannot"),
     "negative radius": ('"7 cm"', '"-7 cm"', 6, "contact.radius", "not greater than zero"),
+    "trim in mm": ("trim = 0.15", 'trim = "5 mm"', 18, "segments.trim", "0.1 or '10 %'"),
     "too much trim": ("trim = 0.15", "trim = 0.6", 18, "segments.trim", "less than 0.5; got 0.6"),
     "unknown choice": ('"suspect"', '"suspekt"', 39, "qc.fail_on", "did you mean 'suspect'?"),
     "a table instead of a value": ("[qc]", "[qc.fail_on]", 38, "qc.fail_on", ""),

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from tribolab.cli import app
 from tribolab.draft.draft import draft_dialect
 from tribolab.errors import TribolabError
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 
 _QUICK = re.compile(

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from tribolab import cli
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
 from tribolab.quantities import stamp
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run

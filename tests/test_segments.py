@@ -182,7 +182,9 @@ def test_missing_numbers_in_a_row_are_a_gap():
 
 
 def test_trim_is_a_share_of_the_time_at_both_ends():
-    found = find_segments(velocity_run(np.full(1001, 1e-3)), trim=0.2)
+    run = velocity_run(np.full(1001, 1e-3))
+    found = find_segments(run, trim=0.2)
+    assert found.identical(find_segments(run, trim="20 %"))
     assert found["trimmed_start"].item() == pytest.approx(2.0)
     assert found["trimmed_stop"].item() == pytest.approx(8.0)
     assert found["sliding_distance"].item() == pytest.approx(6e-3)
@@ -313,7 +315,7 @@ def test_no_samples_is_an_error_that_says_so():
         find_segments(velocity_run([]))
 
 
-@pytest.mark.parametrize("trim", [0.5, 0.9, -0.1, float("nan"), "10 %", None])
+@pytest.mark.parametrize("trim", [0.5, 0.9, -0.1, float("nan"), "60 %", "10 mm", None])
 def test_trim_that_is_no_share_below_a_half_is_an_error(trim):
     with pytest.raises(AnalysisError, match="trim: a share .* is wanted, e.g. 0.10"):
         find_segments(velocity_run(np.ones(100)), trim=trim)

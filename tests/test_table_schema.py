@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab.errors import ConfigError
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.schema import load_schema, validate

@@ -15,7 +15,7 @@ from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.middles import middles
 from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.qc.run_checks import check_run
 
 MU, LOAD, SPEED = 0.3, 31.0, 1e-3

@@ -20,7 +20,8 @@ from tribolab.version import __version__
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
-    "read": "tribolab.io.runs",
+    "read": "tribolab.io.read",
+    "variables": "tribolab.variables",
     "draft_dialect": "tribolab.draft.draft",
     "read_netcdf": "tribolab.io.netcdf",
     "write_netcdf": "tribolab.io.netcdf",
@@ -72,6 +73,7 @@ _PUBLIC = {
 __all__ = [
     "__version__",
     "read",
+    "variables",
     "draft_dialect",
     "read_netcdf",
     "write_netcdf",
@@ -143,7 +145,7 @@ if TYPE_CHECKING:
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
-    from tribolab.io.runs import read
+    from tribolab.io.read import read
     from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve
@@ -158,6 +160,7 @@ if TYPE_CHECKING:
     from tribolab.surface.form import fill_dropouts, remove_form
     from tribolab.surface.psd import psd_1d, psd_2d
     from tribolab.surface.roughness import roughness_parameters, spectral_roughness
+    from tribolab.variables import variables
 
 
 def __getattr__(name: str) -> Any:

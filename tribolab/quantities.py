@@ -78,6 +78,7 @@ _ROWS = [
     ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
     ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
+    ("omitted_reason", "", "1", "why a stretch is no segment"),
     ("zero_from", "", "1", "what the zero of the friction signal rests on"),
     ("half_loop", "", "N", "half the difference of the friction force between the strokes"),
     ("pair", "", "1", "number of the pair of strokes"),
@@ -359,7 +360,11 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
     result = data.copy()
     for name in result.variables:
         variable = result[name]
-        if str(name).endswith(("_qc", "_qc_tests")) or variable.dtype.kind in "OUSTM":
+        if str(name).endswith(("_qc", "_qc_tests")):
+            continue
+        if variable.dtype.kind in "OUSTM":
+            if name in QUANTITIES:
+                variable.attrs["long_name"] = QUANTITIES[str(name)].long_name
             continue
         known = quantity(str(name))
         variable.attrs.update(units=known.unit, long_name=known.long_name)

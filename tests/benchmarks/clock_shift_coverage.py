@@ -25,7 +25,7 @@ import numpy as np
 
 from tribolab.errors import ReadError
 from tribolab.io.clocks.merge import merge
-from tribolab.io.runs import read
+from tribolab.io.read import read
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

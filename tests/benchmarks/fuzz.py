@@ -42,7 +42,7 @@ from mutations import MADE, mutate
 from tribolab.draft.draft import draft_dialect
 from tribolab.errors import TribolabError
 from tribolab.io.netcdf import read_netcdf
-from tribolab.io.runs import read
+from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 

@@ -18,7 +18,7 @@ from tribolab.app.streams import say
 from tribolab.campaign.engine import Progress, Stage, perform
 from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
-from tribolab.io.runs import group_files, read
+from tribolab.io.runs import group_files, read_run
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run
@@ -178,7 +178,7 @@ def check_files(
 
 def _check_run(task: CheckTask) -> list[Checked]:
     try:
-        run = read(list(task.files) if len(task.files) > 1 else task.files[0], task.instrument)
+        run = read_run(list(task.files) if len(task.files) > 1 else task.files[0], task.instrument)
         return [Checked.of(task.files, check_run(run))]
     except ConfigError:
         raise

@@ -14,7 +14,7 @@ from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.kinds import kind_of
-from tribolab.io.runs import describe, read
+from tribolab.io.runs import describe, read_run
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
 from tribolab.words import Count, explain
@@ -95,7 +95,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
     except ReadError as error:
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             try:
-                read(path)  # says which instruments there are
+                read_run(path)  # says which instruments there are
             except ReadError as as_run:
                 if isinstance(error, NotSaidError):
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"

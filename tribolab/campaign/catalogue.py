@@ -119,6 +119,9 @@ def _keys(table: Mapping[str, Any], parameters: Mapping[str, inspect.Parameter])
 def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
     """Return unit or type of a key in words, and an example of a quantity."""
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
+    if len(kinds) > 1 and kinds[0]["type"] == "number":
+        number, text = kinds
+        return f"number{_bounds(number)}; or text", f'`"{text["examples"][0]}"`'
     if len(kinds) > 1:  # a text or a list of them
         return "text, or a list of texts", ""
     [kind] = kinds

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
-from tribolab.campaign.fields import Patterns, PositiveSi, Si, Spread, Text
+from tribolab.campaign.fields import Patterns, PositiveSi, ShareOfEnds, Si, Spread, Text
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class Medium(Table):
 class Segments(Table):
     """How segments of constant speed are found."""
 
-    trim: Annotated[float, Field(ge=0, lt=0.5)] = 0.10
+    trim: ShareOfEnds = 0.10
     """Share of a segment that is left out at each end."""
     position_range: (
         tuple[Annotated[float, Si("m", "5 mm")], Annotated[float, Si("m", "32 mm")]] | None

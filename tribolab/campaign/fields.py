@@ -97,6 +97,31 @@ Patterns = Annotated[
 ]
 
 
+def _share(value: Any) -> Any:
+    if not isinstance(value, str):
+        return value
+    try:
+        return to_si(value, "1", name="")
+    except UnitError as error:
+        raise ValueError(f"{value!r} is no share; write e.g. 0.1 or '10 %'") from error
+
+
+# a part of something, below one half: its two ends may be cut off
+ShareOfEnds = Annotated[
+    float,
+    Field(ge=0, lt=0.5),
+    BeforeValidator(_share),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "minimum": 0, "exclusiveMaximum": 0.5},
+                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["10 %"]},
+            ]
+        }
+    ),
+]
+
+
 def _spread(value: Any) -> str:
     """Check an uncertainty of a force, or of a coefficient where only that was recorded."""
     if isinstance(value, str):

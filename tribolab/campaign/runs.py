@@ -279,11 +279,11 @@ def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Da
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.segments.find import find_segments
-    from tribolab.io.runs import read
+    from tribolab.io.runs import read_run
     from tribolab.qc.run_checks import check_run
 
     files = list(run.files)
-    signals = read(
+    signals = read_run(
         files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
     )
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:

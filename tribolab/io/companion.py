@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import load_dialect, recognise
 from tribolab.io.dialects.signature import peek
-from tribolab.io.runs import read
+from tribolab.io.runs import read_run
 
 
 class CompanionFacts(TypedDict, total=False):
@@ -49,7 +49,7 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
         dialect = load_dialect(instrument) if instrument else recognise(Path(path))
         if dialect.pair is None:
             return {}
-        attrs = read(path, instrument).attrs
+        attrs = read_run(path, instrument).attrs
     except ReadError as error:
         return {"refused": error.told("terminal")}
     if "companion_missing" in attrs:

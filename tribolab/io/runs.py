@@ -32,35 +32,24 @@ from tribolab.units import to_si
 PathLike = str | Path
 
 
-def read(
+def read_run(
     path: PathLike | Sequence[PathLike],
     instrument: str | Path | None = None,
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
 ) -> xr.Dataset:
-    r"""Read one run from its raw file or files.
+    """Read one run from its raw file or files, whose names are taken as they are.
 
     Parameters
     ----------
-    path
-        A raw file (text, MAT, TDMS, or a run that tribolab wrote as netCDF); or a list: the two
-        logs of a run, or the files of consecutive cycles, in any order if they say when they start.
-    instrument
-        Name of a known instrument, or path of a TOML description of your own. Without it the
-        instrument is recognised by the file's content.
-    pair
-        Also read the companion log, if the instrument writes one and it lies beside the file.
-    clock_shift
-        What has to be added to the companion's clock to get this log's clock [s]; estimated from
-        the signals when not given.
+    path, instrument, pair, clock_shift
+        As for `tribolab.read`, but for patterns.
 
     Returns
     -------
     xarray.Dataset
-        Dim ``time`` [s] from the first sample, strictly increasing; the quantities that the
-        instrument records, in SI; what stands outside the table as attributes, with the unit in
-        the name. Raw time is ``time + time_origin_s``.
+        As from `tribolab.read`.
 
     Raises
     ------
@@ -68,24 +57,6 @@ def read(
         If the file cannot be read; the message says what, where and how to mend it.
     ConfigError
         If there is no such instrument.
-
-    Notes
-    -----
-    Time has to increase strictly; what is done where it does not is stated in
-    `tribolab.io.clocks.clock`. Single values that are missing are NaN, and so are numbers beyond
-    1e100, which ``numbers_beyond_range`` counts. An optional column without a
-    value is left out and named in ``columns_not_used``.
-
-    Examples
-    --------
-    >>> import pathlib, tempfile
-    >>> folder = pathlib.Path(tempfile.mkdtemp())
-    >>> file = folder / "sb-r_dry_31N_01_force.csv"
-    >>> head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
-    >>> _ = file.write_text(head + "5.0,1.0,31.0\n5.1,2.0,31.0\n")
-    >>> run = read(file)
-    >>> run.friction_force.values.tolist(), run.attrs["time_origin_s"]
-    ([1.0, 2.0], 5.0)
     """
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(p) for p in path]
     if not paths:
@@ -194,7 +165,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> FileFacts:
     path
         The file.
     instrument
-        As for `read`.
+        As for `read_run`.
 
     Returns
     -------
@@ -209,7 +180,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> FileFacts:
     ReadError
         If the file cannot be read.
     """
-    run = read(path, instrument, pair=False)
+    run = read_run(path, instrument, pair=False)
     time = run["time"].to_numpy()
     gaps = np.diff(time)
     labels = run.attrs.get("columns_used", {})

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from numbers import Real
-
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, shown
+from tribolab.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
@@ -30,7 +28,7 @@ LABELS = ("set_speed", "set_normal_force", "step", "cycle")
 
 def find_segments(
     run: xr.Dataset,
-    trim: float = 0.10,
+    trim: str | float = 0.10,
     *,
     resolution: float = 0.02,
     drift: float = 0.10,
@@ -48,7 +46,8 @@ def find_segments(
         Dataset with dim ``time`` and one of ``sliding_velocity``, ``position``, ``step``; the
         first of these that is there is used (see Notes).
     trim
-        Share of each segment's duration that is left out at each end, 0 <= trim < 0.5.
+        Share of each segment's duration that is left out at each end, 0 <= trim < 0.5; ``"10 %"``
+        is 0.1.
     resolution
         Relative difference of speed that separates two neighbouring plateaus.
     drift
@@ -110,7 +109,7 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
     """
-    _refuse_trim(trim)
+    share = _share(trim)
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")
@@ -132,7 +131,7 @@ def find_segments(
         for s in stretches
     ]
     stretches = loaded(run, stretches, limits)
-    return _dataset(run, stretches, source, trim, position_range)
+    return _dataset(run, stretches, source, share, position_range)
 
 
 def why_no_segment(segments: xr.Dataset) -> str:
@@ -166,12 +165,17 @@ def why_no_segment(segments: xr.Dataset) -> str:
     return f"no segment: the run never slides at constant speed{detail}"
 
 
-def _refuse_trim(trim: object) -> None:
-    if not isinstance(trim, Real) or not 0 <= float(trim) < 0.5:
+def _share(trim: str | float) -> float:
+    try:
+        share = to_si(trim, "1", name="trim")
+    except UnitError:
+        share = np.nan
+    if not 0 <= share < 0.5:
         raise AnalysisError(
-            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10; got "
+            f"trim: a share of at least 0 and below 0.5 is wanted, e.g. 0.10 or '10 %'; got "
             f"{shown(repr(trim))}"
         )
+    return share
 
 
 def _dataset(
@@ -188,7 +192,7 @@ def _dataset(
     velocity = np.array([s.velocity for s in kept], float)
     trimmed_start = start + trim * (stop - start)
     trimmed_stop = stop - trim * (stop - start)
-    settings = {"trim": float(trim), "velocity_source": source}
+    settings = {"trim": trim, "velocity_source": source}
     if position_range is not None:
         low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)
         trimmed_start, trimmed_stop = _within(run, trimmed_start, trimmed_stop, low, high)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io import cures
+from tribolab.io.patterns import why_missing
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -54,23 +55,13 @@ def peek(path: str | Path) -> File:
             head = file.read(HEAD)
             size = file.seek(0, 2)
     except FileNotFoundError as error:
-        raise ReadError(f"{path}: {_why_missing(path)}") from error
+        raise ReadError(f"{path}: {why_missing(path)}") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     wide = head.startswith(_UTF16)
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     return File(path, _format(path, head), size, head)
-
-
-def _why_missing(path: Path) -> str:
-    if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
-        return "the pattern matches nothing"
-    if not path.parent.is_dir():
-        return f"there is no folder {path.parent}"
-    if any(sign in path.name for sign in "*?["):
-        return f"the pattern matches nothing in {path.parent}"
-    return "there is no such file"
 
 
 def _format(path: Path, head: bytes) -> str:

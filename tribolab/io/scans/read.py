@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import glob
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -15,6 +14,7 @@ from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
 from tribolab.io.dialects.signature import File, is_results, peek
+from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
 from tribolab.provenance import as_text, made, sha256_of_file
@@ -123,12 +123,7 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
         raise ReadError("no file is given", function="read_scans")
     files: list[Path] = []
     for path in given:
-        names = [str(path)]
-        if glob.has_magic(str(path)) and not Path(path).exists():
-            names = sorted(glob.glob(str(path)))  # noqa: PTH207 - Path.glob wants no absolute one
-            if not names:
-                raise ReadError(f"{path}: no file has such a name")
-        files.extend(map(Path, names))
+        files.extend(matching(path) if is_pattern(path) else [Path(path)])
     return files
 
 

@@ -1,0 +1,48 @@
+"""File names with wildcards, which name all files that are called so."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+
+from tribolab.errors import ReadError
+
+
+def is_pattern(path: str | Path) -> bool:
+    """Say whether a path has wildcards and is not itself the name of a file.
+
+    Examples
+    --------
+    >>> is_pattern("raw/*.csv"), is_pattern("raw/one.csv")
+    (True, False)
+    """
+    name = str(path)
+    return glob.has_magic(name) and "\0" not in name and not Path(path).exists()
+
+
+def matching(pattern: str | Path) -> list[Path]:
+    """Return what is called as a pattern says, in order of name.
+
+    Raises
+    ------
+    ReadError
+        If nothing is.
+    """
+    path = Path(pattern)
+    folder = next(parent for parent in path.parents if parent.is_dir())  # whatever its name is
+    names = folder.glob(str(path.relative_to(folder)))
+    found = sorted(name for name in names if not name.name.startswith("."))
+    if not found:
+        raise ReadError(f"{pattern}: {why_missing(path)}")
+    return found
+
+
+def why_missing(path: Path) -> str:
+    """Say how much of a path is not there: the file, its folder, or all a pattern could name."""
+    if any(sign in str(path.parent) for sign in "*?") and not path.parent.is_dir():
+        return "the pattern matches nothing"
+    if not path.parent.is_dir():
+        return f"there is no folder {path.parent}"
+    if any(sign in path.name for sign in "*?["):
+        return f"the pattern matches nothing in {path.parent}"
+    return "there is no such file"

@@ -1,0 +1,70 @@
+"""What is in a dataset: the meaning and the unit of every variable, as a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
+    """List the variables of a dataset with their meaning, unit and range.
+
+    What Jupyter shows of a dataset hides the units behind an icon for each variable; here they
+    stand beside the names.
+
+    Parameters
+    ----------
+    data
+        A run, its segments, or any other result.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each variable, coordinates first: ``meaning``, ``unit`` (empty for text), ``dims``
+        with their lengths, ``lowest`` and ``highest`` in that unit (of text the first and the last
+        value), and ``missing``, how many values are NaN. Of a run ``column``, too: what the file
+        calls it.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    >>> variables(run).loc["sliding_velocity", ["meaning", "unit", "dims"]].tolist()
+    ['sliding velocity, signed', 'm/s', 'time (1000)']
+    """
+    import pandas as pd
+    import xarray as xr
+
+    one = isinstance(data, xr.DataArray)
+    whole = data.to_dataset(name=data.name or "value") if one else data
+    names = [*whole.coords, *whole.data_vars]
+    rows = {str(name): _row(whole[name]) for name in names}
+    table = pd.DataFrame.from_dict(rows, orient="index")
+    called = whole.attrs.get("columns_used")
+    if isinstance(called, dict):
+        table["column"] = [str(called.get(name, "")) for name in table.index]
+    return table.rename_axis("variable")
+
+
+def _row(variable: xr.DataArray) -> dict[str, Any]:
+    values = variable.to_numpy().ravel()
+    missing = np.isnan(values) if values.dtype.kind == "f" else np.zeros(values.size, bool)
+    known = values[~missing]
+    low, high = None, None
+    if known.size:
+        ordered = known.dtype.kind in "fiub"
+        ends = (known.min(), known.max()) if ordered else (known[0], known[-1])
+        low, high = (end.item() if isinstance(end, np.generic) else end for end in ends)
+    return {
+        "meaning": variable.attrs.get("long_name", ""),
+        "unit": variable.attrs.get("units", ""),
+        "dims": ", ".join(f"{dim} ({size})" for dim, size in variable.sizes.items()),
+        "lowest": low,
+        "highest": high,
+        "missing": int(missing.sum()),
+    }
