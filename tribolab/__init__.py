@@ -26,6 +26,8 @@ _PUBLIC = {
     "read_netcdf": "tribolab.io.netcdf",
     "write_netcdf": "tribolab.io.netcdf",
     "find_segments": "tribolab.friction.segments.find",
+    "Decision": "tribolab.friction.decisions.decision",
+    "decide": "tribolab.friction.decisions.decide",
     "friction_coefficient": "tribolab.friction.coefficient.coefficient",
     "half_loops": "tribolab.friction.coefficient.half_loops",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
@@ -78,6 +80,8 @@ __all__ = [
     "read_netcdf",
     "write_netcdf",
     "find_segments",
+    "Decision",
+    "decide",
     "friction_coefficient",
     "half_loops",
     "stick_slip",
@@ -140,6 +144,8 @@ if TYPE_CHECKING:
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.coefficient.half_loops import half_loops
+    from tribolab.friction.decisions.decide import decide
+    from tribolab.friction.decisions.decision import Decision
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.segments.find import find_segments

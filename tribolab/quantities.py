@@ -82,6 +82,8 @@ _ROWS = [
     ("zero_from", "", "1", "what the zero of the friction signal rests on"),
     ("half_loop", "", "N", "half the difference of the friction force between the strokes"),
     ("pair", "", "1", "number of the pair of strokes"),
+    ("rejected", "", "1", "whether a person rejected the segment: 1"),
+    ("decision", "", "1", "what a person decided on the segment"),
     ("runs", "", "1", "number of runs"),
     ("segments", "", "1", "number of segments"),
     ("load", "F_N/L", "N/m", "normal force per unit length"),

@@ -10,6 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
+from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.quantities import stamp
@@ -36,7 +37,8 @@ def measured_stribeck_curve(
     Parameters
     ----------
     frictions
-        Results of `friction_coefficient`, one for each run of the same system.
+        Results of `friction_coefficient`, one for each run of the same system. Segments that a
+        person rejected (`decide`) are left out.
     speed_tolerance
         Speeds that differ by no more than this ratio belong together. The two strokes of a pair
         stay together at their mean speed.
@@ -95,7 +97,7 @@ def measured_stribeck_curve(
                 f"{friction.attrs.get('source', 'run')}: no 'friction_coefficient'; a run without"
                 " normal force has friction forces only and makes no Stribeck curve"
             )
-    values = [v for i, f in enumerate(frictions) for v in _observations(f, i)]
+    values = [v for i, f in enumerate(frictions) for v in _observations(kept(f), i)]
     values.sort(key=lambda v: v.speed)
     speed = np.array([v.speed for v in values])
     edges = np.flatnonzero(np.diff(np.log(speed)) > np.log1p(speed_tolerance)) + 1

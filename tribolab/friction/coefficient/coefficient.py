@@ -9,6 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.coefficient.steadiness import judged
+from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
@@ -38,7 +39,8 @@ def friction_coefficient(
         The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
         ``friction_force`` alone (then only forces come out).
     segments
-        From `find_segments` on the same run.
+        From `find_segments` on the same run, or from `decide`: rejected segments tell nothing of
+        the others, and have the values that they would have had.
     offset
         ``"half loop"``: the middle of the loop of two neighbouring strokes of opposite direction,
         its drift from loop to loop taken out. ``"zero load"``: the reading of rests without load,
@@ -116,6 +118,10 @@ def friction_coefficient(
         raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, OFFSETS)}")
     belong(run, segments)
     settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
+    return stamp(beside_rejected(segments, lambda part: _of_segments(run, part, settings)))
+
+
+def _of_segments(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     if "friction_force" in run:
         result = _from_forces(run, segments, settings)
     elif "friction_coefficient" in run:
@@ -124,9 +130,9 @@ def friction_coefficient(
         raise AnalysisError(
             f"{_name(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
         )
-    kept = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
-    attrs = {**segments.attrs, **result.attrs}
-    return stamp(judged(kept.merge(result, combine_attrs="drop")), **attrs)
+    bare = segments.drop_dims("omitted") if "omitted" in segments.dims else segments
+    both = bare.merge(result, combine_attrs="drop")
+    return judged(both).assign_attrs({**segments.attrs, **result.attrs})
 
 
 def _name(run: xr.Dataset) -> str:

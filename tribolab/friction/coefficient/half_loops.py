@@ -14,7 +14,7 @@ def half_loops(friction: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     friction
-        From `friction_coefficient`.
+        From `friction_coefficient`; rejected segments are in no pair.
 
     Returns
     -------

@@ -10,6 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
+from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.quantities import stamp
@@ -56,7 +57,7 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     Parameters
     ----------
     slips
-        From `stick_slip`, one per run.
+        From `stick_slip`, one per run; segments that a person rejected are left out.
     speed_tolerance
         Neighbouring speeds that differ by no more than this are one.
 
@@ -91,6 +92,7 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     """
     if not slips:
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")
+    slips = [kept(slip) for slip in slips]
     speed = np.concatenate([s["sliding_speed"].values for s in slips])
     kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
     own = _column(slips, "dominant_frequency")

@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
+from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation.examine import Examined, Limits, examine_record
 from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.slip_table import (
@@ -49,6 +50,10 @@ _IN_SIGNAL_UNIT = (
     "distance_psd",
 )
 
+_OF_SEGMENTS = (
+    *("trimmed_start", "trimmed_stop", "sliding_speed", "direction", "sliding_distance"),
+    REJECTED,
+)
 
 REVERSED = (
     "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
@@ -168,8 +173,8 @@ def stick_slip(
     data["instrument"] = _texts(_instrument(examined, speed))
     data["remark"] = _texts(remarks)
     result = xr.Dataset({name: ("segment", values) for name, values in data.items()})
-    kept = ("trimmed_start", "trimmed_stop", "sliding_speed", "direction", "sliding_distance")
-    result = result.assign({k: ("segment", segments[k].values) for k in kept if k in segments})
+    own = [name for name in _OF_SEGMENTS if name in segments]
+    result = result.assign({name: ("segment", segments[name].values) for name in own})
     result["class_probability"] = ("segment", "waveform_class"), class_table(examined)
     result = result.assign_coords(
         segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)

@@ -131,7 +131,7 @@ def find_segments(
         for s in stretches
     ]
     stretches = loaded(run, stretches, limits)
-    return _dataset(run, stretches, source, share, position_range)
+    return measured(run, stretches, source, share, position_range)
 
 
 def why_no_segment(segments: xr.Dataset) -> str:
@@ -178,13 +178,26 @@ def _share(trim: str | float) -> float:
     return share
 
 
-def _dataset(
+def measured(
     run: xr.Dataset,
     stretches: list[Stretch],
     source: str,
     trim: float,
     position_range: tuple[str | float, str | float] | None,
 ) -> xr.Dataset:
+    """Return the stretches of a run as `find_segments` does: trimmed, with speed and distance.
+
+    Parameters
+    ----------
+    run
+        The run.
+    stretches
+        Those of kind "constant" become segments, the others are what is omitted.
+    source
+        What tells the speed, as the attribute ``velocity_source`` says it.
+    trim, position_range
+        As for `find_segments`.
+    """
     kept = [s for s in stretches if s.kind == "constant"]
     left = [s for s in stretches if s.kind != "constant"]
     time = run["time"].values

@@ -1,0 +1,158 @@
+"""Decisions of a person, applied to the segments of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, Cure
+from tribolab.friction.decisions.bounds import with_bounds
+from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, REJECT, Decision
+from tribolab.friction.decisions.rejected import REJECTED, rejected
+from tribolab.friction.zero.of_run import PAIRED
+from tribolab.quantities import stamp
+
+DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
+_MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means
+_SHOWN = 3  # segments that are named where none was found
+_WORDS = {REJECT: "rejected", ACCEPT: "accepted", BOUNDS: "new bounds", "note": "note"}
+
+
+def decide(
+    segments: xr.Dataset, decisions: Decision | Iterable[Decision], run: xr.Dataset | None = None
+) -> xr.Dataset:
+    """Apply a person's decisions to segments: reject, accept, bound anew, note.
+
+    Parameters
+    ----------
+    segments
+        From `find_segments`; or a result of `friction_coefficient` whose zero no strokes tell.
+    decisions
+        One `Decision` or several; `load_review` reads them from a file.
+    run
+        The run that the segments are of; only new bounds want it.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same, with ``rejected`` (1 or 0) and ``decision`` (text) on dim ``segment``, and the
+        attribute ``decisions``: a list with all of each decision and the numbers of the
+        ``segments`` that it touches, from 1. What a segment with new bounds no longer holds is
+        ``omitted``. Without decisions the segments come back as they are.
+
+    Raises
+    ------
+    AnalysisError
+        If a decision finds no segment, two contradict each other, or new bounds leave the run or
+        meet another segment.
+
+    Notes
+    -----
+    A decision means the segment that holds more than half of its interval, so that it stays with
+    its stroke when segments are found a little otherwise; there is at most one. All decisions look
+    for their segments as they were found, whatever the others do. New bounds are the ends of the
+    segment: the share that is trimmed of every segment is trimmed of it, too.
+
+    `friction_coefficient` takes no zero from rejected segments, and `measured_stribeck_curve` and
+    `stick_slip_curve` leave them out. In a friction result a stroke cannot be rejected where
+    strokes tell the zero: the friction of the others rests on it.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from tribolab.friction.decisions.decision import Decision
+    >>> from tribolab.friction.segments.find import find_segments
+    >>> v = np.repeat([0.0, 1e-3, 0.0, -1e-3, 0.0], 100)
+    >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
+    >>> slipped = Decision("reject", "slipped off", "A. Person", "2026-11-20", "31 s", "39 s")
+    >>> decided = decide(find_segments(run), slipped)
+    >>> decided.rejected.values.tolist(), decided.decision.values.tolist()
+    ([0, 1], ['', 'rejected by A. Person: slipped off'])
+    """
+    made = (decisions,) if isinstance(decisions, Decision) else tuple(decisions)
+    if not made:
+        return segments
+    touched = [_touched(segments, decision) for decision in made]
+    _refuse_contradictions(segments, made, touched)
+    result = segments.copy()
+    for decision, places in zip(made, touched, strict=True):
+        if decision.action == BOUNDS:
+            result = with_bounds(result, places[0], decision, run)
+    count = segments.sizes["segment"]
+    out = rejected(segments)
+    told: list[list[str]] = [[] for _ in range(count)]
+    if "decision" in segments:
+        told = [[text] if text else [] for text in segments["decision"].values]
+    rows: list[dict[str, Any]] = list(segments.attrs.get(DECISIONS, []))
+    for decision, places in zip(made, touched, strict=True):
+        out[places] |= decision.action == REJECT
+        for place in places:
+            told[place].append(f"{_WORDS[decision.action]} by {decision.author}: {decision.reason}")
+        rows.append(decision.plain() | {"segments": [place + 1 for place in places]})
+    result[REJECTED] = "segment", out.astype(np.int8)
+    result["decision"] = "segment", np.array(["; ".join(texts) for texts in told], dtype=object)
+    return stamp(result).assign_attrs({DECISIONS: rows})
+
+
+def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
+    """Return the places of the segments that a decision is about."""
+    every = list(range(segments.sizes["segment"]))
+    if decision.interval is None:
+        places = every
+    else:
+        places = [_found(segments, decision, *decision.interval)]
+    if "omitted" in segments.dims or decision.action not in (REJECT, BOUNDS):
+        return places
+    # it is a result: what was computed from signals cannot be made again from it
+    if decision.action == BOUNDS:
+        raise _refused(segments, decision, "new bounds want the friction computed anew")
+    if len(places) < len(every) and segments.attrs.get("offset") in PAIRED:
+        raise _refused(segments, decision, "the friction of the other strokes rests on it")
+    return places
+
+
+def _found(segments: xr.Dataset, decision: Decision, low: float, high: float) -> int:
+    """Return the place of the segment that holds more than half of an interval."""
+    start, stop = segments["start"].values, segments["stop"].values
+    common = np.minimum(stop, high) - np.maximum(start, low)
+    if common.size and common.max() > _MORE_THAN * (high - low):
+        return int(common.argmax())
+    what = f"{decision} finds no segment: none holds more than half of its interval"
+    away = np.maximum(np.maximum(start - high, low - stop), 0.0)
+    near = sorted(np.argsort(away, kind="stable")[:_SHOWN].tolist())
+    listed = ", ".join(f"{n + 1} ({start[n]:.6g} to {stop[n]:.6g} s)" for n in near)
+    what += f"; the nearest: {listed}" if near else "; the run has none"
+    cure = Cure(
+        notebook="correct its start and stop",
+        campaign="correct its from and to in review.toml, or take it out",
+    )
+    raise AnalysisError(what, where=segments.attrs.get("source", ""), cure=cure)
+
+
+def _refused(segments: xr.Dataset, decision: Decision, why: str) -> AnalysisError:
+    cure = Cure(notebook="decide on the segments, and call friction_coefficient with them")
+    what = f"{decision} cannot be applied to a friction result: {why}"
+    return AnalysisError(what, where=segments.attrs.get("source", ""), cure=cure)
+
+
+def _refuse_contradictions(
+    segments: xr.Dataset, made: tuple[Decision, ...], touched: list[list[int]]
+) -> None:
+    """Refuse to accept what is rejected, and to bound anew twice; a run may be accepted in part."""
+    for number, one in enumerate(made):
+        for other, places in zip(made[:number], touched[:number], strict=True):
+            common = set(places) & set(touched[number]) or one.interval == other.interval
+            actions = {one.action, other.action}
+            first, second = sorted((other, one), key=lambda d: d.action)
+            accepted_in_part = first.interval is None and second.interval is not None
+            if not common or not (
+                one.action == other.action == BOUNDS
+                or (actions == {ACCEPT, REJECT} and not accepted_in_part)
+            ):
+                continue
+            cure = Cure(campaign="take one of them out of review.toml", notebook="take one out")
+            what = f"{other} and {one} contradict each other"
+            raise AnalysisError(what, where=segments.attrs.get("source", ""), cure=cure)
