@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from matplotlib.ticker import LogLocator
 
-from tribolab.plot import paper_style, svg
+from tribolab.plot import svg
 from tribolab.plot.decades import SmallTicks, power_of_ten
-from tribolab.plot.frame import logarithmic, single_axes
+from tribolab.plot.frame import logarithmic
+from tribolab.plot.panel import one_panel
 
 
 @pytest.mark.parametrize(
@@ -18,8 +19,7 @@ def test_a_decade_is_plain_text(value, text):
 
 
 def panel(low, high, small=True):
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(None) as (figure, axes):
         axes.plot([low, high], [low, high])
         logarithmic(axes, "x", "y", small=small)
         axes.set_xlim(low, high)

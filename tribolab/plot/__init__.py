@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from tribolab.plot.reduce import envelope
     from tribolab.plot.runs import trace
     from tribolab.plot.sensitivity import model_sensitivity
+    from tribolab.plot.slip_spectra import slip_spectra
     from tribolab.plot.spectrogram import slip_spectrogram
-    from tribolab.plot.stick_slip import Trace, slip_events, slip_spectra, slip_traces, waveform_map
+    from tribolab.plot.stick_slip import Trace, slip_events, slip_traces, waveform_map
     from tribolab.plot.style import figure_data, paper_style, save, svg
     from tribolab.plot.surfaces import modulus, spectra, viscoelastic
 
@@ -54,7 +55,7 @@ _HOMES = {
     "shear_stress": "tribolab.plot.mixed",
     "shear_stress_over_speed": "tribolab.plot.mixed",
     "slip_events": "tribolab.plot.stick_slip",
-    "slip_spectra": "tribolab.plot.stick_slip",
+    "slip_spectra": "tribolab.plot.slip_spectra",
     "slip_spectrogram": "tribolab.plot.spectrogram",
     "slip_traces": "tribolab.plot.stick_slip",
     "spectra": "tribolab.plot.surfaces",

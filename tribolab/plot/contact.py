@@ -7,19 +7,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import (
     colours,
-    legend_above,
     logarithmic,
     name_style,
     name_surfaces,
     shaded_band,
-    single_axes,
 )
 from tribolab.plot.labels import column, label
-from tribolab.plot.style import BLACK, GREY, PaperFigure, paper_style
+from tribolab.plot.panel import one_panel
+from tribolab.plot.style import BLACK, GREY, keep
 from tribolab.words import is_dry, number
 
 Surfaces = Mapping[str, xr.Dataset]
@@ -34,7 +34,8 @@ def contact_area(
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
-) -> PaperFigure:
+    ax: Axes | None = None,
+) -> Figure:
     """Draw the relative contact area without adhesion over pressure, Hertz pressures marked.
 
     Parameters
@@ -48,6 +49,9 @@ def contact_area(
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made. The legend takes in
+        what is drawn there already; ``ax.legend()`` makes it anew after more has been drawn.
 
     Examples
     --------
@@ -67,8 +71,7 @@ def contact_area(
     ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(contacts), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, contact in contacts.items():
             p, area = contact.pressure.values, contact.contact_area_ratio.values
             columns = {column("pressure"): p, "contact_area_ratio": area}
@@ -77,11 +80,10 @@ def contact_area(
                 shaded_band(axes, p, low, high, chosen[name])
                 columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
             axes.plot(p, area, color=chosen[name], linewidth=1.1)
-            figure.keep("contact area", name, **columns)
+            keep(figure, "contact area", name, **columns)
         name_surfaces(axes, chosen)
         _mark(figure, axes, loads)
         _area_axes(axes)
-        legend_above(figure, axes, title)
     return figure
 
 
@@ -92,7 +94,8 @@ def adhesive_area(
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
-) -> PaperFigure:
+    ax: Axes | None = None,
+) -> Figure:
     """Draw the relative contact area over pressure, without adhesion and with it in each medium.
 
     Parameters
@@ -102,7 +105,7 @@ def adhesive_area(
     adhesions
         ``contact_area_ratio`` (medium, pressure), with ``_low`` and ``_high`` where known, by the
         surface's name.
-    loads, surfaces, title
+    loads, surfaces, title, ax
         As for `contact_area`.
 
     Returns
@@ -127,14 +130,13 @@ def adhesive_area(
     """
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, contact in adhesions.items():
             if name in contacts:
                 p, area = (contacts[name][k].values for k in ("pressure", "contact_area_ratio"))
                 axes.plot(p, area, color=chosen[name], linestyle=":", linewidth=1.1)
                 columns = {column("pressure"): p, "contact_area_ratio": area}
-                figure.keep("contact area", f"{name}, no adhesion", **columns)
+                keep(figure, "contact area", f"{name}, no adhesion", **columns)
             for medium in contact.medium.values.tolist():
                 wet, p = contact.sel(medium=medium), contact.pressure.values
                 area = wet.contact_area_ratio.values
@@ -144,20 +146,19 @@ def adhesive_area(
                     shaded_band(axes, p, low, high, chosen[name])
                     columns |= {"contact_area_ratio_low": low, "contact_area_ratio_high": high}
                 axes.plot(p, area, color=chosen[name], linestyle=media[medium], linewidth=1.1)
-                figure.keep("contact area", f"{name}, {medium}", **columns)
+                keep(figure, "contact area", f"{name}, {medium}", **columns)
         name_surfaces(axes, chosen)
         name_style(axes, "no adhesion", linestyle=":")
         for medium, style in media.items():
             name_style(axes, medium, linestyle=style)
         _mark(figure, axes, loads)
         _area_axes(axes)
-        legend_above(figure, axes, title)
     return figure
 
 
 def effective_work(
-    adhesions: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    adhesions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+) -> Figure:
     """Draw the effective work of adhesion over the magnification.
 
     Parameters
@@ -165,7 +166,7 @@ def effective_work(
     adhesions
         ``effective_work_of_adhesion`` [J/m2] (medium, wavenumber) with the coordinate
         ``magnification``, by the surface's name, each at one pressure.
-    surfaces, title
+    surfaces, title, ax
         As for `contact_area`.
 
     Examples
@@ -182,8 +183,7 @@ def effective_work(
     """
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title, left=16) as (figure, axes):
         for name, contact in adhesions.items():
             for medium in contact.medium.values.tolist():
                 zeta = contact.magnification.values
@@ -193,7 +193,7 @@ def effective_work(
                     "magnification": zeta,
                     column("effective_work_of_adhesion"): work,
                 }
-                figure.keep("effective work of adhesion", f"{name}, {medium}", **columns)
+                keep(figure, "effective work of adhesion", f"{name}, {medium}", **columns)
         name_surfaces(axes, chosen)
         for medium, style in media.items():
             name_style(axes, medium, linestyle=style)
@@ -202,18 +202,23 @@ def effective_work(
         axes.set_ylim(-0.02 * axes.dataLim.y1, 1.06 * axes.dataLim.y1)
         axes.set_xlabel(label("magnification"))
         axes.set_ylabel("effective work of\n" + r"adhesion $\gamma_{\mathrm{eff}}$ (J/m$^2$)")
-        legend_above(figure, axes, title, left=16)
     return figure
 
 
-def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") -> PaperFigure:
+def gaps(
+    distributions: Surfaces,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
     """Draw the distribution of the gap, u P(u) over ln u: equal areas are equal shares.
 
     Parameters
     ----------
     distributions
         ``gap_density`` [1/m] (gap) by the surface's name, each at one pressure.
-    surfaces, title
+    surfaces, title, ax
         As for `contact_area`.
 
     Examples
@@ -226,8 +231,7 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
     ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(distributions), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title, left=16) as (figure, axes):
         ends = []
         for name, data in distributions.items():
             u, density = data.gap.values, data.gap_density.values
@@ -235,7 +239,7 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
             axes.plot(u, share, color=chosen[name], linewidth=1.1)
             ends.append(u[share > 1e-3 * share.max()][[0, -1]])
             columns = {column("gap"): u, "gap_density_1_m": density}
-            figure.keep("gap", name, **columns)
+            keep(figure, "gap", name, **columns)
         name_surfaces(axes, chosen)
         logarithmic(axes, "x")
         # below the cut-off a gap is smaller than an atom
@@ -244,7 +248,6 @@ def gaps(distributions: Surfaces, *, surfaces: Sequence[str] = (), title: str = 
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_xlabel(label("gap"))
         axes.set_ylabel("share of the area per\nlogarithm of the gap $u\\,P(u)$")
-        legend_above(figure, axes, title, left=16)
     return figure
 
 
@@ -254,7 +257,8 @@ def line_pressure(
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
-) -> PaperFigure:
+    ax: Axes | None = None,
+) -> Figure:
     """Draw the pressure across dry rough line contacts, beside that of Hertz.
 
     Parameters
@@ -263,7 +267,7 @@ def line_pressure(
         ``pressure`` [Pa] and ``x`` [m] (point or x) by the surface's name, each at one load.
     hertz
         x [m] and pressure [Pa] of the smooth contact.
-    surfaces, title
+    surfaces, title, ax
         As for `contact_area`.
 
     Examples
@@ -279,24 +283,22 @@ def line_pressure(
     ['Sb-S', 'Sb-R']
     """
     chosen = colours(list(lines), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         widest = 0.0
         for name, line in lines.items():
             x, p = line["x"].values, line["pressure"].values
             axes.plot(1e3 * x, 1e-6 * p, color=chosen[name], linewidth=1.1)
-            figure.keep("pressure", name, x_m=x, pressure_Pa=p)
+            keep(figure, "pressure", name, x_m=x, pressure_Pa=p)
             widest = max(widest, 1e3 * np.abs(x[p > 1e-3 * p.max()]).max())
         name_surfaces(axes, chosen)
         if hertz is not None:
             x, p = hertz
             axes.plot(1e3 * x, 1e-6 * p, color=BLACK, linestyle="--", linewidth=0.8, label="Hertz")
-            figure.keep("pressure", "Hertz", x_m=x, pressure_Pa=p)
+            keep(figure, "pressure", "Hertz", x_m=x, pressure_Pa=p)
         axes.set_xlim(-1.15 * widest, 1.15 * widest)
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_xlabel("coordinate across the contact $x$ (mm)")
         axes.set_ylabel("contact pressure $p$ (MPa)")
-        legend_above(figure, axes, title)
     return figure
 
 
@@ -312,7 +314,7 @@ def _media(adhesions: Surfaces) -> dict[str, LineStyleType]:
     }
 
 
-def _mark(figure: PaperFigure, axes: Axes, loads: xr.Dataset | None) -> None:
+def _mark(figure: Figure, axes: Axes, loads: xr.Dataset | None) -> None:
     if loads is None:
         return
     pressure, force = loads.pressure.values, loads.normal_force.values
@@ -320,7 +322,7 @@ def _mark(figure: PaperFigure, axes: Axes, loads: xr.Dataset | None) -> None:
         axes.axvline(p, color=GREY, linewidth=0.6, zorder=0)
     text = ", ".join(number(f) for f in force) if force.size <= 5 else "the loads"
     name_style(axes, f"Hertz at {text} N" if force.size <= 5 else "Hertz", linewidth=0.6)
-    figure.keep("Hertz pressure", "loads", normal_force_N=force, pressure_Pa=pressure)
+    keep(figure, "Hertz pressure", "loads", normal_force_N=force, pressure_Pa=pressure)
 
 
 def _area_axes(axes: Axes) -> None:
@@ -332,8 +334,8 @@ def _area_axes(axes: Axes) -> None:
 
 
 def contact_separation(
-    separations: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    separations: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+) -> Figure:
     """Draw the contact pressure over the mean separation in units of the roughness.
 
     Parameters
@@ -341,7 +343,7 @@ def contact_separation(
     separations
         ``contact_pressure`` [Pa] (separation) with the attribute ``rms_roughness_m``, by the
         surface's name.
-    surfaces, title
+    surfaces, title, ax
         As for `contact_area`.
 
     Examples
@@ -357,18 +359,16 @@ def contact_separation(
     [1.0, 2.0, 3.0]
     """
     chosen = colours(list(separations), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, separation in separations.items():
             over = separation.separation.values / separation.attrs["rms_roughness_m"]
             p = separation.contact_pressure.values
             axes.plot(over, 1e-6 * p, color=chosen[name], linewidth=1.1)
             columns = {"separation_over_rms_roughness": over, "contact_pressure_Pa": p}
-            figure.keep("contact pressure", name, **columns)
+            keep(figure, "contact pressure", name, **columns)
         name_surfaces(axes, chosen)
         logarithmic(axes, "y")
         axes.set_xlim(0, axes.dataLim.x1)
         axes.set_xlabel(r"mean separation / roughness $\bar u/h_{\mathrm{rms}}$")
         axes.set_ylabel(r"contact pressure $p_{\mathrm{cont}}$ (MPa)")
-        legend_above(figure, axes, title)
     return figure

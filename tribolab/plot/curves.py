@@ -8,20 +8,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.decades import few_ticks
-from tribolab.plot.frame import legend_above
 from tribolab.plot.labels import column, label, plain
+from tribolab.plot.panel import one_panel
 from tribolab.plot.style import (
     GREY,
-    SINGLE_MM,
-    PaperFigure,
     SurfaceStyle,
-    margins,
-    new_figure,
-    paper_style,
+    keep,
     shade,
     surface_styles,
 )
@@ -45,7 +42,8 @@ def stribeck(
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
-) -> PaperFigure:
+    ax: Axes | None = None,
+) -> Figure:
     """Draw friction coefficients over the logarithm of the sliding speed.
 
     Parameters
@@ -61,6 +59,9 @@ def stribeck(
         figure.
     title
         Text above the figure.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made. The legend takes in
+        what is drawn there already; ``ax.legend()`` makes it anew after more has been drawn.
 
     Returns
     -------
@@ -94,13 +95,11 @@ def stribeck(
     every = [_attribute(curve, "surface") for curve in curves + models]
     styles = surface_styles([*surfaces, *every])
     loads = sorted({_load(c) for c in curves + models if np.isfinite(_load(c))})
-    with paper_style():
-        figure = new_figure(SINGLE_MM, 60.0)
-        axes = figure.add_subplot()
+    with one_panel(ax, title) as (figure, axes):
         drawn = 0
         for curve in curves:
             look = _look(curve, styles, loads, len(set(every)))
-            text = _label(curve, curves + models)
+            text = _label(curve, curves + models) or ("" if ax is None else "measured")
             drawn += _points(figure, axes, curve, name, numbered, look, text, bool(models))
         for curve in models:
             look = _look(curve, styles, loads, len(set(every)))
@@ -111,7 +110,6 @@ def stribeck(
                 f"there is nothing to draw: no curve has a finite {name.replace('_', ' ')}"
             )
         _scales(axes, name, numbered)
-        legend_above(figure, axes, title)
     return figure
 
 
@@ -168,7 +166,7 @@ def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
 
 
 def _points(
-    figure: PaperFigure,
+    figure: Figure,
     axes: Axes,
     curve: xr.Dataset,
     name: str,
@@ -208,13 +206,11 @@ def _points(
     )  # fmt: skip
     where = "segment" if numbered else column("sliding_speed")
     numbers = {where: x, column(name): y, column(name + "_std"): std, column(name + "_sem"): sem}
-    figure.keep("curve", text or "measured", **numbers)
+    keep(figure, "curve", text or "measured", **numbers)
     return int(fine.sum())
 
 
-def _line(
-    figure: PaperFigure, axes: Axes, curve: xr.Dataset, name: str, look: _Look, text: str
-) -> int:
+def _line(figure: Figure, axes: Axes, curve: xr.Dataset, name: str, look: _Look, text: str) -> int:
     if name not in curve or not _has_speed(curve):
         return 0
     x, y = (np.atleast_1d(np.asarray(curve[n], float)) for n in ("sliding_speed", name))
@@ -223,7 +219,7 @@ def _line(
         x[fine], y[fine], color=look.colour, linestyle="--" if look.dry else "-",
         linewidth=1.2, label=text, zorder=3,
     )  # fmt: skip
-    figure.keep("curve", text, **{column("sliding_speed"): x[fine], column(name): y[fine]})
+    keep(figure, "curve", text, **{column("sliding_speed"): x[fine], column(name): y[fine]})
     return int(fine.sum())
 
 
@@ -247,7 +243,7 @@ def _scales(axes: Axes, name: str, numbered: bool) -> None:
     axes.set_ylim(low - room if low < 0 else 0.0, high + room)
 
 
-def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
+def half_loop(friction: xr.Dataset, *, title: str = "", ax: Axes | None = None) -> Figure:
     """Draw half the force difference of each pair of strokes: friction without the offset.
 
     Parameters
@@ -256,6 +252,9 @@ def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
         A friction result (segment) with `half_loop` and `pair`.
     title
         Text above the figure.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made. The legend takes in
+        what is drawn there already; ``ax.legend()`` makes it anew after more has been drawn.
 
     Returns
     -------
@@ -287,10 +286,9 @@ def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
     if not first.size:
         raise AnalysisError("no stroke of this run has a partner, so there is no half loop to draw")
     x, y = pair[first] + 1, loop[first]
-    with paper_style():
-        figure = new_figure(SINGLE_MM, 52.0)
-        axes = figure.add_subplot()
-        axes.plot(x, y, color="black", marker="o", linestyle="none", markersize=4)
+    name = "_nolegend_" if ax is None else "half loop"
+    with one_panel(ax, title, left=16) as (figure, axes):
+        axes.plot(x, y, color="black", marker="o", linestyle="none", markersize=4, label=name)
         axes.axhline(y.mean(), color=GREY, linewidth=0.8, zorder=1)
         axes.set_xlabel("pair of strokes")
         axes.set_ylabel("half loop of the\nfriction force (N)")
@@ -298,8 +296,5 @@ def half_loop(friction: xr.Dataset, *, title: str = "") -> PaperFigure:
         axes.set_xlim(x.min() - 0.6, x.max() + 0.6)
         span = max(np.ptp(y), 0.1 * abs(y.mean())) or 1.0
         axes.set_ylim(y.mean() - 1.2 * span, y.mean() + 1.2 * span)
-        margins(figure, 16, 3, 10.5, 6)
-        figure.keep("half loop", "pairs", pair=x, half_loop_N=y)
-        if title:
-            figure.text(16 / SINGLE_MM, 1 - 1.3 / 52, plain(title), va="top", fontsize=8)
+        keep(figure, "half loop", "pairs", pair=x, half_loop_N=y)
     return figure

@@ -35,7 +35,8 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
     axis.set_minor_locator(NullLocator())
     axis.set_minor_formatter(NullFormatter())
     subs = (1,) if low > 0 and high / low > _MANY else range(2, 10)
-    if small:
+    there = (a for a in axis.axes.artists if isinstance(a, SmallTicks))
+    if small and not any(ticks.axis is axis for ticks in there):
         axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))
 
 

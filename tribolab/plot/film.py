@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
 
-from tribolab.plot.frame import colours, logarithmic
+from tribolab.plot.frame import colours, logarithmic, name_surfaces
 from tribolab.plot.labels import plain
+from tribolab.plot.panel import Panels, name_all, name_panel, several_panels
 from tribolab.plot.style import (
     DOUBLE_MM,
     GREY,
     PaperFigure,
+    keep,
     margins,
     new_figure,
-    paper_style,
     tidy,
 )
 from tribolab.words import speed_text
@@ -41,7 +45,9 @@ _FRICTION: tuple[tuple[str, LineStyleType, str], ...] = (
 )
 
 
-def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "") -> PaperFigure:
+def film_profiles(
+    profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "", axes: Panels | None = None
+) -> Figure:
     """Draw separation, contact and fluid pressure across the contact at several speeds.
 
     Parameters
@@ -51,6 +57,9 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
         (sliding_speed, point); or several results of `tribolab.film_profile`, each over (x).
     title
         Text above the figure.
+    axes
+        The axes to draw in, three of them; they keep their look. Without
+        them a figure is made.
 
     Returns
     -------
@@ -71,9 +80,8 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
     """
     if isinstance(profiles, xr.Dataset):
         profiles = [profiles.isel(sliding_speed=n) for n in range(profiles.sliding_speed.size)]
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, _HEIGHT)
-        panels = figure.subplots(1, 3)
+    with several_panels(axes, [name for name, _, _ in _PANELS], _side_by_side(3)) as drawn:
+        figure, panels = drawn
         widest = centre = 0.0
         for rank, profile in enumerate(profiles):
             v, x = float(profile["sliding_speed"]), 1e3 * profile["x"].values
@@ -81,36 +89,57 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset], *, title: str = "
             widest = max(widest, np.abs(x[total > 5e-3 * total.max()]).max())
             place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(profiles) - 1, 1))
             centre = max(centre, float(profile["separation"].values[np.abs(x).argmin()]))
-            look = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
-            for axes, (name, factor, _) in zip(panels, _PANELS, strict=True):
-                axes.plot(x, factor * profile[name].values, **look, label=speed_text(v))
+            look: dict[str, Any] = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
+            for panel, (name, factor, _) in zip(panels, _PANELS, strict=True):
+                panel.plot(x, factor * profile[name].values, **look, label=speed_text(v))
             numbers = {f"{name}_{unit}": profile[name].values for name, unit in _UNITS}
-            figure.keep("profiles", speed_text(v), x_m=profile["x"].values, **numbers)
-        for axes, (_, _, text), letter in zip(panels, _PANELS, "abc", strict=True):
-            axes.set_xlim(-1.05 * widest, 1.05 * widest)
-            axes.set_xlabel("coordinate $x$ (mm)")
-            axes.set_ylabel(text)
-            tidy(axes, letter)
+            keep(figure, "profiles", speed_text(v), x_m=profile["x"].values, **numbers)
+        for panel, (_, _, text), letter in zip(panels, _PANELS, "abc", strict=True):
+            panel.set_xlim(-1.05 * widest, 1.05 * widest)
+            panel.set_xlabel("coordinate $x$ (mm)")
+            panel.set_ylabel(text)
+            tidy(panel, letter if axes is None else "")
         panels[0].set_ylim(0, 4e6 * centre)  # the gap outside grows without end
-        for axes in panels[1:]:
-            axes.set_ylim(0, 1.18 * axes.dataLim.y1 or 1)  # smooth bodies do not touch
-        margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.32)
-        handles, texts = panels[0].get_legend_handles_labels()
-        figure.legend(
-            handles, texts, loc="upper right", ncols=len(texts),
-            bbox_to_anchor=(1 - 3 / DOUBLE_MM, 1 - (4.5 if title else 0.8) / _HEIGHT),
-        )  # fmt: skip
-        if title:
-            figure.text(13 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
+        for panel in panels[1:]:
+            panel.set_ylim(0, 1.18 * panel.dataLim.y1 or 1)  # smooth bodies do not touch
+        if axes is None:
+            _finish(figure, panels[0], title, wspace=0.32)
+        else:
+            name_all(panels[1])  # where the curves leave room
+            name_panel(panels[0], title)
     return figure
+
+
+def _side_by_side(count: int) -> Callable[[], tuple[PaperFigure, list[Axes]]]:
+    def make() -> tuple[PaperFigure, list[Axes]]:
+        figure = new_figure(DOUBLE_MM, _HEIGHT)
+        return figure, list(figure.subplots(1, count))
+
+    return make
+
+
+def _finish(figure: Figure, named: Axes, title: str, *, wspace: float) -> None:
+    """Set margins, and above the panels the names in one of them and the title."""
+    margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=wspace)
+    handles, texts = named.get_legend_handles_labels()
+    figure.legend(
+        handles, texts, loc="upper right", ncols=len(texts),
+        bbox_to_anchor=(1 - 3 / DOUBLE_MM, 1 - (4.5 if title else 0.8) / _HEIGHT),
+    )  # fmt: skip
+    if title:
+        figure.text(13 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
 
 
 _UNITS = (("separation", "m"), ("contact_pressure", "Pa"), ("fluid_pressure", "Pa"))
 
 
 def lubrication_factors(
-    factors: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    factors: Mapping[str, xr.Dataset],
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    axes: Panels | None = None,
+) -> Figure:
     """Draw flow and friction factors over the separation in units of the roughness.
 
     Parameters
@@ -122,6 +151,9 @@ def lubrication_factors(
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+    axes
+        The axes to draw in, for flow and friction factors; they keep their look. Without
+        them a figure is made.
 
     Examples
     --------
@@ -134,38 +166,40 @@ def lubrication_factors(
     [0.0, 0.09, 0.35, 0.61, 0.8]
     """
     chosen = colours(list(factors), surfaces)
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, _HEIGHT)
-        flow, friction = figure.subplots(1, 2)
-        for axes, names in ((flow, _FLOW), (friction, _FRICTION)):
+    both = ("flow factors", "friction factors")
+    with several_panels(axes, both, _side_by_side(2)) as (figure, (flow, friction)):
+        for panel, names in ((flow, _FLOW), (friction, _FRICTION)):
             for name, data in factors.items():
                 over = data["separation"].values / data.attrs["rms_roughness_m"]
                 for key, style, _ in names:
-                    axes.plot(over, data[key], color=chosen[name], linestyle=style, linewidth=1.1)
+                    panel.plot(over, data[key], color=chosen[name], linestyle=style, linewidth=1.1)
                 numbers = {key: data[key].values for key, _, _ in names}
-                figure.keep("factors", name, separation_over_rms_roughness=over, **numbers)
+                keep(figure, "factors", name, separation_over_rms_roughness=over, **numbers)
             lines = [
                 Line2D([], [], color=GREY, linestyle=style, linewidth=1.1, label=text)
                 for _, style, text in names
             ]
-            axes.legend(handles=lines, loc="center right" if axes is flow else "lower right")
-            logarithmic(axes, *("x" if axes is flow else "xy"))
-            axes.set_xlim(over.min(), over.max())
-            axes.set_xlabel(r"mean separation / roughness $\bar u/h_{\mathrm{rms}}$")
+            if axes is not None:  # by name, for the one legend of the panel
+                for line in lines:
+                    panel.add_artist(line)
+            elif panel is flow:
+                panel.legend(handles=lines, loc="center right")
+            else:
+                panel.legend(handles=lines, loc="lower right")
+            logarithmic(panel, *("x" if panel is flow else "xy"))
+            panel.set_xlim(over.min(), over.max())
+            panel.set_xlabel(r"mean separation / roughness $\bar u/h_{\mathrm{rms}}$")
         flow.axhline(0, color=GREY, linewidth=0.6, zorder=0)
         friction.set_ylim(1e-3, 2 * friction.dataLim.y1)
         flow.set_ylabel("flow factor")
         friction.set_ylabel("friction factor")
-        tidy(flow, "a")
-        tidy(friction, "b")
-        margins(figure, 13, 3, 10.5, 10.5 if title else 6.5, wspace=0.2)
-        handles = [
-            Line2D([], [], color=c, linewidth=1.4, label=plain(n)) for n, c in chosen.items()
-        ]
-        figure.legend(
-            handles=handles, loc="upper right", ncols=len(handles),
-            bbox_to_anchor=(1 - 3 / DOUBLE_MM, 1 - (4.5 if title else 0.8) / _HEIGHT),
-        )  # fmt: skip
-        if title:
-            figure.text(13 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
+        tidy(flow, "a" if axes is None else "")
+        tidy(friction, "b" if axes is None else "")
+        name_surfaces(flow, chosen)
+        if axes is None:
+            _finish(figure, flow, title, wspace=0.2)
+        else:
+            name_all(flow)
+            name_all(friction)
+            name_panel(flow, title)
     return figure

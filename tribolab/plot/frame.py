@@ -15,15 +15,8 @@ from tribolab.plot.style import (
     SINGLE_MM,
     PaperFigure,
     margins,
-    new_figure,
     surface_styles,
 )
-
-
-def single_axes() -> tuple[PaperFigure, Axes]:
-    """Return an empty one-column figure and its axes; call inside `paper_style()`."""
-    figure = new_figure(SINGLE_MM, 60.0)
-    return figure, figure.add_subplot()
 
 
 def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:

@@ -9,26 +9,26 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.plot.decades import few_ticks
 from tribolab.plot.frame import (
     colours,
-    legend_above,
     logarithmic,
     shaded_band,
-    single_axes,
 )
 from tribolab.plot.labels import column, label, plain
+from tribolab.plot.panel import Panels, name_all, name_panel, one_panel, several_panels
 from tribolab.plot.style import (
     BLACK,
     GREY,
     SINGLE_MM,
     PaperFigure,
     SurfaceStyle,
+    keep,
     margins,
     new_figure,
-    paper_style,
     surface_styles,
 )
 
@@ -44,7 +44,8 @@ def mixed_curve(
     surface: str = "",
     surfaces: Sequence[str] = (),
     title: str = "",
-) -> PaperFigure:
+    axes: Panels | None = None,
+) -> Figure:
     """Draw a measured Stribeck curve, the model with its parts, and what is left between them.
 
     Parameters
@@ -63,6 +64,9 @@ def mixed_curve(
         Its name, and all names of the study in their order, for the colour.
     title
         Text above the figure.
+    axes
+        The axes to draw in, for the curve and for the differences; they keep their look. Without
+        them a figure is made.
 
     Returns
     -------
@@ -90,28 +94,37 @@ def mixed_curve(
     ['model', 'solid', 'viscous', 'measured', 'measured less model']
     """
     style = surface_styles([*surfaces, surface])[surface]
-    with paper_style():
-        figure = new_figure(SINGLE_MM, _MODEL_HEIGHT + _MISFIT_HEIGHT)
-        ratios = {"height_ratios": [_MODEL_HEIGHT, _MISFIT_HEIGHT]}
-        axes, below = figure.subplots(2, 1, sharex=True, gridspec_kw=ratios)
+    with several_panels(axes, ("friction", "difference"), _stacked) as (figure, (above, below)):
         modelled = fit.attrs.get("shear_stress_Pa", 1.0) > 0
         if uncertainty is not None and modelled:
-            _band(figure, axes, uncertainty, style.colour)
-        _model(figure, axes, curve, style.colour, () if modelled else ("viscous",))
-        _measured(figure, axes, fit, style, "measured")
+            _band(figure, above, uncertainty, style.colour)
+        _model(figure, above, curve, style.colour, () if modelled else ("viscous",))
+        _measured(figure, above, fit, style, "measured")
         if dry is not None:
-            _measured(figure, axes, dry, style, "dry", hollow=True)
+            _measured(figure, above, dry, style, "dry", hollow=True)
         _misfit(figure, below, fit, style, "model" if modelled else "viscous part")
         _speeds(below, curve["sliding_speed"].values)
-        axes.set_ylabel(label("friction_coefficient"))
-        low, high = axes.dataLim.intervaly
-        axes.set_ylim(1.2 * low if low < -0.01 * high else 0, 1.06 * high)
-        _two_panels(figure, axes, title)
+        if axes is not None:
+            _speeds(above, curve["sliding_speed"].values)
+        above.set_ylabel(label("friction_coefficient"))
+        low, high = above.dataLim.intervaly
+        above.set_ylim(1.2 * low if low < -0.01 * high else 0, 1.06 * high)
+        if isinstance(figure, PaperFigure) and axes is None:
+            _two_panels(figure, above, title)
+        else:
+            name_all(above)
+            name_panel(above, title)
     return figure
 
 
+def _stacked() -> tuple[PaperFigure, list[Axes]]:
+    figure = new_figure(SINGLE_MM, _MODEL_HEIGHT + _MISFIT_HEIGHT)
+    ratios = {"height_ratios": [_MODEL_HEIGHT, _MISFIT_HEIGHT]}
+    return figure, list(figure.subplots(2, 1, sharex=True, gridspec_kw=ratios))
+
+
 def _model(
-    figure: PaperFigure, axes: Axes, curve: xr.Dataset, colour: str, only: tuple[str, ...] = ()
+    figure: Figure, axes: Axes, curve: xr.Dataset, colour: str, only: tuple[str, ...] = ()
 ) -> None:
     v = curve["sliding_speed"].values
     fluid = curve["friction_coefficient_couette"] + curve["friction_coefficient_pressure"]
@@ -126,20 +139,20 @@ def _model(
         look = {"color": colour, "linewidth": 0.9, "zorder": 3, **look}
         axes.plot(v, values, **look, label=text)
         numbers = {column("sliding_speed"): v, "friction_coefficient": values.values}
-        figure.keep("friction", name, **numbers)
+        keep(figure, "friction", name, **numbers)
 
 
-def _band(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, colour: str) -> None:
+def _band(figure: Figure, axes: Axes, uncertainty: xr.Dataset, colour: str) -> None:
     v = uncertainty["sliding_speed"].values
     low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
     shaded_band(axes, v, low, high, colour)
     axes.fill_between([], [], [], color=colour, alpha=0.2, linewidth=0, label="its band")
     numbers = {column("sliding_speed"): v, "friction_coefficient_low": low}
-    figure.keep("friction", "band", **numbers, friction_coefficient_high=high)
+    keep(figure, "friction", "band", **numbers, friction_coefficient_high=high)
 
 
 def _measured(
-    figure: PaperFigure,
+    figure: Figure,
     axes: Axes,
     data: xr.Dataset,
     style: SurfaceStyle,
@@ -163,12 +176,10 @@ def _measured(
         linestyle="--" if hollow else "none", label=text, zorder=5,
     )  # fmt: skip
     columns = {column("sliding_speed"): v, "friction_coefficient": mu}
-    figure.keep("friction", text, **columns, **kept)
+    keep(figure, "friction", text, **columns, **kept)
 
 
-def _misfit(
-    figure: PaperFigure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, what: str
-) -> None:
+def _misfit(figure: Figure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, what: str) -> None:
     v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
     error = np.nan_to_num(fit["friction_coefficient_sem"].values)
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
@@ -177,7 +188,7 @@ def _misfit(
         linestyle="none", elinewidth=0.8, capsize=1.8, capthick=0.8,
     )  # fmt: skip
     columns = {"sliding_speed_m_s": v, "residual": off, "error": error}
-    figure.keep("residual", f"measured less {what}", **columns)
+    keep(figure, "residual", f"measured less {what}", **columns)
     axes.set_ylabel(r"difference $\Delta\mu$")
     axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
     reach = 1.15 * np.nanmax(np.abs(off) + error) or 1.0
@@ -213,8 +224,8 @@ def _two_panels(figure: PaperFigure, axes: Axes, title: str) -> None:
 
 
 def shear_stress(
-    table: pd.DataFrame, *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    table: pd.DataFrame, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+) -> Figure:
     """Draw fitted shear stresses over the load: as fitted, and in the area that adhesion makes.
 
     Parameters
@@ -223,7 +234,7 @@ def shear_stress(
         A row per fit with ``surface``, ``normal_force_N``, ``shear_stress_Pa`` and its
         ``shear_stress_low_Pa`` and ``_high_Pa``; ``corrected_shear_stress_Pa`` and
         ``corrected_shear_stress_error_Pa``.
-    surfaces, title
+    surfaces, title, ax
         As for `mixed_curve`.
 
     Returns
@@ -252,8 +263,7 @@ def shear_stress(
     """
     names = list(dict.fromkeys(table["surface"]))
     styles = surface_styles([*surfaces, *names])
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name in names:
             rows = table[table["surface"] == name].sort_values("normal_force_N")
             load, stress = rows["normal_force_N"].to_numpy(), rows["shear_stress_Pa"].to_numpy()
@@ -272,7 +282,7 @@ def shear_stress(
                     linewidth=0.8,
                     label=plain(name) if line == "-" else "_nolegend_",
                 )  # fmt: skip
-            figure.keep("shear stress", name, **{k: rows[k].to_numpy() for k in rows.columns[1:]})
+            keep(figure, "shear stress", name, **{k: rows[k].to_numpy() for k in rows.columns[1:]})
         axes.plot([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="--",
                   label="as fitted")  # fmt: skip
         axes.plot([], [], color=GREY, marker="o", linestyle="-", label="in the adhesive area")
@@ -281,7 +291,6 @@ def shear_stress(
         axes.axhline(0, color=GREY, linewidth=0.6, zorder=0)
         axes.set_xlabel(label("normal_force"))
         axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
-        legend_above(figure, axes, title)
     return figure
 
 
@@ -291,8 +300,12 @@ def _above_zero(value: np.ndarray, bars: np.ndarray) -> np.ndarray:
 
 
 def friction_factor_effect(
-    curves: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    curves: Mapping[str, xr.Dataset],
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
     """Draw model curves with the friction factors of the roughness and without them.
 
     Parameters
@@ -300,7 +313,7 @@ def friction_factor_effect(
     curves
         ``friction_coefficient`` and ``friction_without_factors`` (sliding_speed) by the surface's
         name.
-    surfaces, title
+    surfaces, title, ax
         As for `mixed_curve`.
 
     Examples
@@ -314,15 +327,14 @@ def friction_factor_effect(
     [1.011, 0.865, 1.008, 0.838]
     """
     chosen = colours(list(curves), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, curve in curves.items():
             v = curve["sliding_speed"].values
             for key, style in (("friction_coefficient", "-"), ("friction_without_factors", "--")):
                 mu = curve[key].values
                 text = plain(name) if style == "-" else "_nolegend_"
                 axes.plot(v, mu, color=chosen[name], linestyle=style, linewidth=1.1, label=text)
-                figure.keep("friction", f"{name}, {key}", sliding_speed_m_s=v, friction=mu)
+                keep(figure, "friction", f"{name}, {key}", sliding_speed_m_s=v, friction=mu)
         axes.plot([], [], color=GREY, linestyle="-", label="with factors")
         axes.plot([], [], color=GREY, linestyle="--", label="without")
         logarithmic(axes, "x", "y")
@@ -331,20 +343,23 @@ def friction_factor_effect(
         axes.set_ylim(max(axes.dataLim.y0 / 1.3, 1e-4 * top), 1.4 * top)
         axes.set_xlabel(label("sliding_speed"))
         axes.set_ylabel(label("friction_coefficient"))
-        legend_above(figure, axes, title)
     return figure
 
 
 def shear_stress_over_speed(
-    curves: Mapping[str, xr.Dataset], *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    curves: Mapping[str, xr.Dataset],
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
     """Draw the shear stress in the real contact over the sliding speed.
 
     Parameters
     ----------
     curves
         ``shear_stress`` [Pa] with ``shear_stress_std`` (sliding_speed) by the surface's name.
-    surfaces, title
+    surfaces, title, ax
         As for `mixed_curve`.
 
     Examples
@@ -359,8 +374,7 @@ def shear_stress_over_speed(
     [600000.0, 610000.0]
     """
     styles = surface_styles([*surfaces, *curves])
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, curve in curves.items():
             v, stress = curve["sliding_speed"].values, curve["shear_stress"].values
             spread = curve["shear_stress_std"].values
@@ -370,9 +384,8 @@ def shear_stress_over_speed(
                 linestyle="--", linewidth=0.7, elinewidth=0.8, capsize=1.8, label=plain(name),
             )  # fmt: skip
             columns = {"shear_stress_Pa": stress, "shear_stress_std_Pa": spread}
-            figure.keep("shear stress", name, **{column("sliding_speed"): v}, **columns)
+            keep(figure, "shear stress", name, **{column("sliding_speed"): v}, **columns)
         _speeds(axes, np.array(axes.dataLim.intervalx) * (0.6, 1.7))
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
-        legend_above(figure, axes, title)
     return figure

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
@@ -15,6 +16,7 @@ from matplotlib.transforms import Bbox, TransformedBbox
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.labels import column, plain
+from tribolab.plot.panel import whole_figure
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
@@ -23,7 +25,7 @@ from tribolab.plot.style import (
     FORWARD,
     MEAN,
     SKY,
-    PaperFigure,
+    keep,
     new_figure,
     paper_style,
 )
@@ -43,7 +45,8 @@ def strokes(
     friction: xr.Dataset | None = None,
     *,
     title: str = "",
-) -> PaperFigure:
+    fig: Figure | SubFigure | None = None,
+) -> Figure:
     """Draw every segment over its own sliding distance, one panel per speed, slowest first.
 
     A run that spends 1000 s at 1 um/s and a second at 1 cm/s cannot be judged on one time axis;
@@ -59,6 +62,8 @@ def strokes(
         Its friction result (segment): adds the means, and removes the offset that was found.
     title
         Text above the figure.
+    fig
+        A figure, or a part of one from `Figure.subfigures`, to draw in; without it one is made.
 
     Returns
     -------
@@ -96,9 +101,10 @@ def strokes(
     height = panel_height * down + (down - 1) * 5.0
     lines = sum(len(_chosen(group)) for group in shown)
     budget = int(np.clip(_POINTS // lines, 30, 300))
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, height + 19.0)
-        sheet = _sheet(figure, height + 19.0)
+    with paper_style():  # in a figure of the user's, too: all of it is text and lines of ours
+        page = new_figure(DOUBLE_MM, height + 19.0) if fig is None else fig
+        figure = page if isinstance(page, Figure) else whole_figure(page)
+        sheet = _sheet(page, height + 19.0)
         wide = (DOUBLE_MM - 18.0) / (across + (across - 1) * 0.085 * across)
         for k, group in enumerate(shown):
             row, column_ = divmod(k, across)
@@ -108,19 +114,19 @@ def strokes(
             cell.ticks_below(panel_height, labelled=k + across >= len(shown))
         unit = "" if signal.name == "friction_coefficient" else " (N)"
         word = r"friction coefficient $\mu$" if not unit else r"friction force $F_x$ (N)"
-        figure.supylabel(word, x=2.5 / DOUBLE_MM, fontsize=8, va="center")
+        page.supylabel(word, x=2.5 / DOUBLE_MM, fontsize=8, va="center")
         known = np.isfinite([part.speed for part in parts]).all() or "position" in run
         share = "distance slid / length of the stroke" if known else "time / duration of the stroke"
-        figure.supxlabel(share, y=0.8 / (height + 19.0), fontsize=8)
-        _key(figure, parts, friction is not None, height + 19.0)
+        page.supxlabel(share, y=0.8 / (height + 19.0), fontsize=8)
+        _key(page, parts, friction is not None, height + 19.0)
         heading = plain(title)
         if len(shown) < len(groups):
             heading += f"  ({len(shown)} of {len(groups)} speeds shown)"
-        figure.text(15 / DOUBLE_MM, 1 - 1.6 / (height + 19), heading.strip(), va="top", fontsize=8)
+        page.text(15 / DOUBLE_MM, 1 - 1.6 / (height + 19), heading.strip(), va="top", fontsize=8)
     return figure
 
 
-def _sheet(figure: PaperFigure, height: float) -> Axes:
+def _sheet(figure: Figure | SubFigure, height: float) -> Axes:
     """Axes over the whole figure, in mm: a run may have two dozen panels, and axes are slow."""
     sheet = figure.add_axes((0, 0, 1, 1), xlim=(0, DOUBLE_MM), ylim=(0, height), autoscale_on=False)
     sheet.set_axis_off()
@@ -155,7 +161,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
 
 
 def _panel(
-    figure: PaperFigure,
+    figure: Figure,
     cell: _Cell,
     height: float,
     group: list[Stroke],
@@ -174,7 +180,7 @@ def _panel(
         colour = _COLOURS[int(np.sign(part.direction))]
         traces.append((x, y, colour))
         numbers = {"distance_over_length": x, column(signal.name): y}
-        figure.keep(panel, f"segment {part.number}", **numbers)
+        keep(figure, panel, f"segment {part.number}", **numbers)
         counted = (x >= part.trimmed[0] / length) & (x <= part.trimmed[1] / length)
         every.append(y[counted])
         if friction is not None and signal.name in friction:
@@ -308,7 +314,7 @@ def _mean_text(group: list[Stroke], signal: Signal, friction: xr.Dataset | None)
     return f"µ = {aligned(float(np.nanmean(means)))}"
 
 
-def _key(figure: PaperFigure, parts: list[Stroke], means: bool, height: float) -> None:
+def _key(figure: Figure | SubFigure, parts: list[Stroke], means: bool, height: float) -> None:
     words = {1: "forward", -1: "backward", 0: "direction unknown"}
     seen = sorted({int(np.sign(part.direction)) for part in parts}, reverse=True)
     handles: list[Artist] = [

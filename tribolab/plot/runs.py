@@ -6,12 +6,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
 from tribolab.plot.labels import column, label, plain
+from tribolab.plot.panel import Panels, name_all, name_panel, several_panels, width_mm
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.plot.style import (
@@ -22,8 +25,8 @@ from tribolab.plot.style import (
     NEUTRAL,
     SKY,
     PaperFigure,
+    keep,
     new_figure,
-    paper_style,
     tidy,
 )
 from tribolab.words import speed_text
@@ -31,6 +34,8 @@ from tribolab.words import speed_text
 COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _LEFT, _RIGHT, _BOTTOM, _TOP = 17.0, 3.0, 11.0, 6.0
 _WIDTH = DOUBLE_MM - _LEFT - _RIGHT
+_HEIGHTS = {"time": 44.0, "motion": 26.0, "distance": 44.0}  # mm
+_GAPS = {"motion": 3.0, "distance": 13.0}
 _MOTION = ("sliding_velocity", "set_speed", "position")
 _SHADE = {1: FORWARD, -1: BACKWARD, 0: SKY}
 
@@ -41,7 +46,8 @@ def trace(
     friction: xr.Dataset | None = None,
     *,
     title: str = "",
-) -> PaperFigure:
+    axes: Panels | None = None,
+) -> Figure:
     """Draw a run over time and over sliding distance, with its segments shaded.
 
     Parameters
@@ -55,6 +61,9 @@ def trace(
         was found is removed from the trace.
     title
         Text above the figure.
+    axes
+        The axes to draw in, one for each panel below; they keep their look. Without
+        them a figure is made.
 
     Returns
     -------
@@ -86,35 +95,48 @@ def trace(
     motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
     known = bool(parts) and bool(np.isfinite([part.speed for part in parts]).all())
     rows = ["time"] + ["motion"] * bool(motion) + ["distance"] * known
-    heights = {"time": 44.0, "motion": 26.0, "distance": 44.0}
-    gaps = {"motion": 3.0, "distance": 13.0}
-    total = sum(heights[r] + gaps.get(r, 0.0) for r in rows) + _BOTTOM + _TOP
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, total)
-        axes, top = {}, total - _TOP
-        for row in rows:
-            top -= gaps.get(row, 0.0) + heights[row]
-            box = (_LEFT / DOUBLE_MM, top / total, _WIDTH / DOUBLE_MM, heights[row] / total)
-            axes[row] = figure.add_axes(box)
-        _over_time(figure, axes["time"], time, signal, segments, friction)
-        last = axes["time"]
+    with several_panels(axes, rows, lambda: _rows(rows)) as (figure, given):
+        panels = dict(zip(rows, given, strict=True))
+        _over_time(figure, panels["time"], time, signal, segments, friction)
+        last = panels["time"]
         if motion:
-            last = axes["motion"]
+            last = panels["motion"]
             _motion(figure, last, time, motion, run, segments)
-            axes["time"].tick_params(labelbottom=False)
+            panels["time"].tick_params(labelbottom=axes is not None)
         last.set_xlabel(label("time", "time"))
         if known:
-            _over_distance(figure, axes["distance"], signal, parts, friction)
+            _over_distance(figure, panels["distance"], signal, parts, friction)
+        _key(panels["time"], parts, friction is not None, joined=axes is not None)
+        if axes is not None:
+            panels["time"].set_xlabel(label("time", "time"))
+            name_panel(panels["time"], title)
+            return figure
         for letter, row in zip("abc", rows, strict=False):
-            tidy(axes[row], letter if len(rows) > 1 else "")
-        _key(axes["time"], parts, friction is not None)
+            tidy(panels[row], letter if len(rows) > 1 else "")
         if title:
-            figure.text(_LEFT / DOUBLE_MM, 1 - 1.2 / total, plain(title), va="top", fontsize=8)
+            top = 1 - 1.2 / _total(rows)
+            figure.text(_LEFT / DOUBLE_MM, top, plain(title), va="top", fontsize=8)
     return figure
 
 
+def _total(rows: list[str]) -> float:
+    """Height [mm] of a figure with these panels."""
+    return sum(_HEIGHTS[row] + _GAPS.get(row, 0.0) for row in rows) + _BOTTOM + _TOP
+
+
+def _rows(rows: list[str]) -> tuple[PaperFigure, list[Axes]]:
+    total = _total(rows)
+    figure = new_figure(DOUBLE_MM, total)
+    panels, top = [], total - _TOP
+    for row in rows:
+        top -= _GAPS.get(row, 0.0) + _HEIGHTS[row]
+        box = (_LEFT / DOUBLE_MM, top / total, _WIDTH / DOUBLE_MM, _HEIGHTS[row] / total)
+        panels.append(figure.add_axes(box))
+    return figure, panels
+
+
 def _over_time(
-    figure: PaperFigure,
+    figure: Figure,
     axes: Axes,
     time: np.ndarray,
     signal: Signal,
@@ -123,7 +145,7 @@ def _over_time(
 ) -> None:
     x, y = envelope(time, signal.values, COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.5, zorder=3)
-    figure.keep("time", "trace", **{column("time"): x, column(signal.name): y})
+    keep(figure, "time", "trace", **{column("time"): x, column(signal.name): y})
     axes.set_ylabel(_ylabel(signal.name))
     axes.set_xlim(time[0], time[-1] if time[-1] > time[0] else time[0] + 1)
     _room_above(axes, y)
@@ -137,7 +159,7 @@ def _over_time(
 
 
 def _motion(
-    figure: PaperFigure,
+    figure: Figure,
     axes: Axes,
     time: np.ndarray,
     name: str,
@@ -146,7 +168,7 @@ def _motion(
 ) -> None:
     x, y = envelope(time, np.asarray(run[name], float), COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.6, zorder=3)
-    figure.keep("motion", name, **{column("time"): x, column(name): y})
+    keep(figure, "motion", name, **{column("time"): x, column(name): y})
     axes.set_xlim(time[0], time[-1] if time[-1] > time[0] else time[0] + 1)
     words = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
     axes.set_ylabel(label(name, words[name]))
@@ -179,7 +201,7 @@ def _symlog(axes: Axes, values: np.ndarray, speeds: np.ndarray) -> None:
 
 
 def _over_distance(
-    figure: PaperFigure,
+    figure: Figure,
     axes: Axes,
     signal: Signal,
     parts: list[Stroke],
@@ -194,7 +216,7 @@ def _over_distance(
         x, y = envelope(part.distance, signal.values[part.samples], budget)
         axes.plot(begin + x, y, color="black", linewidth=0.5, zorder=3)
         numbers = {column(name): begin + x, column(signal.name): y}
-        figure.keep("distance", f"segment {part.number}", **numbers)
+        keep(figure, "distance", f"segment {part.number}", **numbers)
         lowest.append(np.nanmin(y, initial=np.inf))
         highest.append(np.nanmax(y, initial=-np.inf))
     axes.set_xlabel(r"sliding distance $s$ in the segments, one after the other (m)")
@@ -259,6 +281,7 @@ def _speeds_above(axes: Axes, start: np.ndarray, stop: np.ndarray, speeds: np.nd
     Neighbours of one speed share the text.
     """
     low, high = axes.get_xlim()
+    width = width_mm(axes)
     groups: list[tuple[float, float, float, str]] = []
     for number, (a, b, speed) in enumerate(zip(start, stop, speeds, strict=True)):
         if groups and np.isclose(groups[-1][2], speed, rtol=0.05):
@@ -270,10 +293,10 @@ def _speeds_above(axes: Axes, start: np.ndarray, stop: np.ndarray, speeds: np.nd
     for a, b, _, text in groups:
         need = len(text) * 1.35 + 2.0  # mm at 7 pt
         middle = (np.clip(a, low, high) + np.clip(b, low, high)) / 2
-        at = (middle - low) / (high - low) * _WIDTH
-        room = (b - a) / (high - low) * _WIDTH
+        at = (middle - low) / (high - low) * width
+        room = (b - a) / (high - low) * width
         row = next((k for k in (0, 1) if at - need / 2 >= ends[k]), None)
-        if room < 0.4 * need or row is None or at + need / 2 > _WIDTH:
+        if room < 0.4 * need or row is None or at + need / 2 > width:
             continue
         ends[row] = at + need / 2
         axes.annotate(
@@ -309,7 +332,7 @@ def _means(
     axes.plot(x, y, color=MEAN, linewidth=1.0, zorder=4, scalex=False, scaley=False)
 
 
-def _key(axes: Axes, parts: list[Stroke], means: bool) -> None:
+def _key(axes: Axes, parts: list[Stroke], means: bool, *, joined: bool) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -322,7 +345,16 @@ def _key(axes: Axes, parts: list[Stroke], means: bool) -> None:
         handles.append(Patch(color=NEUTRAL, alpha=0.07, linewidth=0, label="trimmed"))
     if means:
         handles.append(Line2D([], [], color=MEAN, linewidth=1.0, label="mean"))
-    if handles:
+    if joined:  # by name, so that a legend of the user's has them, too
+        for handle in handles:
+            if isinstance(handle, Patch):
+                fill = PolyCollection([], facecolors=handle.get_facecolor(), linewidths=0)
+                fill.set_label(str(handle.get_label()))
+                axes.add_collection(fill)
+            else:
+                axes.add_artist(handle)
+        name_all(axes)
+    elif handles:
         axes.legend(
             handles=handles, loc="lower right", bbox_to_anchor=(1, 1.01), ncols=4, handlelength=1.4
         )

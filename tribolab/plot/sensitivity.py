@@ -7,18 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from tribolab.plot.frame import logarithmic, shaded_band
 from tribolab.plot.labels import label, plain
+from tribolab.plot.panel import Panels, name_all, name_panel, several_panels
 from tribolab.plot.style import (
     BLUE,
     DOUBLE_MM,
     GREY,
     ORANGE,
     PaperFigure,
+    keep,
     margins,
     new_figure,
-    paper_style,
     surface_styles,
     tidy,
 )
@@ -27,8 +29,13 @@ _HEIGHT = 70.0
 
 
 def model_sensitivity(
-    uncertainty: xr.Dataset, *, surface: str = "", surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    uncertainty: xr.Dataset,
+    *,
+    surface: str = "",
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    axes: Panels | None = None,
+) -> Figure:
     """Draw the band of a model curve and, beside it, how far each unknown moves the curve.
 
     Parameters
@@ -39,6 +46,9 @@ def model_sensitivity(
         Its name, and all names of the study in their order, for the colour.
     title
         Text above the figure.
+    axes
+        The axes to draw in, for the band and for the bars; they keep their look. Without
+        them a figure is made.
 
     Returns
     -------
@@ -57,27 +67,36 @@ def model_sensitivity(
     """
     colour = surface_styles([*surfaces, surface])[surface].colour
     v, mu = (uncertainty[name].values for name in ("sliding_speed", "friction_coefficient"))
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, _HEIGHT)
-        left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1, 1]})
+    with several_panels(axes, ("band", "bars"), _two) as (figure, (left, right)):
         low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
         shaded_band(left, v, low, high, colour)
-        left.plot(v, mu, color=colour, linewidth=1.2)
+        left.plot(v, mu, color=colour, linewidth=1.2, label=plain(f"model {surface}".strip()))
         numbers = {"friction_coefficient": mu, "friction_coefficient_low": low}
-        figure.keep("band", "model", sliding_speed_m_s=v, **numbers, friction_coefficient_high=high)
+        keep(
+            figure, "band", "model", sliding_speed_m_s=v, **numbers, friction_coefficient_high=high
+        )
         logarithmic(left, "x", "y")
         left.set_xlim(v.min(), v.max())
         left.set_xlabel(label("sliding_speed"))
         left.set_ylabel(label("friction_coefficient"))
         tidy(left)
         _bars(figure, right, uncertainty, mu)
+        if axes is not None:
+            name_all(left)
+            name_panel(left, title)
+            return figure
         margins(figure, 15, 3, 10.5, 7.5 if title else 3.5, wspace=0.62)
         if title:
             figure.text(15 / DOUBLE_MM, 1 - 1.0 / _HEIGHT, plain(title), va="top", fontsize=8)
     return figure
 
 
-def _bars(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
+def _two() -> tuple[PaperFigure, list[Axes]]:
+    figure = new_figure(DOUBLE_MM, _HEIGHT)
+    return figure, list(figure.subplots(1, 2))
+
+
+def _bars(figure: Figure, axes: Axes, uncertainty: xr.Dataset, mu: np.ndarray) -> None:
     names = uncertainty["variation"].values
     change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
     known = np.isfinite(change).any(axis=-1)
@@ -90,7 +109,8 @@ def _bars(figure: PaperFigure, axes: Axes, uncertainty: xr.Dataset, mu: np.ndarr
     for end, (colour, shift) in enumerate(((BLUE, 0.19), (ORANGE, -0.19))):
         text = ("low end", "high end")[end]
         axes.barh(y + shift, most[order, end], 0.36, color=colour, label=text)
-        figure.keep(
+        keep(
+            figure,
             "bars",
             text,
             variation=names[order],

@@ -1,19 +1,21 @@
-"""Figures of stick-slip: stacked traces, spectra, events, and the map of waveforms."""
+"""Figures of stick-slip: stacked traces, events, and the map of waveforms."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
+from tribolab.plot.panel import Panels, name_all, several_panels
 from tribolab.plot.reduce import envelope
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import (
@@ -24,9 +26,9 @@ from tribolab.plot.style import (
     PURPLE,
     SKY,
     PaperFigure,
+    keep,
     margins,
     new_figure,
-    paper_style,
     shade,
 )
 
@@ -64,8 +66,12 @@ class Trace(NamedTuple):
 
 
 def slip_traces(
-    traces: Sequence[Trace], surfaces: Sequence[str] = (), *, longest: float | None = None
-) -> PaperFigure:
+    traces: Sequence[Trace],
+    surfaces: Sequence[str] = (),
+    *,
+    longest: float | None = None,
+    ax: Axes | None = None,
+) -> Figure:
     """Draw friction against sliding distance, stroke above stroke, each shifted up to be seen.
 
     Parameters
@@ -76,6 +82,9 @@ def slip_traces(
         All surfaces of the study in order: they choose the colours.
     longest
         Distance up to which is drawn [m]; by default what the shortest stroke has.
+    ax
+        Axes to draw in, which keep their look; the words stand on their right. Without
+        them a figure is made.
 
     Returns
     -------
@@ -105,10 +114,8 @@ def slip_traces(
     heights = [np.ptp(y[x <= end]) for _, x, y in drawn]
     gap = _GAP * max(heights)
     rank: dict[str, int] = {}
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, 25.0 + 13.0 * len(drawn))
-        axes = figure.add_subplot()
-        margins(figure, 15, 42, 11, 4)
+    make = _wide(25.0 + 13.0 * len(drawn), left=15, right=42, top=4)
+    with several_panels(None if ax is None else [ax], ("traces",), make) as (figure, (axes,)):
         base = None
         for (trace, x, y), height in zip(drawn, heights, strict=True):
             part = x <= end
@@ -120,7 +127,7 @@ def slip_traces(
             place = rank[trace.surface] = rank.get(trace.surface, -1) + 1
             colour = shade(chosen[trace.surface], place, count)
             short = envelope(x[part] * 1e6, y[part] + shift, _COLUMNS)
-            axes.plot(*short, color=colour, linewidth=0.8)
+            axes.plot(*short, color=colour, linewidth=0.8, label=plain(trace.label))
             words = _wrapped(trace.label)
             words += f"\nshifted by {shift:+.2f}" if abs(shift) > 0.005 else ""
             axes.annotate(
@@ -131,13 +138,29 @@ def slip_traces(
                 fontsize=7,
                 annotation_clip=False,
             )
-            figure.keep("traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
+            keep(figure, "traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
         axes.set_xlim(0, end * 1e6)
         axes.set_xlabel("sliding distance (µm)")
         force = main_signal(traces[0].run).name == "friction_force"
         word = r"friction force $F_x$ (N), shifted" if force else r"$\mu = F_x/F_N$, shifted"
         axes.set_ylabel(word)
+        if ax is not None:
+            name_all(ax)
     return figure
+
+
+def _wide(
+    height: float, *, left: float, right: float, top: float
+) -> Callable[[], tuple[PaperFigure, list[Axes]]]:
+    """Return what makes a figure of two columns with one panel; its height and margins [mm]."""
+
+    def make() -> tuple[PaperFigure, list[Axes]]:
+        figure = new_figure(DOUBLE_MM, height)
+        axes = figure.add_subplot()
+        margins(figure, left, right, 11, top)
+        return figure, [axes]
+
+    return make
 
 
 def _wrapped(label: str) -> str:
@@ -161,97 +184,9 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     return x[known], y[known]
 
 
-def slip_spectra(slips: Mapping[str, tuple[xr.Dataset, int]]) -> PaperFigure:
-    """Draw the power spectra of segments with their background and what would be significant.
-
-    Parameters
-    ----------
-    slips
-        Label to a result of `stick_slip` and the number of its segment.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        A panel for each, over frequency below and sliding distance above; the dominant oscillation
-        and lines of the mains are marked.
-
-    Raises
-    ------
-    AnalysisError
-        If there is nothing to draw.
-
-    Examples
-    --------
-    >>> import tribolab as tl
-    >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
-    >>> slip = tl.stick_slip(run, tl.find_segments(run))
-    >>> tl.plot.figure_data(slip_spectra({"dry": (slip, 0)})).series.unique().tolist()
-    ['psd']
-    """
-    if not slips:
-        raise AnalysisError("there is no spectrum to draw")
-    across = 2 if len(slips) == 4 else min(len(slips), 3)
-    down = -(-len(slips) // across)
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, 15.0 + 58.0 * down)
-        grid = figure.subplots(down, across, squeeze=False)
-        margins(figure, 15, 3, 11, 18, wspace=0.3, hspace=0.62)
-        for axes, (label, (slip, number)) in zip(grid.flat, slips.items(), strict=False):
-            _spectrum(figure, axes, label, slip, number)
-        for axes in grid.flat[len(slips) :]:
-            axes.remove()
-        handles, words = grid.flat[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="upper center", ncols=3, fontsize=7)
-    return figure
-
-
-def _spectrum(figure: PaperFigure, axes: Axes, label: str, slip: xr.Dataset, number: int) -> None:
-    row = slip.isel(segment=number)
-    name = "psd" if "psd" in row else "force_psd"
-    f = row["frequency"].values
-    known = np.isfinite(row[name].values)
-    axes.plot(f[known], row[name].values[known], color=BLACK, label="measured")
-    axes.plot(
-        f[known], row[f"{name}_background"].values[known], color=ORANGE, label="red and white noise"
-    )
-    level = row[f"{name}_significant"].values[known]
-    axes.plot(f[known], level, color=ORANGE, linestyle=":", label="chance of 1 in 1000")
-    figure.keep(label, "psd", frequency_Hz=f[known], psd=row[name].values[known])
-    logarithmic(axes, "x", "y")
-    top = row[name].values[known].max()
-    own = row["dominant_frequency"].item()
-    if np.isfinite(own):
-        axes.axvline(own, color=SKY, linewidth=0.8, zorder=0)
-        wavelength = row["dominant_wavelength"].item() * 1e6
-        axes.annotate(
-            f"{own:.3g} Hz, {wavelength:.3g} µm",
-            (own, top),
-            xytext=(3, 2),
-            textcoords="offset points",
-            fontsize=7,
-            color="#006699",
-        )
-    if np.isfinite(row["mains_frequency"].item()):
-        axes.axvline(row["mains_frequency"].item(), color=PURPLE, linewidth=0.8, linestyle="--")
-        axes.annotate(
-            "mains",
-            (row["mains_frequency"].item(), level.min()),
-            xytext=(2, 2),
-            textcoords="offset points",
-            fontsize=7,
-            color=PURPLE,
-        )
-    axes.set_ylim(top=top * 12)
-    axes.set_xlabel("frequency $f$ (Hz)")
-    unit = "N$^2$/Hz" if name == "force_psd" else "Hz$^{-1}$"
-    axes.set_ylabel(f"power $S$ ({unit})")
-    words = row["waveform"].item()
-    if row["regularity"].item():
-        words += f", {row['regularity'].item()}"
-    axes.set_title(f"{plain(label)}\n{words}", fontsize=7, loc="left", pad=3)
-
-
-def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -> PaperFigure:
+def slip_events(
+    slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = (), *, axes: Panels | None = None
+) -> Figure:
     """Draw how drops, recurrence distances and durations of the events are distributed.
 
     Parameters
@@ -260,6 +195,9 @@ def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -
         Label to a result of `stick_slip`; all its events count.
     surfaces
         Not used but for the order of colours.
+    axes
+        The axes to draw in, three of them; they keep their look. Without
+        them a figure is made.
 
     Returns
     -------
@@ -283,24 +221,35 @@ def slip_events(slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = ()) -
     if not shown:
         raise AnalysisError("there is no event to draw")
     lines = [BLACK, SKY, ORANGE, PURPLE, GREY]
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, 62.0)
-        panels = figure.subplots(1, 3)
-        margins(figure, 13, 3, 11, 10, wspace=0.3)
+    names = list(_event_columns(next(iter(shown.values()))))
+    with several_panels(axes, names, _three) as (figure, panels):
         for k, (label, slip) in enumerate(shown.items()):
-            look = {"color": lines[k % len(lines)], "linestyle": "-" if k < len(lines) else "--"}
-            for axes, (name, values) in zip(panels, _event_columns(slip).items(), strict=True):
+            look: dict[str, Any] = {
+                "color": lines[k % len(lines)],
+                "linestyle": "-" if k < len(lines) else "--",
+            }
+            for panel, (name, values) in zip(panels, _event_columns(slip).items(), strict=True):
                 values = np.sort(values[np.isfinite(values)])
                 share = np.arange(1, values.size + 1) / max(values.size, 1)
-                axes.step(values, share, where="post", label=plain(label), **look)
-                figure.keep(name, label, value=values, share=share)
-        for axes, name in zip(panels, _event_columns(next(iter(shown.values()))), strict=True):
-            axes.set_xlabel(name)
-            axes.set_ylim(0, 1)
+                panel.step(values, share, where="post", label=plain(label), **look)
+                keep(figure, name, label, value=values, share=share)
+        for panel, name in zip(panels, names, strict=True):
+            panel.set_xlabel(name)
+            panel.set_ylim(0, 1)
         panels[0].set_ylabel("share of the events")
-        handles, words = panels[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="upper center", ncols=4, fontsize=7)
+        if axes is None:
+            handles, words = panels[0].get_legend_handles_labels()
+            figure.legend(handles, words, loc="upper center", ncols=4, fontsize=7)
+        else:
+            name_all(panels[0])
     return figure
+
+
+def _three() -> tuple[PaperFigure, list[Axes]]:
+    figure = new_figure(DOUBLE_MM, 62.0)
+    panels = figure.subplots(1, 3)
+    margins(figure, 13, 3, 11, 10, wspace=0.3)
+    return figure, list(panels)
 
 
 def _event_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
@@ -319,13 +268,15 @@ def _event_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
     }
 
 
-def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
+def waveform_map(curves: Mapping[str, xr.Dataset], *, ax: Axes | None = None) -> Figure:
     """Draw the class of waveform of every condition at every speed, and how large the drops are.
 
     Parameters
     ----------
     curves
         Label to a result of `stick_slip_curve`, from below to above.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made.
 
     Returns
     -------
@@ -349,10 +300,8 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
         raise AnalysisError("there is no stick-slip to map")
     drops = np.concatenate([_drops(curve) for curve in curves.values()])
     largest = np.nanmax(np.append(drops[np.isfinite(drops)], 1e-12))
-    with paper_style():
-        figure = new_figure(DOUBLE_MM, 24.0 + 7.0 * len(curves))
-        axes = figure.add_subplot()
-        margins(figure, 42, 5, 11, 8)
+    make = _wide(24.0 + 7.0 * len(curves), left=42, right=5, top=8)
+    with several_panels(None if ax is None else [ax], ("map",), make) as (figure, (axes,)):
         for place, (label, curve) in enumerate(curves.items()):
             kinds, v = curve["waveform"].values.astype(str), curve["sliding_speed"].values
             for kind in dict.fromkeys(kinds):
@@ -364,7 +313,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
                     v[part], np.full(part.sum(), place), size, marker=marker,
                     facecolors=filled, edgecolors=colour, linewidths=0.7,
                 )  # fmt: skip
-            figure.keep("map", label, sliding_speed_m_s=v, drop=_drops(curve))
+            keep(figure, "map", label, sliding_speed_m_s=v, drop=_drops(curve))
         for kind, (marker, colour) in _LOOK.items():
             filled = colour if kind in CLASSES[1:] else "none"
             axes.scatter(
@@ -379,7 +328,10 @@ def waveform_map(curves: Mapping[str, xr.Dataset]) -> PaperFigure:
         axes.set_ylim(-0.7, len(curves) - 0.3)
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("sliding speed $v$ (m/s)")
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, fontsize=7)
+        if ax is None:
+            axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, fontsize=7)
+        else:
+            name_all(ax)
     return figure
 
 

@@ -102,18 +102,10 @@ _OTHERS = [
 
 
 class PaperFigure(Figure):
-    """A matplotlib Figure that a notebook shows by itself and that knows its own numbers.
+    """A matplotlib Figure that a notebook shows by itself.
 
     Made without pyplot, so no global state is touched and nothing has to be closed.
     """
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._numbers: list[dict[str, object]] = []
-
-    def keep(self, panel: str, series: str, **columns: np.ndarray) -> None:
-        """Remember the numbers that were drawn; `figure_data` hands them out."""
-        self._numbers.append({"panel": panel, "series": series, **columns})
 
     def _ipython_display_(self) -> None:
         # the inline backend of pyplot would show any Figure at half this resolution
@@ -128,13 +120,21 @@ class PaperFigure(Figure):
         return buffer.getvalue()
 
 
+_NUMBERS = "_tribolab_numbers"  # attribute of a figure, which goes with it wherever it goes
+
+
+def keep(figure: Figure, panel: str, series: str, **columns: np.ndarray) -> None:
+    """Remember the numbers that were drawn in a figure; `figure_data` hands them out."""
+    vars(figure).setdefault(_NUMBERS, []).append({"panel": panel, "series": series, **columns})
+
+
 def figure_data(figure: Figure) -> pd.DataFrame:
-    """Return the numbers that a figure of this package shows.
+    """Return the numbers that functions of this package have drawn in a figure.
 
     Parameters
     ----------
     figure
-        What one of the functions of `tribolab.plot` returned.
+        What one of the functions of `tribolab.plot` returned, or drew in.
 
     Returns
     -------
@@ -154,7 +154,7 @@ def figure_data(figure: Figure) -> pd.DataFrame:
     0             0.0001                   0.3
     1             0.0010                   0.4
     """
-    numbers = [pd.DataFrame(columns) for columns in getattr(figure, "_numbers", [])]
+    numbers = [pd.DataFrame(columns) for columns in vars(figure).get(_NUMBERS, [])]
     return pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
 
 

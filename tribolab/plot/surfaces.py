@@ -6,25 +6,28 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.frame import (
     colours,
-    legend_above,
     logarithmic,
     name_style,
     name_surfaces,
     shaded_band,
-    single_axes,
 )
 from tribolab.plot.labels import column, label, plain
-from tribolab.plot.style import BLACK, VERMILLION, PaperFigure, paper_style
+from tribolab.plot.panel import one_panel
+from tribolab.plot.style import BLACK, VERMILLION, keep
 
 Surfaces = Mapping[str, xr.Dataset]
 _MEASURED = 0
 
 
-def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") -> PaperFigure:
+def spectra(
+    psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+) -> Figure:
     """Draw two-dimensional power spectra with their bands, measured and extrapolated parts apart.
 
     Parameters
@@ -36,6 +39,9 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
         All surfaces of the study in their order, so that each keeps its colour.
     title
         Text above the figure.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made. The legend takes in
+        what is drawn there already; ``ax.legend()`` makes it anew after more has been drawn.
 
     Returns
     -------
@@ -58,8 +64,7 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
     if not psds:
         raise AnalysisError("there is nothing to draw: no spectrum was given")
     chosen = colours(list(psds), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title, left=16) as (figure, axes):
         dashed = False
         for name, psd in psds.items():
             q, value = psd.wavenumber.values, psd.psd_2d.values
@@ -76,7 +81,8 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
                 shown |= np.roll(part, -1) & (np.arange(q.size) < q.size - 1) & (style == "--")
                 line = np.where(shown & (value > 0), value, np.nan)
                 axes.plot(q, line, color=chosen[name], linestyle=style, linewidth=1.0)
-            figure.keep(
+            keep(
+                figure,
                 "spectrum",
                 name,
                 **{
@@ -94,11 +100,10 @@ def spectra(psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "") ->
         logarithmic(axes, "x", "y")
         axes.set_xlabel(label("wavenumber"))
         axes.set_ylabel(label("psd_2d", "power spectrum"))
-        legend_above(figure, axes, title, left=16)
     return figure
 
 
-def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
+def modulus(table: xr.Dataset, *, title: str = "", ax: Axes | None = None) -> Figure:
     """Draw storage and loss modulus over the angular frequency.
 
     Parameters
@@ -107,6 +112,9 @@ def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
         ``storage_modulus``, ``loss_modulus`` [Pa] (angular_frequency).
     title
         Text above the figure.
+    ax
+        Axes to draw in, which keep their look; without them a figure is made. The legend takes in
+        what is drawn there already; ``ax.legend()`` makes it anew after more has been drawn.
 
     Examples
     --------
@@ -123,8 +131,7 @@ def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
     ['storage_modulus', 'loss_modulus']
     """
     omega = table.angular_frequency.values
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, colour, style in (
             ("storage_modulus", BLACK, "-"),
             ("loss_modulus", VERMILLION, "--"),
@@ -133,19 +140,18 @@ def modulus(table: xr.Dataset, *, title: str = "") -> PaperFigure:
             text = label(name).removesuffix(" (Pa)")
             positive = np.where(value > 0, value, np.nan)
             axes.plot(omega, positive, color=colour, linestyle=style, linewidth=1.1, label=text)
-            figure.keep(
-                "modulus", name, **{column("angular_frequency"): omega, "modulus_Pa": value}
+            keep(
+                figure, "modulus", name, **{column("angular_frequency"): omega, "modulus_Pa": value}
             )
         logarithmic(axes, "x", "y")
         axes.set_xlabel(label("angular_frequency"))
         axes.set_ylabel("modulus (Pa)")
-        legend_above(figure, axes, title)
     return figure
 
 
 def viscoelastic(
-    frictions: Surfaces, *, surfaces: Sequence[str] = (), title: str = ""
-) -> PaperFigure:
+    frictions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+) -> Figure:
     """Draw the viscoelastic friction coefficient over the sliding speed.
 
     Parameters
@@ -153,7 +159,7 @@ def viscoelastic(
     frictions
         ``friction_coefficient`` (sliding_speed) by the surface's name, each at one pressure. What
         has something in brackets behind its name, such as "Smooth (complete contact)", is dashed.
-    surfaces, title
+    surfaces, title, ax
         As for `spectra`.
 
     Examples
@@ -167,18 +173,16 @@ def viscoelastic(
     [0.01, 0.03, 0.02]
     """
     chosen = colours(list(frictions), surfaces)
-    with paper_style():
-        figure, axes = single_axes()
+    with one_panel(ax, title) as (figure, axes):
         for name, friction in frictions.items():
             v, mu = friction.sliding_speed.values, friction.friction_coefficient.values
             style = "--" if " (" in name else "-"
             axes.plot(v, mu, color=chosen[name], linestyle=style, linewidth=1.1, label=plain(name))
             columns = {column("sliding_speed"): v, "friction_coefficient": mu}
-            figure.keep("viscoelastic friction", name, **columns)
+            keep(figure, "viscoelastic friction", name, **columns)
         logarithmic(axes, "x")
         axes.set_xlim(v.min(), v.max())
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_xlabel(label("sliding_speed"))
         axes.set_ylabel(r"viscoelastic friction $\mu_{\mathrm{visc}}$")
-        legend_above(figure, axes, title)
     return figure
