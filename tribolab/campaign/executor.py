@@ -23,6 +23,8 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from tribolab.errors import AnalysisError, ConfigError, OutputError, brief
 
 # Two BLAS threads in each of many workers are slower than one, by up to fifty times.
@@ -38,6 +40,9 @@ _ONE_THREAD = {
 }
 
 
+# what ends a program, so far as the system knows it; blocked in a thread, where it can be
+_ENDING = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
+_MASKS = hasattr(signal, "pthread_sigmask")
 DASK_TIMEOUT = "20s"
 _LOOK = 1.0  # s between two looks at a cluster that does not answer
 _PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
@@ -89,7 +94,8 @@ def _here(
     for task in tasks:
         future: Future[Any] = Future()
         try:
-            future.set_result(function(task))
+            with threadpool_limits(1, user_api="blas"):  # as in the workers
+                future.set_result(function(task))
         except Exception as error:  # handed on: whoever asks for the result gets it
             future.set_exception(error)
         yield task, future
@@ -393,7 +399,8 @@ class _OneThreadProcess(SpawnProcess):
         before = {name: os.environ.get(name) for name in _ONE_THREAD}
         os.environ.update(_ONE_THREAD)
         try:
-            super().start()
+            with _undisturbed():
+                super().start()
         finally:
             for name, value in before.items():
                 if value is None:
@@ -402,11 +409,39 @@ class _OneThreadProcess(SpawnProcess):
                     os.environ[name] = value
 
 
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Let signals wait until a process has been started, and Ctrl-C until it can ignore it.
+
+    What is interrupted while it starts a process leaves one that dies with a traceback.
+    """
+    if threading.current_thread() is not threading.main_thread():  # signals go to the main one
+        yield
+        return
+    came: list[int] = []
+    handlers = {number: signal.getsignal(number) for number in _ENDING}
+    mine = {number: handler for number, handler in handlers.items() if callable(handler)}
+    for number in mine:
+        signal.signal(number, lambda number, _: came.append(number))
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if _MASKS else None
+    try:
+        yield
+    finally:
+        for number, handler in mine.items():
+            signal.signal(number, handler)
+        if blocked is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+        for number in came[:1]:
+            signal.raise_signal(number)
+
+
 def _begin_worker() -> None:
     """Leave Ctrl-C to the parent, and end when the parent is gone, however it went."""
     import multiprocessing
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if _MASKS:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     # what arithmetic does with damaged numbers is found by checks, and told in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     parent = multiprocessing.parent_process()

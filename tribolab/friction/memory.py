@@ -37,6 +37,7 @@ TIMES = np.geomspace(0.01, 0.7, 8)  # of the record
 WHITE = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 9)])  # variances, of the wander's
 CALM = 0.8  # chance, before the record is seen, that there is no wander
 FEWEST = 8  # stretches
+_HALVINGS = 50  # of pi/(n + 1): to the last digit
 BEYOND = 0.006  # chance of more than three standard errors, where a memory may be long
 
 
@@ -50,12 +51,55 @@ class Models(NamedTuple):
     prior: np.ndarray  # (time, white), logarithm, with all that is the same for every record
 
 
+def wander_axes(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Independent parts of a wander of each memory time, and their variances.
+
+    Parameters
+    ----------
+    count
+        Number of stretches n of the record.
+
+    Returns
+    -------
+    variances, axes : numpy.ndarray
+        (time, axis) and (time, axis, stretch), for a wander of variance 1: eigenvalues and
+        eigenvectors of ``rho**abs(i - j)``, ``rho = exp(-1/(n tau))``.
+
+    Notes
+    -----
+    In closed form [2]_: the variances are (1 - rho^2)/(1 - 2 rho cos w + rho^2) at the n roots w of
+    sin((n+1) w) - 2 rho sin(n w) + rho^2 sin((n-1) w), one between each two multiples of pi/(n+1),
+    and the axes are cosines and sines of w about the record's middle, in turn.
+
+    References
+    ----------
+    .. [2] Grenander and Szego (1958), Toeplitz Forms and Their Applications, sec. 5.3.
+    """
+    rho = np.exp(-1 / (count * TIMES))[:, None]
+    number = np.arange(count)
+    below = np.broadcast_to(number * np.pi / (count + 1), (TIMES.size, count))
+    width = np.pi / (count + 1)
+    sign = 1.0 - 2.0 * (number % 2)  # of the polynomial below its root
+    for _ in range(_HALVINGS):
+        width /= 2
+        w = below + width
+        value = np.sin((count + 1) * w) - rho * (
+            2 * np.sin(count * w) - rho * np.sin((count - 1) * w)
+        )
+        below = np.where(sign * value > 0, w, below)
+    w = below + 0.5 * width
+    variances = (1 - rho**2) / ((1 - rho) ** 2 + 4 * rho * np.sin(w / 2) ** 2)
+    phase = w[:, :, None] * (number - 0.5 * (count - 1))
+    phase[:, 1::2] -= 0.5 * np.pi  # sines
+    axes = np.cos(phase, out=phase)
+    axes /= np.sqrt(np.einsum("tas,tas->ta", axes, axes))[:, :, None]
+    return variances, axes
+
+
 @lru_cache(maxsize=16)
 def _models(count: int) -> Models:
-    apart = np.abs(np.subtract.outer(np.arange(count), np.arange(count))) / count
-    own, axes = np.linalg.eigh(np.exp(-apart / TIMES[:, None, None]))
-    axes = np.swapaxes(axes, 1, 2)
-    variance = np.maximum(own, 0.0)[:, None, :] + WHITE[None, :, None] + 1e-9
+    own, axes = wander_axes(count)
+    variance = own[:, None, :] + WHITE[None, :, None] + 1e-9
     prior = np.full((TIMES.size, WHITE.size), (1 - CALM) / (TIMES.size * WHITE.size))
     # no wander at all: the last share of white noise, at any time
     variance[:, -1, :] = 1.0
