@@ -20,8 +20,7 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.store import Store
 from tribolab.cli import app
 from tribolab.errors import ConfigError
-from tribolab.records.model_rows import ModelRows
-from tribolab.records.part_records import ModelRecord
+from tribolab.records.part_records import ModelRecord, ModelRows
 from tribolab.records.parts import ModelOutcome
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"

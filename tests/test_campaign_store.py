@@ -10,21 +10,26 @@ from hypothesis import strategies as st
 from tribolab.campaign.store import CATALOGUE, Catalogue, Store
 from tribolab.provenance import sha256_of_file
 from tribolab.records.mode_record import EvidenceRow, ModeRecord
-from tribolab.records.model_rows import ModelRows
-from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
+from tribolab.records.part_records import (
+    CurveRecord,
+    FigureRecord,
+    ModelRecord,
+    ModelRows,
+    SurfaceRecord,
+    SurfaceRows,
+)
 from tribolab.records.parts import (
     CurveOutcome,
     Finding,
+    FlaggedSpan,
     ModelOutcome,
     Notice,
+    PageTrace,
     RunOutcome,
     RunZero,
     SurfaceOutcome,
 )
-from tribolab.records.run_facts import CheckRow, Highlight, LeftOut, RunFacts, Waveform
-from tribolab.records.run_record import RunRecord
-from tribolab.records.surface_rows import SurfaceRows
-from tribolab.records.traces import FlaggedSpan, PageTrace
+from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, RunRecord, Waveform
 
 ROW = {"segment": 1, "sliding_speed_m_s": 1 / 3, "steady": "yes", "pair": None, "fine": True}
 RUN = RunRecord(

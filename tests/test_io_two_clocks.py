@@ -6,7 +6,7 @@ import pytest
 import tribolab as tl
 from tribolab.errors import ReadError
 from tribolab.io.clocks.shift import estimate_clock_shift
-from tribolab.io.runs import group_files
+from tribolab.io.logs import group_files
 
 FASTEST = 1e-3  # s, sample period of the fastest strokes
 

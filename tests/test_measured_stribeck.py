@@ -12,8 +12,8 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
+from tribolab.io.logs import group_files
 from tribolab.io.read import read
-from tribolab.io.runs import group_files
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.truth import read_truth
 

@@ -19,8 +19,8 @@ from tribolab.errors import AnalysisError
 from tribolab.io.netcdf import write_netcdf
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import DOUBLE_MM, SINGLE_MM, surface_styles
-from tribolab.quantities import stamp
 from tribolab.report.sliding_figures import Shown, SlipFigure, draw_sliding
+from tribolab.stamping import stamp
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 from tribolab import plot
 from tribolab.errors import AnalysisError
 from tribolab.plot.style import BLUE, GREEN, VERMILLION
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 NAMES = ("Smooth", "Sb-S", "Sb-R")
 COLOURS = dict(zip(NAMES, (GREEN, BLUE, VERMILLION), strict=True))

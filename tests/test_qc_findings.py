@@ -14,7 +14,7 @@ from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.register import STATUSES, Check, Result
 from tribolab.qc.run_checks import RUN_CHECKS, check, check_run
 from tribolab.qc.scan_checks import SCAN_CHECKS
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 # Frozen: masks in files written long ago are read by these. Add to the end, change nothing.

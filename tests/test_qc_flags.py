@@ -19,7 +19,7 @@ from tribolab.qc.flags import (
     severity_of,
 )
 from tribolab.qc.run_checks import check_run
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 SEVERITIES = [NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]  # from what yields to what prevails
 same_length = st.integers(1, 20).flatmap(

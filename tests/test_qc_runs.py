@@ -13,9 +13,9 @@ from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.io.read import read
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
-from tribolab.quantities import stamp
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
 from tribolab.rig.files import force_file, motion_file, write_run
+from tribolab.stamping import stamp
 
 SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
 

@@ -15,7 +15,7 @@ from tribolab.campaign.store import Store
 from tribolab.errors import ConfigError
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_record import RunRecord
-from tribolab.report.figures import wanted
+from tribolab.report.figure_choice import wanted
 from tribolab.report.results import write_report
 from tribolab.report.tables import read, write, write_rows
 

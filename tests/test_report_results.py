@@ -21,8 +21,8 @@ from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.run_facts import Waveform, stick_slip_of
-from tribolab.records.run_record import RunRecord
+from tribolab.records.run_facts import stick_slip_of
+from tribolab.records.run_record import RunRecord, Waveform
 from tribolab.records.traces import as_text, finer_trace, flagged_spans, trace
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.results import write_report

@@ -10,10 +10,9 @@ from pydantic import TypeAdapter
 import tribolab
 from tribolab.records.mode_record import EvidenceRow, ModeRecord
 from tribolab.records.part_records import FigureRecord
-from tribolab.records.parts import ModelOutcome, RunOutcome, SurfaceOutcome
-from tribolab.records.run_facts import CheckRow, Highlight, LeftOut, RunFacts, Waveform
+from tribolab.records.parts import FlaggedSpan, ModelOutcome, RunOutcome, SurfaceOutcome
+from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.records.traces import FlaggedSpan
 from tribolab.report.document import SCHEMA_VERSION
 
 SCHEMA = json.loads(

@@ -14,7 +14,8 @@ from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.schema import load_schema, validate
-from tribolab.quantities import QUANTITIES, stamp
+from tribolab.quantities import QUANTITIES
+from tribolab.stamping import stamp
 
 ONTOLOGY = "https://www.iam.kit.edu/cms/download/TriboDataFAIR_Ontology.owl#"
 # classes of the TriboDataFAIR ontology, as they stand in its OWL file

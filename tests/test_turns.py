@@ -6,8 +6,9 @@ import pytest
 import tribolab as tl
 from tribolab.draft.header import is_unit
 from tribolab.errors import ConfigError, ReadError, TribolabError, UnitError
-from tribolab.quantities import QUANTITIES, dictionary, labelled, quantity, unit_conversion
+from tribolab.quantities import QUANTITIES, dictionary, quantity, unit_conversion
 from tribolab.rubber.modulus import read_modulus
+from tribolab.stamping import labelled
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, to_si
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from tribolab import units
 from tribolab.errors import TribolabError, UnitError
-from tribolab.quantities import QUANTITIES, labelled, quantity, stamp
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.stamping import labelled, stamp
 from tribolab.unit_text import parse_unit
 from tribolab.units import conversion, positive, registry, to_si
 

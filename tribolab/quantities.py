@@ -6,10 +6,9 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, TribolabError, UnitError, nearest, shown
+from tribolab.errors import TribolabError, UnitError, nearest, shown
 from tribolab.turns import Counted, reciprocal
 from tribolab.units import conversion, to_si
 
@@ -341,47 +340,6 @@ def unit_conversion(unit: str, name: str) -> tuple[float, float]:
     return conversion(unit, known.unit, known.bare)
 
 
-def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
-    """Return the dataset with ``units`` and ``long_name`` of the dictionary on every variable.
-
-    What arithmetic carried along (F_x/F_N would still say "N") is overwritten. Flags (``*_qc``,
-    ``*_qc_tests``) keep their own attributes; text variables get a long name only if known.
-
-    Parameters
-    ----------
-    data
-        Dataset whose variable names stand in the dictionary.
-    **attrs
-        Attributes to add to the dataset.
-
-    Raises
-    ------
-    TribolabError
-        If a numeric variable's name is not in the dictionary.
-    """
-    result = data.copy()
-    for name in result.variables:
-        variable = result[name]
-        if str(name).endswith(("_qc", "_qc_tests")):
-            continue
-        if variable.dtype.kind in "OUSTM":
-            if name in QUANTITIES:
-                variable.attrs["long_name"] = QUANTITIES[str(name)].long_name
-            continue
-        known = quantity(str(name))
-        variable.attrs.update(units=known.unit, long_name=known.long_name)
-    result.attrs.update(attrs)
-    return result
-
-
-def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
-    """Return the array under the quantity's name with its ``units`` and ``long_name`` only."""
-    known = quantity(name)
-    result = data.rename(name)
-    result.attrs = {"units": known.unit, "long_name": known.long_name}
-    return result
-
-
 def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
     """Return a quantity as an array of SI floats; entries may be text with a unit.
 
@@ -411,47 +369,3 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
             f"{shown(repr(value), 60)}"
         ) from error
     return np.array(numbers, dtype=float).reshape(entries.shape)
-
-
-def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
-    """Return a quantity as a DataArray of floats, whichever way it was given.
-
-    Parameters
-    ----------
-    value
-        Text with a unit, a number, a one-dimensional array or list of either (it becomes its own
-        coordinate) or a DataArray (any dims); numbers are in the quantity's SI unit.
-    name
-        The quantity.
-
-    Raises
-    ------
-    UnitError
-        If a text has no unit or one of another dimension, or an entry is no number.
-    AnalysisError
-        If an array has two or more dimensions and no names for them.
-
-    Examples
-    --------
-    >>> labelled([1e4, 1e5], "pressure").dims
-    ('pressure',)
-    """
-    if isinstance(value, xr.DataArray):
-        if value.dtype.kind in "fiub":
-            return value.astype(float)
-        return value.copy(data=si_values(value.values, name))
-    values = si_values(value, name)
-    if values.ndim > 1:
-        raise AnalysisError(
-            f"{name}: an array with two or more dimensions must be a DataArray that names them"
-        )
-    dims = (name,)[: values.ndim]
-    data = xr.DataArray(values, coords={dim: values for dim in dims}, dims=dims)
-    return stamp_array(data, name)
-
-
-def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str) -> Any:
-    """Return values the way an argument was given: a float, an array or a stamped DataArray."""
-    if isinstance(given, xr.DataArray):
-        return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
-    return values[()] if np.ndim(values) else float(values)

@@ -107,10 +107,11 @@ def _units(text: str) -> _Units:
 
 def _prefix(unit: str, si_unit: str) -> float | None:
     """Scale of the SI unit itself with a prefix: mm/s for m/s. Loading pint takes 0.5 s."""
+    unit, si_unit = (text.replace("^2", "2").replace("²", "2") for text in (unit, si_unit))
     if unit == si_unit:
         return 1.0
     # a prefix is raised with its unit: mm2 is not for here
-    if re.fullmatch(r"(m|s|N|Pa|V)(/s)?", si_unit) and unit[1:] == si_unit:
+    if re.fullmatch(r"(m|s|N|Pa|V|J)(/s|/m2| s)?", si_unit) and unit[1:] == si_unit:
         return _PREFIXES.get(unit[0])
     return None
 

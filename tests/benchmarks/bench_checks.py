@@ -16,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.qc.run_checks import check_run
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 ROWS = 1_000_000
 

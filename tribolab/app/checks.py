@@ -18,7 +18,8 @@ from tribolab.app.streams import say
 from tribolab.campaign.engine import Progress, Stage, perform
 from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
-from tribolab.io.runs import group_files, read_run
+from tribolab.io.logs import group_files
+from tribolab.io.runs import read_run
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run

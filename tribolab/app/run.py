@@ -18,7 +18,7 @@ from tribolab.campaign.staging import resolved, staged
 from tribolab.campaign.store import Catalogue
 from tribolab.campaign.unchanged import note, unchanged
 from tribolab.errors import ConfigError
-from tribolab.report.figures import wanted
+from tribolab.report.figure_choice import wanted
 
 
 def run_campaign(

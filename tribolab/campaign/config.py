@@ -234,8 +234,27 @@ class Qc(Table):
     limits: dict[Text, dict[Text, float | Text]] = {}
     """Limits of checks by name, e.g. limits.spikes.noise = 10; numbers in SI or with a unit."""
 
-    def options(self, checks: Mapping[str, Any]) -> dict[str, Any]:
-        """Return limits and names to skip, as far as they are of these checks."""
+    @property
+    def _by_default(self) -> bool:
+        return not (self.limits or self.skip)  # then the checks, half a second, need no import
+
+    def run_options(self) -> dict[str, Any]:
+        """Return limits and names to skip, as far as they are of checks on runs."""
+        if self._by_default:
+            return {"limits": {}, "skip": ()}
+        from tribolab.qc.run_checks import RUN_CHECKS
+
+        return self._of(RUN_CHECKS)
+
+    def scan_options(self) -> dict[str, Any]:
+        """Return limits and names to skip, as far as they are of checks on scans."""
+        if self._by_default:
+            return {"limits": {}, "skip": ()}
+        from tribolab.qc.scan_checks import SCAN_CHECKS
+
+        return self._of(SCAN_CHECKS)
+
+    def _of(self, checks: Mapping[str, Any]) -> dict[str, Any]:
         return {
             "limits": {name: of for name, of in self.limits.items() if name in checks},
             "skip": tuple(name for name in self.skip if name in checks),
@@ -243,6 +262,8 @@ class Qc(Table):
 
     @model_validator(mode="after")
     def _names_are_known(self) -> Self:
+        if self._by_default:
+            return self
         from tribolab.qc.register import resolve_limits
         from tribolab.qc.run_checks import RUN_CHECKS
         from tribolab.qc.scan_checks import SCAN_CHECKS
@@ -285,9 +306,7 @@ class Campaign(Table):
 
     def quality_options(self, entry: RunEntry) -> dict[str, Any]:
         """Return the arguments of `check_run` for a run."""
-        from tribolab.qc.run_checks import RUN_CHECKS
-
-        options = self.qc.options(RUN_CHECKS)
+        options = self.qc.run_options()
         contact = self.contact.whole()
         if contact is not None and entry.normal_force is not None:
             from tribolab.contact.hertz import hertz_half_width
@@ -298,9 +317,7 @@ class Campaign(Table):
 
     def scan_quality_options(self) -> dict[str, Any]:
         """Return the arguments of `check_scan_set` for the scans of a surface."""
-        from tribolab.qc.scan_checks import SCAN_CHECKS
-
-        return self.qc.options(SCAN_CHECKS)
+        return self.qc.scan_options()
 
     @property
     def name(self) -> str:

@@ -15,9 +15,9 @@ from tribolab.campaign.runs import RunCame
 from tribolab.campaign.store import Store
 from tribolab.errors import TribolabError
 from tribolab.provenance import sha256_of
-from tribolab.quantities import stamp
 from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome
+from tribolab.stamping import stamp
 from tribolab.words import explain
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import xarray as xr
 from tribolab.campaign.data_files import optional_data, read_data
 from tribolab.campaign.model_plan import PlannedModel
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
 from tribolab.records.parts import Finding, beyond_limits
+from tribolab.stamping import stamp
 from tribolab.validity import together
 from tribolab.words import explain
 

@@ -220,7 +220,7 @@ def _is_folder(path: Path) -> bool:
 def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list[Path]]:
     if entry.cycles:
         return [files]
-    from tribolab.io.runs import group_files
+    from tribolab.io.logs import group_files
 
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
     return group_files(files, instrument)

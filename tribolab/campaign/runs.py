@@ -16,9 +16,9 @@ from tribolab.campaign.store import Entry, Store
 from tribolab.campaign.zeros import attributes, zero_of
 from tribolab.errors import AnalysisError, ConfigError, OutputError, told
 from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
-from tribolab.records.parts import Notice, RunOutcome, RunZero, Source
+from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunRecord
-from tribolab.records.traces import PageTrace, page_trace, trace_size
+from tribolab.records.traces import page_trace, trace_size
 from tribolab.words import explain
 
 if TYPE_CHECKING:

@@ -23,8 +23,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from tribolab.campaign.data_files import link
 from tribolab.provenance import sha256_of_file
-from tribolab.records.parts import Source
-from tribolab.records.traces import PageTrace
+from tribolab.records.parts import PageTrace, Source
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"

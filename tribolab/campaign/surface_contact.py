@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError
-from tribolab.quantities import stamp
 from tribolab.records.parts import Finding, beyond_limits
+from tribolab.stamping import stamp
 from tribolab.validity import together
 from tribolab.words import explain
 
@@ -130,7 +130,7 @@ def _areas(pressure: xr.DataArray, psd: xr.Dataset, modulus: float) -> dict[str,
 
 def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
     from tribolab.contact.persson import mean_separation
-    from tribolab.quantities import labelled
+    from tribolab.stamping import labelled
 
     pressure = labelled(grid, "pressure")
     data = _areas(pressure, psd, modulus)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
 from tribolab.errors import AnalysisError
-from tribolab.quantities import labelled, stamp
+from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
 

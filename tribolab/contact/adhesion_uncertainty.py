@@ -14,7 +14,7 @@ from tribolab.contact.work_of_adhesion import (
     sample_work_of_adhesion,
     work_of_adhesion_spread,
 )
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
 

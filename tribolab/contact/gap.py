@@ -12,7 +12,7 @@ from scipy.special import erf
 
 from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
 from tribolab.errors import AnalysisError, nearest, shown
-from tribolab.quantities import labelled, stamp
+from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import cumulative_at, rms_slope
 from tribolab.units import positive
 from tribolab.validity import examine

@@ -12,7 +12,7 @@ from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, Cure
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import positive
 
 # The paper does not say how it measured its widths; where pressure falls to this part of its

@@ -15,7 +15,8 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import erf, exp1
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import labelled, like, si_values, stamp_array
+from tribolab.quantities import si_values
+from tribolab.stamping import labelled, like, stamp_array
 from tribolab.surface.moments import (
     at_wavenumber,
     cumulative,

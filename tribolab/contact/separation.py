@@ -19,7 +19,8 @@ from tribolab.contact.persson import (
     tail_slope,
 )
 from tribolab.errors import AnalysisError
-from tribolab.quantities import like, si_values
+from tribolab.quantities import si_values
+from tribolab.stamping import like
 from tribolab.surface.moments import rms_roughness
 from tribolab.units import positive
 

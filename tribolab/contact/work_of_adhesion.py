@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 

@@ -15,7 +15,7 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.variations import Base, Skipped, Variation, held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import CELLS, stribeck_curve
-from tribolab.quantities import labelled, stamp
+from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
 from tribolab.validity import reasons_of, together
 

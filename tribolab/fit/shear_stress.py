@@ -18,7 +18,7 @@ from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import positive, to_si
 
 FREE = ("viscosity", "youngs_modulus")

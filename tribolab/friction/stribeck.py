@@ -13,7 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
 

@@ -9,8 +9,9 @@ from typing import Any, overload
 import xarray as xr
 
 from tribolab.errors import ReadError
+from tribolab.io.logs import PathLike, group_files
 from tribolab.io.patterns import is_pattern, matching
-from tribolab.io.runs import PathLike, group_files, read_run
+from tribolab.io.runs import read_run
 
 
 @overload

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypedDict
 
@@ -19,6 +19,7 @@ from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
+from tribolab.io.logs import PathLike, companion_path
 from tribolab.io.row_counts import (
     ROW_ATTRIBUTES,
     row_attributes,
@@ -26,10 +27,8 @@ from tribolab.io.row_counts import (
     with_companion_rows,
 )
 from tribolab.provenance import CONVENTIONS, as_text, history_line
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import to_si
-
-PathLike = str | Path
 
 
 def read_run(
@@ -84,51 +83,10 @@ def read_run(
         return with_companion_rows(merge(run, motion, shift), run, motion)
     dialect = main[0][1]
     if pair and dialect.pair is not None:
-        wanted = _companion_path(main[0][0], dialect)
+        wanted = companion_path(main[0][0], dialect)
         expected = as_text(wanted.name) if wanted else f"*{dialect.pair.other}.*"
         run.attrs["companion_missing"] = expected
     return run
-
-
-def group_files(
-    paths: Iterable[PathLike], instrument: str | Path | None = None
-) -> list[list[Path]]:
-    """Put the files of each run together: two logs where the instrument writes two, else one.
-
-    Parameters
-    ----------
-    paths
-        Raw files, in any order.
-    instrument
-        The instrument; without it the naming rules of all known instruments are tried.
-
-    Returns
-    -------
-    list of list of Path
-        One list for each run, in the order of their first file; this instrument's main log comes
-        first. A file without its companion stands alone.
-
-    Examples
-    --------
-    >>> files = ["a_31N_01_force.csv", "a_31N_01_motion.csv", "b.csv"]
-    >>> [[path.name for path in group] for group in group_files(files)]
-    [['a_31N_01_force.csv', 'a_31N_01_motion.csv'], ['b.csv']]
-    """
-    every = [load_dialect(instrument)] if instrument else map(load_dialect, known_dialects())
-    rules = [dialect for dialect in every if dialect.pair is not None]
-    files = list(dict.fromkeys(Path(path) for path in paths))
-    present = set(files)
-    partner: dict[Path, Path] = {}
-    for file in files:
-        for dialect in rules:
-            other = _companion_path(file, dialect)
-            if other in present:
-                partner[file] = other
-    taken = set(partner.values())
-    groups = {file: [file, partner[file]] if file in partner else [file] for file in files}
-    first = {companion: main for main, companion in partner.items()}
-    order = dict.fromkeys(first.get(file, file) for file in files)
-    return [groups[file] for file in order if file not in taken]
 
 
 class ColumnFacts(TypedDict):
@@ -246,16 +204,9 @@ def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[Logs, Logs]
     return main, companions
 
 
-def _companion_path(path: Path, dialect: Dialect) -> Path | None:
-    rule = dialect.pair
-    if rule is None or not path.stem.endswith(rule.own):
-        return None
-    return path.with_name(path.stem.removesuffix(rule.own) + rule.other + path.suffix)
-
-
 def _companion(path: Path, dialect: Dialect) -> Logs:
     """Return the companion log, if the instrument writes one and it lies beside the file."""
-    other = _companion_path(path, dialect)
+    other = companion_path(path, dialect)
     if other is None or dialect.pair is None or not other.is_file():
         return []
     return [(other, load_dialect(dialect.pair.instrument))]

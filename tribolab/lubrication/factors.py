@@ -17,7 +17,7 @@ from tribolab.contact.gap import COMPLETE, gap_distributions
 from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, Cure, nearest, shown
-from tribolab.quantities import labelled, stamp
+from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import cumulative, rms_roughness, rms_slope, spectrum_arrays
 from tribolab.units import positive
 from tribolab.validity import examine, together

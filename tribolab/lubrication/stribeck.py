@@ -24,7 +24,7 @@ from tribolab.lubrication.factors import (
 )
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.speeds import Point, System, solve_speeds
-from tribolab.quantities import labelled, stamp
+from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
 
 CELLS = 400

@@ -22,7 +22,7 @@ from tribolab.mode.model import (
 )
 from tribolab.mode.regimes import end_of_boundary, measured_regimes, model_regimes
 from tribolab.mode.words import paragraph, suggestions, verdict_text
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from tribolab.errors import AnalysisError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Below this share of the load the ratio F_x/F_N is noise over nothing.
 _LOADED = 0.2

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribolab.records.frames import frame
 from tribolab.records.model_words import judgement
-from tribolab.records.parts import Row
+from tribolab.records.part_records import ModelRows
 from tribolab.records.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
@@ -29,34 +29,6 @@ FITTED = (
     *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
     *("valid_speed_low_m_s", "valid_speed_high_m_s", "residual_correlation", "interval_says"),
 )
-
-
-@dataclass(frozen=True)
-class ModelRows:
-    """Rows of one model; `fit` is None where no shear stress could be fitted.
-
-    Parameters
-    ----------
-    fit
-        By the columns of the table of shear stresses.
-    curve
-        A row per sliding speed.
-    sensitivity
-        A row per variation of what is not known.
-    not_varied
-        What was held fixed.
-    shift
-        Relative change of the shear stress, downwards and upwards, that the spectrum's error makes.
-    validity
-        Why the model is not sure, beyond the limits of the theory.
-    """
-
-    fit: Row | None
-    curve: tuple[Row, ...]
-    sensitivity: tuple[Row, ...] = ()
-    not_varied: str = ""
-    shift: tuple[float, float] | None = None
-    validity: str = ""
 
 
 def model_rows(

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tribolab.records.model_rows import ModelRows
 from tribolab.records.parts import CurveOutcome, ModelOutcome, Row, Source, SurfaceOutcome
-from tribolab.records.surface_rows import SurfaceRows
 
 
 @dataclass(frozen=True)
@@ -44,6 +42,50 @@ class CurveRecord:
     digest: str = ""
     origin: Origin = Origin()
     no_slip: str = ""
+
+
+@dataclass(frozen=True)
+class ModelRows:
+    """Rows of one model; `fit` is None where no shear stress could be fitted.
+
+    Parameters
+    ----------
+    fit
+        By the columns of the table of shear stresses.
+    curve
+        A row per sliding speed.
+    sensitivity
+        A row per variation of what is not known.
+    not_varied
+        What was held fixed.
+    shift
+        Relative change of the shear stress, downwards and upwards, that the spectrum's error makes.
+    validity
+        Why the model is not sure, beyond the limits of the theory.
+    """
+
+    fit: Row | None
+    curve: tuple[Row, ...]
+    sensitivity: tuple[Row, ...] = ()
+    not_varied: str = ""
+    shift: tuple[float, float] | None = None
+    validity: str = ""
+
+
+@dataclass(frozen=True)
+class SurfaceRows:
+    """Rows of one surface: of roughness one, of contact one per load, of adhesion per medium too.
+
+    Keys are the tables' columns, with their unit in the name; None where it is not known.
+    """
+
+    name: str
+    roughness: Row
+    contact: tuple[Row, ...]
+    adhesion: tuple[Row, ...]
+    modulus: str
+    quality: str = ""
+    validity: str = ""
 
 
 @dataclass(frozen=True)

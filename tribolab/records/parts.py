@@ -263,3 +263,30 @@ class ModelOutcome:
 
 
 PartOutcome = RunOutcome | SurfaceOutcome | ModelOutcome  # what files are read for
+
+
+@dataclass(frozen=True)
+class FlaggedSpan:
+    """Where checks objected to a signal: suspect or fail, from when to when [s], which checks."""
+
+    signal: str
+    severity: str
+    start_s: float
+    stop_s: float
+    checks: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class PageTrace:
+    """A run's trace for the page, as JSON that may stand in a script element.
+
+    Parameters
+    ----------
+    coarse
+        What is shown at once.
+    fine
+        With more points, to zoom into; "" if there is none.
+    """
+
+    coarse: str
+    fine: str = ""

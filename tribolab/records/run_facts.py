@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,8 +9,9 @@ import numpy as np
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.records.frames import friction_table
 from tribolab.records.judgement import SURE, not_decided
-from tribolab.records.parts import Notice, Row
-from tribolab.records.traces import FlaggedSpan, flagged_spans
+from tribolab.records.parts import Notice
+from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
+from tribolab.records.traces import flagged_spans
 from tribolab.records.wording import SPREAD_OF, plain_value
 from tribolab.words import duration, many, percent
 
@@ -20,85 +20,6 @@ if TYPE_CHECKING:
 
 
 _SPEED_TOLERANCE = 0.1
-
-
-@dataclass(frozen=True)
-class Highlight:
-    """Mean friction over the strokes at one speed [m/s], with its scatter and its error."""
-
-    where: str
-    sliding_speed_m_s: float | None
-    value: float | None
-    std: float | None
-    sem: float | None
-    segments: int
-
-
-@dataclass(frozen=True)
-class LeftOut:
-    """What was left out of a run for one reason: how often, how long [s]."""
-
-    reason: str
-    intervals: int
-    duration_s: float | None
-
-
-@dataclass(frozen=True)
-class CheckRow:
-    """What one check said of a run."""
-
-    check: str
-    status: str
-    variable: str
-    message: str
-    value: float | None
-    unit: str
-
-
-@dataclass(frozen=True)
-class Waveform:
-    """The class of stick-slip of a run, and where it is seen."""
-
-    class_: str
-    detail: str
-
-
-@dataclass(frozen=True)
-class RunFacts:
-    """Numbers of a run, as report.json has them: SI, units in the names, None if not known.
-
-    A run that failed has the defaults.
-    """
-
-    quantity: str | None = None
-    value_min: float | None = None
-    value_max: float | None = None
-    relative_scatter: float | None = None
-    relative_drift: float | None = None
-    unsteady_segments: int = 0
-    stick_slip: Waveform | None = None
-    sliding_speed_min_m_s: float | None = None
-    sliding_speed_max_m_s: float | None = None
-    offset: str = ""
-    trim: float | None = None
-    position_range_m: tuple[float, float] | None = None
-    velocity_source: str = ""
-    instrument: str = ""
-    quality: str = ""
-    checks: tuple[CheckRow, ...] = ()
-    recorded_at: str = ""
-    duration_s: float | None = None
-    samples: int = 0
-    signals: tuple[str, ...] = ()
-    columns_not_used: tuple[str, ...] = ()
-    clock_shift_s: float | None = None
-    clock_shift_uncertainty_s: float | None = None
-    clock_shift_source: str = ""
-    history: str = ""
-    highlights: tuple[Highlight, ...] = ()
-    omitted: tuple[LeftOut, ...] = ()
-    segments: tuple[Row, ...] = ()
-    flagged: tuple[FlaggedSpan, ...] = ()
 
 
 def facts_of(

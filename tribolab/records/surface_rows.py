@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribolab.plot.labels import column
-from tribolab.records.parts import Row
+from tribolab.records.part_records import SurfaceRows
 from tribolab.records.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
@@ -49,22 +48,6 @@ ADHESION = [
     *(f"area_enhancement{end}" for end in _BAND),
     *("hertz_width_m", "jkr_width_m"),
 ]
-
-
-@dataclass(frozen=True)
-class SurfaceRows:
-    """Rows of one surface: of roughness one, of contact one per load, of adhesion per medium too.
-
-    Keys are the tables' columns, with their unit in the name; None where it is not known.
-    """
-
-    name: str
-    roughness: Row
-    contact: tuple[Row, ...]
-    adhesion: tuple[Row, ...]
-    modulus: str
-    quality: str = ""
-    validity: str = ""
 
 
 def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> SurfaceRows:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from tribolab.plot.signals import main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points
+from tribolab.records.parts import FlaggedSpan, PageTrace
 from tribolab.words import speed_text
 
 if TYPE_CHECKING:
@@ -24,33 +25,6 @@ _FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal
 _FINEST = 24_000  # points of a signal that the page zooms into
 _SIGNAL_BYTES = 2 * 16 / 3  # of a point of two signals: four bytes each, as text a third more
 _COARSE_BYTES, _FINE_BYTES = 3e6, 6e6  # of all runs together
-
-
-@dataclass(frozen=True)
-class FlaggedSpan:
-    """Where checks objected to a signal: suspect or fail, from when to when [s], which checks."""
-
-    signal: str
-    severity: str
-    start_s: float
-    stop_s: float
-    checks: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class PageTrace:
-    """A run's trace for the page, as JSON that may stand in a script element.
-
-    Parameters
-    ----------
-    coarse
-        What is shown at once.
-    fine
-        With more points, to zoom into; "" if there is none.
-    """
-
-    coarse: str
-    fine: str = ""
 
 
 def page_trace(

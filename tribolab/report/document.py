@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 
 from tribolab.provenance import sha256_of_file
 from tribolab.records.judgement import THRESHOLDS, is_bad
-from tribolab.records.run_facts import RunFacts
+from tribolab.records.run_record import RunFacts
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.words import many, span
 

@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Literal, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 from tribolab.campaign.engine import Stage
 from tribolab.campaign.store import Store
-from tribolab.errors import ConfigError, shown
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice
@@ -18,8 +17,6 @@ from tribolab.report.figure_files import DRAWING, Drawn, save_figure
 from tribolab.words import explain
 
 KIND = "figure"
-Wanted = Literal["all", "curves", "none"]
-_WANTED: dict[str, Wanted] = {"all": "all", "curves": "curves", "none": "none"}
 
 
 @dataclass(frozen=True)
@@ -159,16 +156,3 @@ def planned(
             )
         )
     return tasks
-
-
-def wanted(word: str) -> Wanted:
-    """Return which figures are meant.
-
-    Raises
-    ------
-    ConfigError
-        If the word is none of ``"all"``, ``"curves"``, ``"none"``.
-    """
-    if word in _WANTED:
-        return _WANTED[word]
-    raise ConfigError(f"figures: '{shown(word)}' is none of all, curves, none")

@@ -21,7 +21,7 @@ from tribolab import words
 from tribolab.records import judgement, wording
 from tribolab.records.model_words import stress_interval
 from tribolab.records.packed import deflated
-from tribolab.records.traces import PageTrace
+from tribolab.records.parts import PageTrace
 from tribolab.report.sections import Section, shown_sections
 from tribolab.report.sliding_figures import traces_stems
 from tribolab.words import aligned, force_text, number, speed_text

@@ -20,7 +20,8 @@ from tribolab.records.wording import plain_value
 from tribolab.report import model_records, tables
 from tribolab.report.curve_figures import draw_curves, plan_figures
 from tribolab.report.document import brief_run, labels, report_document, run_document, write_json
-from tribolab.report.figures import Figures, FigureTask, Wanted, planned
+from tribolab.report.figure_choice import Wanted
+from tribolab.report.figures import Figures, FigureTask, planned
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.page import write_page
 from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.records.surface_rows import SurfaceRows
+from tribolab.records.part_records import SurfaceRows
 
 if TYPE_CHECKING:
     from tribolab.records.parts import Row, SurfaceOutcome

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.studies import xu2026
 from tribolab.surface.synthesis import synthesise_profiles
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.quantities import stamp
 from tribolab.rig.faults import inject
 from tribolab.rig.laws import StickSlip, friction_law, stick_slip
 from tribolab.rig.parameters import Rig
@@ -24,6 +23,7 @@ from tribolab.rig.sensors import (
 )
 from tribolab.rig.signals import make_signals
 from tribolab.rig.simulated import SimulatedRun
+from tribolab.stamping import stamp
 from tribolab.studies import xu2026
 from tribolab.units import to_si
 

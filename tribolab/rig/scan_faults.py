@@ -10,9 +10,9 @@ import xarray as xr
 
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.io.scans.grid import even
-from tribolab.quantities import stamp
 from tribolab.rig.profiles import scans as simulate
 from tribolab.rig.profiles import touch
+from tribolab.stamping import stamp
 from tribolab.studies import xu2026
 from tribolab.surface.form import remove_form
 from tribolab.surface.roughness import roughness_parameters

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, nearest
-from tribolab.quantities import stamp
 from tribolab.rig.noise import slow_noise
 from tribolab.rig.waves import JITTER, WAVES
+from tribolab.stamping import stamp
 
 _FINE = 400  # points in a period, for what the truth states
 

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from scipy.special import erf
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import labelled, stamp
 from tribolab.rubber.modulus import Modulus, TabulatedModulus
+from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import (
     bin_integrals,
     cumulative,

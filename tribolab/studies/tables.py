@@ -40,9 +40,9 @@ def dry_contact(name: str) -> Groups:
     """
     from tribolab.contact.persson import contact_area_ratio
     from tribolab.contact.separation import separation_table
-    from tribolab.quantities import labelled, stamp
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import PDMS_STAND_IN
+    from tribolab.stamping import labelled, stamp
 
     psd, modulus = xu2026.psd(name), xu2026.contact.effective_modulus
     pressure = labelled(_PRESSURES, "pressure")
@@ -80,7 +80,7 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
     """Solve at zero pressure, at the loads and over the grid at once."""
     from tribolab.contact.adhesion import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
-    from tribolab.quantities import stamp
+    from tribolab.stamping import stamp
 
     forces = np.array(xu2026.system.loads)
     at_loads = hertz_mean_pressure(forces / xu2026.contact.length, xu2026.contact)
@@ -104,8 +104,8 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
 
 def modulus_table() -> xr.Dataset:
     """Storage and loss modulus of the stand-in for the paper's rubber over angular frequency."""
-    from tribolab.quantities import stamp
     from tribolab.rubber.modulus import PDMS_STAND_IN
+    from tribolab.stamping import stamp
 
     omega = np.geomspace(1e-2, 1e13, 226)
     value = PDMS_STAND_IN(omega)
@@ -152,7 +152,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Gr
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
     from tribolab.lubrication.stribeck import film_profile
-    from tribolab.quantities import stamp
+    from tribolab.stamping import stamp
 
     profiles = [
         film_profile(xu2026.contact, psd, xu2026.system.viscosity, load, v)

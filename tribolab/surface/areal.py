@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.annuli import confidence_band
 from tribolab.surface.binning import correlation, log_bins, window
 from tribolab.surface.form import remove_form

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.moments import at_wavenumber, spectrum_arrays
 from tribolab.units import to_si
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 # alpha = sqrt(ln 2 / pi): a wave as long as the cut-off keeps half of its amplitude

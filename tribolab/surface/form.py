@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.provenance import history_line
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.level import rounding_only
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.

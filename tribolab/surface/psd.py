@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface import abel
 from tribolab.surface.annuli import annular_spectrum, bins_of, confidence_band, join
 from tribolab.surface.areal import psd_2d_of_map

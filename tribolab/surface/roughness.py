@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.filters import gaussian_filter
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays

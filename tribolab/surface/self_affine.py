@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 
 @dataclass(frozen=True)

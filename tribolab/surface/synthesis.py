@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_roughness
 
 

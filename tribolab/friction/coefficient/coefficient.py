@@ -14,7 +14,7 @@ from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 OFFSETS = ("auto", "half loop", "zero load", "none")
 NO_CONTACT = 0.02  # share of the run's load below which there is no contact

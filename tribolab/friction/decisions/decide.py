@@ -13,7 +13,7 @@ from tribolab.friction.decisions.bounds import with_bounds
 from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, REJECT, Decision
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
 _MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means

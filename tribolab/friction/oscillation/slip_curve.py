@@ -13,7 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 STEADY = CLASSES[0]
 RESONANCE = "resonance"

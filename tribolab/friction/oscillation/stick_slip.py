@@ -27,7 +27,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 _SOME = 100_000  # samples of a segment that tell its sign
 _CUT = 3  # stretches of three samples at an extreme that say that the signal is cut off

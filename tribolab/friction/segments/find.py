@@ -20,7 +20,7 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 LABELS = ("set_speed", "set_normal_force", "step", "cycle")

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.errors import Cure, ReadError
 from tribolab.io.clocks.shift import estimate_clock_shift
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 _STEPWISE = {
     "set_speed",

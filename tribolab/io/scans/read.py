@@ -18,7 +18,7 @@ from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
 from tribolab.provenance import as_text, made, sha256_of_file
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 PathLike = str | Path
 # where the scans of a surface differ, the one that shows least counts for all

@@ -12,7 +12,8 @@ from tribolab.errors import ReadError, UnitError
 from tribolab.io.dialects.signature import is_results, peek
 from tribolab.io.scans.formats import result
 from tribolab.provenance import provenance
-from tribolab.quantities import QUANTITIES, stamp
+from tribolab.quantities import QUANTITIES
+from tribolab.stamping import stamp
 from tribolab.units import conversion
 
 _SETTINGS = {"Lc": "lambda_c", "Ls": "lambda_s", "Pitch": "pitch", "M-Speed": "measuring_speed"}
