@@ -80,3 +80,28 @@ def test_being_stopped_tidies_up(tmp_path, number):
         process.wait(30)
     assert process.returncode == 128 + number
     assert list(tmp_path.iterdir()) == [] and time.monotonic() - began < 30
+
+
+SWALLOWED = """
+import signal, sys, time
+from tribolab.app.streams import Terminated, prepared
+
+class Left:
+    def __del__(self):  # what is raised here, Python swallows
+        signal.raise_signal(int(sys.argv[1]))
+
+try:
+    with prepared():
+        left = Left()
+        del left
+        time.sleep(20)
+except KeyboardInterrupt as stop:
+    sys.exit(isinstance(stop, Terminated) and stop.code)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_that_comes_where_exceptions_are_swallowed_still_stops(number):
+    command = [*SAY, SWALLOWED, str(int(number))]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=15)
+    assert (done.returncode, done.stderr) == (128 + number, "")

@@ -8,8 +8,10 @@ import io
 import os
 import signal
 import sys
+import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from types import FrameType
 from typing import NoReturn
 
@@ -20,6 +22,8 @@ _PLAIN = str.maketrans(
     | {"²": "2", "³": "3", "η": "eta", "σ": "sigma", "°": " deg ", "≤": "<=", "≥": ">="}
 )
 _ERRORS = "tribolab_plain"
+_Hook = Callable[["sys.UnraisableHookArgs"], object]
+_AGAIN = 0.01  # s: by then the compiled code is left
 _UNWRITABLE = 3  # exit code, as for results that cannot be written
 
 
@@ -33,7 +37,7 @@ class Terminated(KeyboardInterrupt):
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
-        self.code = 128 + number
+        self.number, self.code = number, 128 + number
 
 
 class _Pipe(io.RawIOBase):
@@ -102,6 +106,8 @@ def prepared() -> Iterator[None]:
             )
             setattr(sys, name, opened)
     before = {}
+    ignored = sys.unraisablehook
+    sys.unraisablehook = partial(_sent_again, ignored)
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP, and means it
             before[number] = signal.signal(number, _stop)
@@ -110,6 +116,7 @@ def prepared() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        sys.unraisablehook = ignored
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
                 stream.flush()
@@ -121,3 +128,19 @@ def prepared() -> Iterator[None]:
 def _stop(number: int, frame: FrameType | None) -> NoReturn:
     signal.signal(number, signal.SIG_IGN)  # once is enough: tidying up is not to be cut short
     raise Terminated(number)
+
+
+def _sent_again(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
+    """Send a signal once more that came where compiled code swallows exceptions."""
+    error = unraisable.exc_value
+    if not isinstance(error, KeyboardInterrupt):
+        before(unraisable)
+        return
+    number = signal.SIGINT
+    if isinstance(error, Terminated):
+        number = signal.Signals(error.number)
+        signal.signal(number, _stop)
+    send: Callable[[], object] = partial(signal.raise_signal, number)
+    if hasattr(signal, "pthread_kill"):  # which wakes a thread that waits
+        send = partial(signal.pthread_kill, threading.get_ident(), number)
+    threading.Timer(_AGAIN, send).start()
