@@ -2,14 +2,29 @@
 
 import csv
 
+import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
+from report_pages import RUNS
+from reporting import made_outcome
 
 import tribolab as tl
 from tribolab.errors import ReadError
 from tribolab.report import tables
+from tribolab.report.compared import joined_curves
+from tribolab.report.results import write_report
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    failed = [("broken", "bad.csv: column 'Fx' has no unit")]
+    outcome = made_outcome(tmp_path_factory.mktemp("made"), RUNS, failed=failed, samples=40)
+    write_report(outcome, figures="none")
+    return tl.read_results(outcome.folder)
+
 
 HOSTILE = ["=1+1", "+cmd|'/c calc'!A0", "-x", "@SUM(A1)", "\t=1", "'quoted", "''", "＝1"]
 
@@ -41,3 +56,52 @@ def test_what_is_no_folder_of_results_says_so(tmp_path):
         tl.read_results(tmp_path)["fricton"]
     with pytest.raises(ReadError, match="no data of 'x'"):
         tl.read_results(tmp_path).data("x")
+
+
+def test_all_runs_come_back_at_once_each_with_what_it_is(results):
+    runs = results.runs()
+    assert runs.run.values.tolist() == [name for name, *_ in RUNS]  # not the one that failed
+    assert runs.surface.values.tolist() == [surface for _, surface, *_ in RUNS]
+    for number, (name, _, medium, load, _) in enumerate(RUNS):
+        one, alone = runs.sel(run=name), results.data(f"run{number}", "friction")
+        count = alone.sizes["segment"]
+        assert (one.medium, one.nominal_normal_force) == (medium, load)
+        assert one.friction_coefficient[:count].values.tolist() == (
+            alone.friction_coefficient.values.tolist()
+        )
+        assert one.friction_coefficient[count:].isnull().all()
+        assert one.friction_coefficient.attrs == alone.friction_coefficient.attrs
+    dry = runs.groupby("medium").mean().friction_coefficient.sel(medium="dry")
+    assert dry.mean() == pytest.approx(runs.friction_coefficient.sel(run="sb-s_1").mean().item())
+    assert (tl.variables(results.runs("stick_slip")).unit[["drop", "periods"]] == "1").all()
+    assert results.runs("stick_slip").waveform.dims == ("run", "segment")
+    with pytest.raises(ReadError, match="did you mean 'segments'"):
+        results.runs("segment")
+
+
+def test_curves_are_selected_by_surface_medium_and_load(results):
+    curves = results.curves()
+    dims = {"surface": 2, "medium": 2, "normal_force": 1, "sliding_speed": 3}
+    assert dict(curves.sizes) == dims
+    one = curves.sel(surface="Sb-S", medium="dry", normal_force=31)
+    alone = results.data("curve1")
+    assert (alone.attrs["surface"], alone.attrs["medium"]) == ("Sb-S", "dry")
+    np.testing.assert_array_equal(one.friction_coefficient, alone.friction_coefficient)
+    np.testing.assert_array_equal(one.measured_speed, alone.sliding_speed)
+    assert curves.friction_coefficient.sel(surface="Sb-R", medium="dry").isnull().all()
+    drawn = tl.plot.figure_data(tl.plot.stribeck(curves))
+    assert set(drawn.series) == {"Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"}
+    runs = tl.plot.figure_data(tl.plot.stribeck(results.runs()))
+    assert set(runs.series) == set(drawn.series) and len(runs) > len(drawn)
+
+
+def test_speeds_of_one_curve_stay_apart_however_near_those_of_another_lie():
+    rows = [([1.00e-3, 1.08e-3], "dry"), ([1.04e-3, 1e-2], "wet")]
+    curves = joined_curves(
+        [
+            (xr.Dataset({"half_loop": ("sliding_speed", v)}, {"sliding_speed": v}), "s", m, np.nan)
+            for v, m in rows
+        ]
+    )
+    for v, medium in rows:
+        assert sorted(curves.half_loop.sel(medium=medium).dropna("sliding_speed").squeeze()) == v

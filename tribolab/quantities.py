@@ -240,6 +240,7 @@ _ROWS = [
     ("force_distance_psd", "S_x", "N2 m", "power spectrum over the sliding distance"),
     # models of a campaign
     ("friction_coefficient_model", "\\mu", "1", "computed friction coefficient"),
+    ("measured_speed", "v", "m/s", "mean sliding speed of the segments of a curve"),
     ("run_level", "", "1", "friction of a run relative to that of its repeats"),
     (
         "friction_without_factors",

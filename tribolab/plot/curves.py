@@ -25,6 +25,14 @@ from tribolab.plot.style import (
 from tribolab.words import force_text, is_dry
 
 _LOAD_MARKERS = "os^DvP<X"
+_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first that is known
+# Coordinates of a dataset that holds several curves, and the attributes that say the same of one.
+_SAID = {
+    "surface": "surface",
+    "medium": "medium",
+    "normal_force": "normal_force_N",
+    "nominal_normal_force": "normal_force_N",
+}
 Curves = xr.Dataset | Sequence[xr.Dataset] | None
 
 
@@ -50,7 +58,8 @@ def stribeck(
     ----------
     measured
         One or several measured curves (sliding_speed) or friction results (segment). The
-        attributes ``surface``, ``medium`` and ``normal_force_N`` say what belongs together.
+        attributes ``surface``, ``medium`` and ``normal_force_N`` say what belongs together; a
+        dataset over (surface, medium, normal_force, ...), or over some of them, holds as many.
     model
         One or several calculated curves (sliding_speed), drawn as lines in the colour of the
         measured curve with the same surface.
@@ -116,11 +125,25 @@ def stribeck(
 def _listed(curves: Curves) -> list[xr.Dataset]:
     if curves is None:
         return []
-    return [curves] if isinstance(curves, xr.Dataset) else list(curves)
+    given = [curves] if isinstance(curves, xr.Dataset) else list(curves)
+    return [curve for one in given for curve in _each(one)]
+
+
+def _each(curves: xr.Dataset) -> list[xr.Dataset]:
+    """Return the curves of a dataset that holds several, named after their coordinates."""
+    along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in curves.dims]
+    if not along:
+        return [curves]
+    parts = []
+    for place in range(curves.sizes[along[0]]):
+        part = curves.isel({along[0]: place})
+        known = {n: key for n, key in _SAID.items() if n in part.coords and not part[n].ndim}
+        parts += _each(part.assign_attrs({key: part[name].item() for name, key in known.items()}))
+    return [p for p in parts if any(p[n].notnull().any() for n in _DRAWN if n in p)]
 
 
 def _quantity(curves: list[xr.Dataset]) -> str:
-    for name in ("friction_coefficient", "half_loop", "friction_force"):
+    for name in _DRAWN:
         if any(name in c and np.isfinite(np.asarray(c[name], float)).any() for c in curves):
             return name
     return "friction_coefficient"

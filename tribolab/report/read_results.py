@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tribolab.errors import ReadError, nearest, shown
+from tribolab.errors import ReadError, brief, nearest, shown
 from tribolab.report import tables
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+_OVER_SEGMENTS = ("friction", "segments", "stick_slip")
+
 
 class Results(Mapping[str, "pd.DataFrame"]):
-    """The tables of a results folder by name, read when asked for; `data` gives a data file.
+    """The tables of a results folder by name, read when asked for, and its data.
+
+    `data` gives a part of one run, curve, surface or model, `runs` and `curves` all of them at
+    once.
 
     Parameters
     ----------
@@ -34,6 +41,10 @@ class Results(Mapping[str, "pd.DataFrame"]):
                 f"{self.folder}: there is no table '{shown(name)}'{nearest(name, self._files)}"
             )
         return tables.read(self._files[name])
+
+    def __contains__(self, name: object) -> bool:
+        """Say whether there is such a table."""
+        return name in self._files
 
     def __iter__(self) -> Iterator[str]:
         """Go through the tables' names."""
@@ -60,6 +71,96 @@ class Results(Mapping[str, "pd.DataFrame"]):
             )
         return read_netcdf(known[name], group=group)
 
+    @cached_property
+    def _report(self) -> dict[str, Any]:
+        path = self.folder / "report.json"
+        try:
+            report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise ReadError(f"{path}: the report cannot be read: {brief(error)}") from error
+        return report
+
+    def runs(self, group: str = "friction") -> xr.Dataset:
+        """Return the segments of all runs side by side, read when asked for.
+
+        Parameters
+        ----------
+        group
+            ``"friction"``, ``"segments"`` or ``"stick_slip"``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over (run, segment), with the coordinates ``surface``, ``medium``, ``quality`` and
+            ``nominal_normal_force`` [N] over (run), e.g. ``runs.groupby("surface").mean("run")`` or
+            ``runs.where(runs.medium == "dry", drop=True)``. Where a run has fewer segments there
+            is NaN. Runs that failed are not in it. Signals over time have no segments in common:
+            `data` has those of one run.
+
+        Raises
+        ------
+        ReadError
+            If there is no such group, or a file cannot be read.
+        """
+        from tribolab.report.compared import joined_runs
+
+        if group not in _OVER_SEGMENTS:
+            raise ReadError(
+                f"{self.folder}: no results over segments are called '{shown(group)}'"
+                f"{nearest(group, _OVER_SEGMENTS)}; there are {', '.join(_OVER_SEGMENTS)}, and "
+                "data(name, group) has the rest of one run"
+            )
+        done = [run for run in self._report["runs"] if run["data_file"]]
+        found = {run["name"]: self._part(run["data_file"], group) for run in done}
+        facts = {
+            run["name"]: {**run, "normal_force": _number(run["nominal_normal_force_N"])}
+            for run in done
+        }
+        return joined_runs(found, facts)
+
+    def curves(self) -> xr.Dataset:
+        """Return all measured Stribeck curves on common axes, read when asked for.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``friction_coefficient`` and the rest of `measured_stribeck_curve` over (surface,
+            medium, normal_force, sliding_speed), so that
+            ``curves.sel(surface="Sb-R", medium="dry")`` is what it says; NaN where nothing was
+            measured. Speeds that differ by no more than a tenth stand together at their geometric
+            mean, and ``measured_speed`` is each curve's own. A run of which neither surface nor
+            medium is stated stands under its own name. `tribolab.plot.stribeck` draws them all.
+
+        Raises
+        ------
+        ReadError
+            If a file cannot be read.
+        """
+        from tribolab.report.compared import joined_curves
+
+        files = {path.stem: path for path in (self.folder / "data").glob("*.nc")}
+        known = [curve for curve in self._report["curves"] if curve["name"] in files]
+        return joined_curves(
+            [
+                (
+                    self._part(f"data/{curve['name']}.nc", None),
+                    curve["surface"] or ("" if curve["medium"] else curve["runs"][0]),
+                    curve["medium"],
+                    _number(curve["nominal_normal_force_N"]),
+                )
+                for curve in known
+            ]
+        )
+
+    def _part(self, file: str, group: str | None) -> xr.Dataset:
+        from tribolab.io.netcdf import read_netcdf
+
+        return read_netcdf(self.folder / file, group=group)
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else float(value)
+
 
 def read_results(path: str | Path) -> Results | xr.Dataset:
     r"""Read a results folder; or the file of results that a roughness tester wrote.
@@ -72,7 +173,8 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     Returns
     -------
     Results or xarray.Dataset
-        Of a folder its tables by name, and its data; of a file what
+        Of a folder its tables by name, its data, and all its runs or curves at once
+        (``results.runs()``, ``results.curves()``); of a file what
         `tribolab.io.scans.results.read_tester_results` says.
 
     Raises
