@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.quantities import stamp
+from tribolab.stamping import stamp
 
 _TOLERANCE = 0.1  # of speeds that belong together, as for `measured_stribeck_curve`
 
