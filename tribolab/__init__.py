@@ -34,6 +34,7 @@ _PUBLIC = {
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
+    "RUN_CHECKS": "tribolab.qc.run_checks",
     "check_scans": "tribolab.qc.scan_checks",
     "check_scan_set": "tribolab.qc.scan_sets",
     "read_scans": "tribolab.io.scans.read",
@@ -42,6 +43,8 @@ _PUBLIC = {
     "fill_dropouts": "tribolab.surface.form",
     "psd_1d": "tribolab.surface.psd",
     "psd_2d": "tribolab.surface.psd",
+    "self_affine_psd": "tribolab.surface.self_affine",
+    "synthesise_map": "tribolab.surface.synthesis",
     "extrapolate": "tribolab.surface.extrapolation",
     "roughness_parameters": "tribolab.surface.roughness",
     "spectral_roughness": "tribolab.surface.roughness",
@@ -57,10 +60,12 @@ _PUBLIC = {
     "SurfaceEnergies": "tribolab.contact.work_of_adhesion",
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
+    "with_shear_stress": "tribolab.lubrication.stribeck",
     "film_profile": "tribolab.lubrication.stribeck",
     "flow_factors": "tribolab.lubrication.factors",
     "fit_shear_stress": "tribolab.fit.shear_stress",
     "sliding_mode": "tribolab.mode.verdict",
+    "Mode": "tribolab.mode.model",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
@@ -88,6 +93,7 @@ __all__ = [
     "stick_slip_curve",
     "measured_stribeck_curve",
     "check",
+    "RUN_CHECKS",
     "check_scans",
     "check_scan_set",
     "read_scans",
@@ -96,6 +102,8 @@ __all__ = [
     "fill_dropouts",
     "psd_1d",
     "psd_2d",
+    "self_affine_psd",
+    "synthesise_map",
     "extrapolate",
     "roughness_parameters",
     "spectral_roughness",
@@ -111,10 +119,12 @@ __all__ = [
     "SurfaceEnergies",
     "work_of_adhesion_spread",
     "stribeck_curve",
+    "with_shear_stress",
     "film_profile",
     "flow_factors",
     "fit_shear_stress",
     "sliding_mode",
+    "Mode",
     "model_uncertainty",
     "viscoelastic_friction",
     "read_modulus",
@@ -154,9 +164,10 @@ if TYPE_CHECKING:
     from tribolab.io.read import read
     from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
-    from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+    from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
+    from tribolab.mode.model import Mode
     from tribolab.mode.verdict import sliding_mode
-    from tribolab.qc.run_checks import check
+    from tribolab.qc.run_checks import RUN_CHECKS, check
     from tribolab.qc.scan_checks import check_scans
     from tribolab.qc.scan_sets import check_scan_set
     from tribolab.report.read_results import read_results
@@ -166,6 +177,8 @@ if TYPE_CHECKING:
     from tribolab.surface.form import fill_dropouts, remove_form
     from tribolab.surface.psd import psd_1d, psd_2d
     from tribolab.surface.roughness import roughness_parameters, spectral_roughness
+    from tribolab.surface.self_affine import self_affine_psd
+    from tribolab.surface.synthesis import synthesise_map
     from tribolab.variables import variables
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
 from tribolab.errors import AnalysisError
+from tribolab.several import over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
@@ -17,11 +18,12 @@ from tribolab.validity import TINY, examine
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 
 
+@over_dims(psd=("wavenumber",), work_of_adhesion=())
 def adhesion(
     pressure: str | Pressure,
     psd: xr.Dataset,
     effective_modulus: str | float,
-    work_of_adhesion: str | float,
+    work_of_adhesion: str | float | xr.DataArray,
     *,
     kappa: float = 0.4,
     c_a: float = 1.0,
@@ -36,11 +38,13 @@ def adhesion(
         Nominal pressure [Pa] (any dims), zero or above; text with a unit if scalar. Not a number
         stays not a number.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
+        dims, which the result has, too.
     effective_modulus
         E* [Pa].
     work_of_adhesion
-        Work of adhesion gamma_0 of smooth surfaces [J/m2], e.g. ``"51 mJ/m^2"``.
+        Work of adhesion gamma_0 of smooth surfaces [J/m2], e.g. ``"51 mJ/m^2"``; a DataArray over
+        (medium), or any dims that the result will have.
     kappa
         Elastic energy reduction factor at vanishing contact [1], 0 to 1.
     c_a
@@ -96,7 +100,7 @@ def adhesion(
     0.122 1.76
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
-    work = work_value(work_of_adhesion)
+    work = work_value(_one(work_of_adhesion))
     over: xr.DataArray = finite_pressures(pressure)
     flat = over.values.ravel()
     least = surface.small_pressure
@@ -139,6 +143,7 @@ def adhesion(
     )
 
 
+@over_dims(psd=("wavenumber",), work_of_adhesion=())
 def macroscopic_work_of_adhesion(
     psd: xr.Dataset,
     effective_modulus: str | float,
@@ -211,6 +216,13 @@ def macroscopic_work_of_adhesion(
         work_of_adhesion_J_m2=work,
         **parameters(surface),
     )
+
+
+def _one(work_of_adhesion: str | float | xr.DataArray) -> str | float:
+    """Return the work of adhesion as it was stated, or of an array without dims its number."""
+    if isinstance(work_of_adhesion, xr.DataArray):
+        return float(work_of_adhesion.item())
+    return work_of_adhesion
 
 
 def finite_pressures(pressure: str | Pressure) -> xr.DataArray:

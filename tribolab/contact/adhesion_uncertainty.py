@@ -14,11 +14,13 @@ from tribolab.contact.work_of_adhesion import (
     sample_work_of_adhesion,
     work_of_adhesion_spread,
 )
+from tribolab.several import over_dims
 from tribolab.stamping import stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
 
 
+@over_dims(psd=("wavenumber",))
 def adhesion_uncertainty(
     pressure: str | Pressure,
     psd: xr.Dataset,

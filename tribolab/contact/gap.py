@@ -12,6 +12,7 @@ from scipy.special import erf
 
 from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
 from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.several import over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import cumulative_at, rms_slope
 from tribolab.units import positive
@@ -33,6 +34,7 @@ class _Openings(NamedTuple):
     height: np.ndarray  # (pressure, bin) [m]
 
 
+@over_dims(psd=("wavenumber",))
 def gap_distribution(
     pressure: str | ArrayLike | xr.DataArray,
     psd: xr.Dataset,
@@ -49,7 +51,8 @@ def gap_distribution(
         Nominal pressure [Pa] (any dims), above zero; text with a unit if scalar. The dim of a
         bare array is called ``pressure``.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
+        dims, which the result has, too.
     effective_modulus
         E* [Pa].
     variant

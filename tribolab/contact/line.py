@@ -12,6 +12,7 @@ from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
 from tribolab.errors import AnalysisError, Cure
+from tribolab.several import over_dims
 from tribolab.stamping import stamp
 from tribolab.units import positive
 
@@ -23,6 +24,7 @@ _CONVERGED = 1e-10  # of the maximum pressure, by which the last step may still 
 _FLAT = 1e-6  # of h_rms: mean separation in what is complete contact
 
 
+@over_dims(psd=("wavenumber",))
 def rough_line_contact(
     load: str | float,
     contact: LineContact,

@@ -16,6 +16,7 @@ from scipy.special import erf, exp1
 
 from tribolab.errors import AnalysisError
 from tribolab.quantities import si_values
+from tribolab.several import over_dims
 from tribolab.stamping import labelled, like, stamp_array
 from tribolab.surface.moments import (
     at_wavenumber,
@@ -32,6 +33,7 @@ Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 ROOT_PI = np.sqrt(np.pi)
 
 
+@over_dims(psd=("wavenumber",))
 def contact_area_ratio(
     pressure: str | Pressure, psd: xr.Dataset, effective_modulus: str | float
 ) -> Pressure:
@@ -42,7 +44,8 @@ def contact_area_ratio(
     pressure
         Nominal pressure [Pa] (any dims), not negative; text with a unit if scalar.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further
+        dims, which the result has, too.
     effective_modulus
         E* [Pa].
 
@@ -117,6 +120,7 @@ def apparent_contact_area_ratio(
     return _with(stamp_array(area, "contact_area_ratio"), valid)
 
 
+@over_dims(psd=("wavenumber",))
 def mean_separation(
     pressure: str | Pressure,
     psd: xr.Dataset,
@@ -130,7 +134,7 @@ def mean_separation(
     pressure
         Nominal pressure [Pa] (any dims), not negative; text with a unit if scalar.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber).
+        As for `contact_area_ratio`.
     effective_modulus
         E* [Pa].
     gamma

@@ -194,14 +194,15 @@ def sample_work_of_adhesion(
 
 
 def work_of_adhesion_spread(
-    energies: SurfaceEnergies, *, samples: int = 1000, seed: int = 0
+    energies: SurfaceEnergies | None = None, *, samples: int = 1000, seed: int = 0
 ) -> xr.Dataset:
     """Dry and wet work of adhesion with the spread that uncertain surface energies give.
 
     Parameters
     ----------
     energies
-        Surface energies and contact angles with their bounds.
+        Surface energies and contact angles with their bounds; by default those of PDMS, PMMA and
+        glycerol of the reference study.
     samples, seed
         Number of random draws for the standard deviation, and their seed.
 
@@ -223,6 +224,7 @@ def work_of_adhesion_spread(
     >>> (1e3 * spread.work_of_adhesion_low).round(1).values
     array([50.6, 21.2])
     """
+    energies = energies or PDMS_PMMA_GLYCEROL
     corners = np.array(list(itertools.product(*((r.low, r.high) for r in _ranges(energies)))))
     bounds = np.stack(_works(*corners.T))
     drawn = sample_work_of_adhesion(energies, samples, seed)

@@ -24,8 +24,10 @@ from tribolab.lubrication.factors import (
 )
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.speeds import Point, System, solve_speeds
+from tribolab.several import over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
+from tribolab.validity import together
 
 CELLS = 400
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
@@ -35,6 +37,7 @@ REFERENCE = (
 )
 
 
+@over_dims(psd=("wavenumber",))
 def stribeck_curve(
     contact: LineContact,
     psd: xr.Dataset | None,
@@ -57,7 +60,8 @@ def stribeck_curve(
     contact
         Geometry and elasticity.
     psd
-        Power spectrum with ``psd_2d`` [m4] (wavenumber); None for smooth surfaces.
+        Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
+        which the result has, too; None for smooth surfaces.
     viscosity
         eta [Pa s], above zero.
     load
@@ -179,7 +183,31 @@ def _facts(system: System) -> dict[str, str | float | int]:
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
-    """Add a shear stress sigma_f [Pa] to a curve of `stribeck_curve` that has none."""
+    """Add a shear stress to a computed curve that has none, without computing it again.
+
+    Parameters
+    ----------
+    curve
+        From `stribeck_curve` with the shear stress ``"0 Pa"``.
+    shear_stress
+        sigma_f [Pa].
+
+    Returns
+    -------
+    xarray.Dataset
+        The curve with its solid part.
+
+    Examples
+    --------
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> q = np.array([423.0, 9.05e4, 3.14e9])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-22 * q**0)}, {"wavenumber": q})
+    >>> psd["psd_2d"][2] = 1e-41
+    >>> bare = stribeck_curve(contact, psd, "1.4 Pa s", "310 N/m", "0 Pa", "1 um/s", cells=60)
+    >>> curve = with_shear_stress(bare, 1e6)
+    >>> bool(curve.friction_coefficient > 100 * bare.friction_coefficient)
+    True
+    """
     solid = shear_stress * curve["friction_per_shear_stress"]
     added = {
         name: curve[name] + solid for name in ("friction_coefficient", "friction_without_factors")
@@ -188,12 +216,13 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
     return stamp(curve, shear_stress_Pa=shear_stress)
 
 
+@over_dims(psd=("wavenumber",))
 def film_profile(
     contact: LineContact,
     psd: xr.Dataset | None,
     viscosity: str | float,
     load: str | float,
-    speed: str | float,
+    speed: str | ArrayLike,
     rough_body: RoughBody | None = None,
     factors: FlowFactors | None = None,
     gamma: float = 0.45,
@@ -201,17 +230,18 @@ def film_profile(
     domain: float = 1.0,
     inlet_length: str | float = np.inf,
 ) -> xr.Dataset:
-    """Separation and pressures across the contact at one speed.
+    """Separation and pressures across the contact at one speed, or at each of several.
 
     Parameters
     ----------
     contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain, inlet_length
-        As for `stribeck_curve`, with one load and one speed.
+        As for `stribeck_curve`, with one load.
 
     Returns
     -------
     xarray.Dataset
-        Over ``x`` [m], the flat sliding to +x (at a negative speed to -x): ``separation`` [m],
+        Over ``x`` [m], the flat sliding to +x (at a negative speed to -x); of several speeds over
+        (sliding_speed, point), with ``x`` as a variable: ``separation`` [m],
         ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
         ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``, the
         ``flux`` [m2/s] and ``cavity_start`` [m], and the proof of the point: ``residual``,
@@ -225,6 +255,13 @@ def film_profile(
     '5.89 um, 52.3 kPa'
     """
     force = positive(load, "N/m", "load")
+    if np.ndim(speed):
+        numerics = (rough_body, factors, gamma, cells, domain, inlet_length)
+        films = [
+            film_profile(contact, psd, viscosity, load, float(v), *numerics)
+            for v in _speeds(speed, psd).values
+        ]
+        return _put_together(films)
     v = float(_speeds(speed, psd).values[0])
     with threadpool_limits(1, user_api="blas"):
         system = _system(
@@ -256,6 +293,16 @@ def film_profile(
     thinnest = values["separation"].min()
     limits = line_limits("film_profile", contact, force, psd, system.separation, [v], [thinnest])
     return stamp(data, **_facts(system), **limits)
+
+
+def _put_together(films: list[xr.Dataset]) -> xr.Dataset:
+    """Profiles at several speeds over (sliding_speed, point): each is on a grid of its own."""
+    rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
+    joined = xr.concat(
+        rows, "sliding_speed", data_vars="all", coords="different", compat="equals", join="outer",
+        combine_attrs="drop_conflicts",
+    )  # fmt: skip
+    return joined.assign_attrs(together(film.attrs for film in films))
 
 
 def _system(

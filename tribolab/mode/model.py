@@ -36,6 +36,11 @@ class Mode:
         [Pa]
     fluid
         Whether there is a fluid between the surfaces.
+
+    Examples
+    --------
+    >>> Mode(work_of_adhesion=2e-3, area_ratio=0.9).pressure is None
+    True
     """
 
     work_of_adhesion: float | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.typing import LineStyleType
 
 from tribolab.plot.frame import (
+    Surfaces,
+    by_surface,
     colours,
     logarithmic,
     name_style,
@@ -22,7 +24,6 @@ from tribolab.plot.panel import one_panel
 from tribolab.plot.style import BLACK, GREY, keep
 from tribolab.words import is_dry, number
 
-Surfaces = Mapping[str, xr.Dataset]
 _SMALLEST_AREA = 1e-4
 _WET_STYLES: tuple[LineStyleType, ...] = ("-", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 _DRY_STYLES: tuple[LineStyleType, ...] = ("--", (0, (2, 1)))
@@ -42,7 +43,7 @@ def contact_area(
     ----------
     contacts
         ``contact_area_ratio`` (pressure), with ``_low`` and ``_high`` where known, by the
-        surface's name.
+        surface's name, or one dataset over (surface, pressure).
     loads
         ``pressure`` and ``normal_force`` (load): the mean Hertz pressures to mark.
     surfaces
@@ -70,6 +71,7 @@ def contact_area(
     >>> tl.plot.figure_data(contact_area(areas)).series.unique().tolist()
     ['Sb-S', 'Sb-R']
     """
+    contacts = by_surface(contacts)
     chosen = colours(list(contacts), surfaces)
     with one_panel(ax, title) as (figure, axes):
         for name, contact in contacts.items():
@@ -128,6 +130,8 @@ def adhesive_area(
     >>> tl.plot.figure_data(figure).series.unique().tolist()
     ['Sb-S, no adhesion', 'Sb-S, dry', 'Sb-S, glycerol']
     """
+    contacts = by_surface(contacts)
+    adhesions = by_surface(adhesions)
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
     with one_panel(ax, title) as (figure, axes):
@@ -181,6 +185,7 @@ def effective_work(
     >>> tl.plot.figure_data(effective_work(found)).series.unique().tolist()
     ['Sb-S, dry', 'Sb-R, dry']
     """
+    adhesions = by_surface(adhesions)
     chosen = colours(list(adhesions), surfaces)
     media = _media(adhesions)
     with one_panel(ax, title, left=16) as (figure, axes):
@@ -230,6 +235,7 @@ def gaps(
     >>> tl.plot.figure_data(gaps(found)).series.unique().tolist()
     ['Sb-S', 'Sb-R']
     """
+    distributions = by_surface(distributions)
     chosen = colours(list(distributions), surfaces)
     with one_panel(ax, title, left=16) as (figure, axes):
         ends = []
@@ -282,6 +288,7 @@ def line_pressure(
     >>> tl.plot.figure_data(line_pressure(lines)).series.unique().tolist()
     ['Sb-S', 'Sb-R']
     """
+    lines = by_surface(lines)
     chosen = colours(list(lines), surfaces)
     with one_panel(ax, title) as (figure, axes):
         widest = 0.0
@@ -358,6 +365,7 @@ def contact_separation(
     >>> numbers.separation_over_rms_roughness.tolist()
     [1.0, 2.0, 3.0]
     """
+    separations = by_surface(separations)
     chosen = colours(list(separations), surfaces)
     with one_panel(ax, title) as (figure, axes):
         for name, separation in separations.items():

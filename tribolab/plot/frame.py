@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 
 from tribolab.plot.decades import few_ticks
@@ -17,6 +18,9 @@ from tribolab.plot.style import (
     margins,
     surface_styles,
 )
+
+# Datasets by the surface's name, or one with the dim ``surface``.
+Surfaces = Mapping[str, xr.Dataset] | xr.Dataset
 
 
 def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:
@@ -41,6 +45,21 @@ def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str
     """Return the colour of each surface; `every` names all surfaces of the study in order."""
     styles = surface_styles([*every, *surfaces])
     return {name: styles[name].colour for name in surfaces}
+
+
+def by_surface(data: Surfaces) -> dict[str, xr.Dataset]:
+    """Return datasets by the surface's name, also from one that has a dim ``surface``.
+
+    Where surfaces stand on different wavenumbers, each gets back its own.
+    """
+    if not isinstance(data, xr.Dataset):
+        return dict(data)
+    if "surface" not in data.dims:
+        return {str(data.attrs.get("surface", "")): data}
+    parts = {str(name): data.sel(surface=name, drop=True) for name in data["surface"].to_numpy()}
+    if "wavenumber" not in data.dims:
+        return parts
+    return {name: part.dropna("wavenumber", how="all") for name, part in parts.items()}
 
 
 def name_surfaces(axes: Axes, chosen: dict[str, str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,8 @@ from matplotlib.ticker import MaxNLocator
 
 from tribolab.plot.decades import few_ticks
 from tribolab.plot.frame import (
+    Surfaces,
+    by_surface,
     colours,
     logarithmic,
     shaded_band,
@@ -300,7 +302,7 @@ def _above_zero(value: np.ndarray, bars: np.ndarray) -> np.ndarray:
 
 
 def friction_factor_effect(
-    curves: Mapping[str, xr.Dataset],
+    curves: Surfaces,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
@@ -326,6 +328,7 @@ def friction_factor_effect(
     >>> tl.plot.figure_data(friction_factor_effect({"Sb-R": curve})).friction.round(3).tolist()
     [1.011, 0.865, 1.008, 0.838]
     """
+    curves = by_surface(curves)
     chosen = colours(list(curves), surfaces)
     with one_panel(ax, title) as (figure, axes):
         for name, curve in curves.items():
@@ -347,7 +350,7 @@ def friction_factor_effect(
 
 
 def shear_stress_over_speed(
-    curves: Mapping[str, xr.Dataset],
+    curves: Surfaces,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
@@ -373,6 +376,7 @@ def shear_stress_over_speed(
     >>> figure_data(shear_stress_over_speed({"Sb-S": curve})).shear_stress_Pa.tolist()
     [600000.0, 610000.0]
     """
+    curves = by_surface(curves)
     styles = surface_styles([*surfaces, *curves])
     with one_panel(ax, title) as (figure, axes):
         for name, curve in curves.items():

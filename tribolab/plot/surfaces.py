@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.frame import (
+    Surfaces,
+    by_surface,
     colours,
     logarithmic,
     name_style,
@@ -21,7 +23,6 @@ from tribolab.plot.labels import column, label, plain
 from tribolab.plot.panel import one_panel
 from tribolab.plot.style import BLACK, VERMILLION, keep
 
-Surfaces = Mapping[str, xr.Dataset]
 _MEASURED = 0
 
 
@@ -33,8 +34,8 @@ def spectra(
     Parameters
     ----------
     psds
-        Spectra with ``psd_2d`` (wavenumber) by the surface's name; ``psd_2d_low``,
-        ``psd_2d_high`` and ``origin`` where known.
+        Spectra with ``psd_2d`` (wavenumber) by the surface's name, or one dataset over (surface,
+        wavenumber); ``psd_2d_low``, ``psd_2d_high`` and ``origin`` where known.
     surfaces
         All surfaces of the study in their order, so that each keeps its colour.
     title
@@ -61,6 +62,7 @@ def spectra(
     >>> tl.plot.figure_data(spectra({"Sb-R": psd})).series.unique().tolist()
     ['Sb-R']
     """
+    psds = by_surface(psds)
     if not psds:
         raise AnalysisError("there is nothing to draw: no spectrum was given")
     chosen = colours(list(psds), surfaces)
@@ -172,6 +174,7 @@ def viscoelastic(
     >>> figure_data(viscoelastic({"Sb-R": mu})).friction_coefficient.tolist()
     [0.01, 0.03, 0.02]
     """
+    frictions = by_surface(frictions)
     chosen = colours(list(frictions), surfaces)
     with one_panel(ax, title) as (figure, axes):
         for name, friction in frictions.items():

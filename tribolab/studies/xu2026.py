@@ -11,15 +11,19 @@ so that the paper's adhesive contact areas come out. Whatever is computed from t
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import LineContact
+from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL
 from tribolab.errors import AnalysisError, nearest
+from tribolab.stamping import stamp
 from tribolab.studies.published import Published, read_published
-from tribolab.surface.self_affine import SelfAffine, tabulate
+from tribolab.surface.self_affine import SelfAffine, psd_2d, tabulate
 
 CITATION = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
@@ -188,6 +192,7 @@ _SURFACES = (
         shear_stress=_pairs(1.08e6, 1.08e6, 1.00e6, 0.98e6),
     ),
 )
+surface_energies = PDMS_PMMA_GLYCEROL
 surfaces: dict[str, Surface] = {surface.name: surface for surface in _SURFACES}
 
 
@@ -210,27 +215,42 @@ def surface(name: str) -> Surface:
     raise AnalysisError(f"xu2026 has no surface '{name}'{nearest(name, surfaces)}")
 
 
-def psd(name: str, points: int = 1201) -> xr.Dataset:
+def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
     """Power spectrum of a surface, from q0 to q1 on a logarithmic grid; a stand-in.
 
     Parameters
     ----------
     name
-        ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``.
+        ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``; or several of them.
     points
         Number of wavenumbers.
 
     Returns
     -------
     xarray.Dataset
-        ``psd_2d`` [m4] over ``wavenumber`` [1/m], in the convention of `SelfAffine`.
+        ``psd_2d`` [m4] over ``wavenumber`` [1/m], in the convention of `SelfAffine`; of several
+        over (surface, wavenumber), with the roll-off of each on a node.
 
     Examples
     --------
     >>> psd("Sb-S").psd_2d.attrs["units"]
     'm4'
     """
+    if not isinstance(name, str):
+        return _several([surface(one) for one in name], points)
     known = surface(name)
     return tabulate(known.spectrum, points).assign_attrs(
         surface=known.name, origin=STAND_IN, references=CITATION
     )
+
+
+def _several(known: list[Surface], points: int) -> xr.Dataset:
+    spectra = [one.spectrum for one in known]
+    low, high = min(one.low for one in spectra), max(one.high for one in spectra)
+    q = np.union1d(np.geomspace(low, high, points), [one.rolloff for one in spectra])
+    values = np.array([psd_2d(one, q) for one in spectra])
+    names = np.array([one.name for one in known], dtype=object)
+    data = xr.Dataset(
+        {"psd_2d": (("surface", "wavenumber"), values)}, {"surface": names, "wavenumber": q}
+    )
+    return stamp(data, convention="<h^2> = 2 pi int q C dq", origin=STAND_IN, references=CITATION)

@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
+from tribolab.several import over_dims
 from tribolab.stamping import stamp
 from tribolab.surface.filters import gaussian_filter
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
@@ -156,13 +157,15 @@ def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
     return (ahead - behind) / (60 * pitch)
 
 
+@over_dims(psd=("wavenumber",))
 def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
     """Roughness, slope and curvature of the surface from its spectrum, cumulative in q.
 
     Parameters
     ----------
     psd
-        ``psd_2d`` [m4] (wavenumber), with its band if known.
+        ``psd_2d`` [m4] (wavenumber), with its band if known; of several surfaces with further
+        dims, which the result has, too.
 
     Returns
     -------

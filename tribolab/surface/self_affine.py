@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError
 from tribolab.stamping import stamp
+from tribolab.units import positive
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,54 @@ def rms_slope(spectrum: SelfAffine) -> float:
        Stribeck curve in hydrophobic soft contacts" (2026).
     """
     return float(np.sqrt(2 * np.pi * moment(spectrum, 3)))
+
+
+def self_affine_psd(
+    rms_roughness: str | float,
+    hurst: float,
+    rolloff: str | float,
+    low: str | float,
+    high: str | float,
+    points: int = 1201,
+) -> xr.Dataset:
+    """Power spectrum of a self-affine surface of a given roughness, flat below a roll-off.
+
+    Parameters
+    ----------
+    rms_roughness
+        h_rms [m] of all waves.
+    hurst
+        Exponent H [1]: above the roll-off the spectrum falls like q to the -2(1+H).
+    rolloff, low, high
+        Roll-off, smallest and largest wavenumber [1/m].
+    points
+        Number of wavenumbers.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``psd_2d`` [m4] over ``wavenumber`` [1/m].
+
+    Raises
+    ------
+    AnalysisError
+        If the wavenumbers do not follow each other, or a number is not positive.
+
+    Examples
+    --------
+    >>> from tribolab.surface.roughness import spectral_roughness
+    >>> psd = self_affine_psd("2 um", 0.8, rolloff=1e4, low=1e3, high=1e9)
+    >>> f"{spectral_roughness(psd).rms_roughness[-1].item():.4g}"
+    '2e-06'
+    """
+    wanted = positive(rms_roughness, "m", "rms_roughness")
+    turn, first, last = (
+        positive(value, "1/m", name)
+        for value, name in ((rolloff, "rolloff"), (low, "low"), (high, "high"))
+    )
+    unit = SelfAffine(hurst, turn, plateau=1.0, low=first, high=last)
+    plateau = wanted**2 / (2 * np.pi * moment(unit, 1))
+    return tabulate(replace(unit, plateau=plateau), points)
 
 
 def tabulate(spectrum: SelfAffine, points: int = 1201) -> xr.Dataset:

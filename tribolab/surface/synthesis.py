@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.stamping import stamp
+from tribolab.surface.moments import at_wavenumber, cumulative, spectrum_arrays
 from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_roughness
 
 
@@ -83,7 +84,7 @@ def synthesise_profiles(
 
 
 def synthesise_map(
-    spectrum: SelfAffine,
+    spectrum: SelfAffine | xr.Dataset,
     *,
     points: int,
     pitch: float,
@@ -94,7 +95,7 @@ def synthesise_map(
     Parameters
     ----------
     spectrum
-        The surface.
+        The surface: a law, or ``psd_2d`` [m4] (wavenumber), zero outside its wavenumbers.
     points, pitch
         Number of points along each side, and their distance [m].
     rng
@@ -122,13 +123,23 @@ def synthesise_map(
     >>> surface = synthesise_map(rough, points=256, pitch=1e-6, rng=1)
     >>> surface.height.dims, surface.height.shape
     (('y', 'x'), (256, 256))
+    >>> from tribolab.surface.self_affine import tabulate
+    >>> again = synthesise_map(tabulate(rough), points=256, pitch=1e-6, rng=1)
+    >>> bool(abs(again.height - surface.height).max() < 1e-9 * surface.height.max())
+    True
     """
     if points < 4 or pitch <= 0:
         raise AnalysisError("at least 4 points and a positive pitch", function="synthesise_map")
     rng = np.random.default_rng(rng)
     k = 2 * np.pi * np.fft.fftfreq(points, pitch)
     q = np.hypot(k[:, None], np.abs(k[: points // 2 + 1]))
-    c = psd_2d(spectrum, q)
+    if isinstance(spectrum, SelfAffine):
+        c, variance = psd_2d(spectrum, q), rms_roughness(spectrum) ** 2
+    else:
+        nodes, values = spectrum_arrays(spectrum)
+        inside = (q >= nodes[0]) & (q <= nodes[-1])
+        c = np.where(inside, at_wavenumber(np.clip(q, nodes[0], nodes[-1]), nodes, values), 0.0)
+        variance = 2 * np.pi * float(cumulative(nodes, values, 1)[-1])
     step = 2 * np.pi / (points * pitch)
     white = np.fft.rfft2(rng.standard_normal((points, points)))
     height = np.fft.irfft2(white * (2 * np.pi / pitch) * np.sqrt(c), s=(points, points))
@@ -141,5 +152,5 @@ def synthesise_map(
         lowest_wavenumber_1_m=float(inside.min(initial=np.inf)),
         highest_wavenumber_1_m=float(inside.max(initial=0.0)),
         variance_in_band_m2=float((c * twice).sum() * step**2),
-        variance_of_spectrum_m2=rms_roughness(spectrum) ** 2,
+        variance_of_spectrum_m2=variance,
     )

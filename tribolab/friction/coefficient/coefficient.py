@@ -14,6 +14,7 @@ from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.several import of_runs
 from tribolab.stamping import stamp
 
 OFFSETS = ("auto", "half loop", "zero load", "none")
@@ -21,6 +22,7 @@ NO_CONTACT = 0.02  # share of the run's load below which there is no contact
 LOST = 0.05  # share of samples without contact that spoils a segment
 
 
+@of_runs
 def friction_coefficient(
     run: xr.Dataset,
     segments: xr.Dataset,

@@ -27,6 +27,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.several import of_runs
 from tribolab.stamping import stamp
 
 _SOME = 100_000  # samples of a segment that tell its sign
@@ -71,6 +72,7 @@ class SegmentSignal(NamedTuple):
     load: float
 
 
+@of_runs
 def stick_slip(
     run: xr.Dataset,
     segments: xr.Dataset,

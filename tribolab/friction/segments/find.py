@@ -20,12 +20,14 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
+from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 LABELS = ("set_speed", "set_normal_force", "step", "cycle")
 
 
+@of_runs
 def find_segments(
     run: xr.Dataset,
     trim: str | float = 0.10,

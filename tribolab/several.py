@@ -1,0 +1,169 @@
+"""Functions of one thing that take several: a list of runs, or a dataset with a further dim."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
+
+import numpy as np
+
+from tribolab.errors import AnalysisError
+from tribolab.validity import together
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class OfRuns(Protocol[P, R]):
+    """A function of a run that gives a list for a list of runs."""
+
+    @overload
+    def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
+
+    @overload
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R: ...
+
+
+def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
+    """Let a function of a run take a list of runs, and give a list.
+
+    Other arguments that are lists of datasets go with the runs, one each; the rest holds for all.
+
+    Examples
+    --------
+    >>> @of_runs
+    ... def length(run, unit="s"):
+    ...     return f"{float(run.time[-1])} {unit}"
+    >>> import xarray as xr
+    >>> runs = [xr.Dataset(coords={"time": [0.0, end]}) for end in (1, 2)]
+    >>> length(runs[0]), length(runs, unit="sec")
+    ('1.0 s', ['1.0 sec', '2.0 sec'])
+    """
+
+    @functools.wraps(function)
+    def with_lists(*args: Any, **kwargs: Any) -> Any:
+        if not args or not isinstance(args[0], list):
+            return function(*args, **kwargs)
+        count = len(args[0])
+        given: dict[Any, Any] = {**dict(enumerate(args)), **kwargs}
+        own = {key: value for key, value in given.items() if _of_datasets(value)}
+        for key, value in own.items():
+            if len(value) != count:
+                raise AnalysisError(
+                    f"{function.__name__}: {count} runs are given, and {len(value)} datasets as "
+                    f"{_name(function, key)}; give one for each run"
+                )
+        results = []
+        for number in range(count):
+            mine = {key: value[number] if key in own else value for key, value in given.items()}
+            places = [mine.pop(place) for place in range(len(args))]
+            results.append(function(*places, **mine))
+        return results
+
+    return with_lists
+
+
+def _of_datasets(value: Any) -> bool:
+    # by name: whoever calls with lists has loaded xarray already
+    return isinstance(value, list) and all(type(one).__name__ == "Dataset" for one in value)
+
+
+def _name(function: Callable[..., Any], key: int | str) -> str:
+    return key if isinstance(key, str) else f"'{list(inspect.signature(function).parameters)[key]}'"
+
+
+def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Let a function take arguments with further dims, and give them to the result.
+
+    Parameters
+    ----------
+    **own
+        The arguments that may have further dims, and those dims that the function knows itself.
+
+    Notes
+    -----
+    The function is called once for each place along the further dims, for which each argument that
+    has such a dim is cut; wavenumbers without a value are left out, so that spectra on different
+    wavenumbers may stand in one dataset. What the results say of their validity is joined.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> @over_dims(psd=("wavenumber",))
+    ... def highest(psd):
+    ...     return psd.psd_2d.max()
+    >>> psd = xr.Dataset({"psd_2d": (("surface", "wavenumber"), [[1.0, 2.0], [5.0, 4.0]])})
+    >>> highest(psd).values, highest(psd.isel(surface=0)).item()
+    (array([2., 5.]), 2.0)
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        places = list(inspect.signature(function).parameters)
+
+        @functools.wraps(function)
+        def with_dims(*args: P.args, **kwargs: P.kwargs) -> R:
+            given = dict(zip(places, args, strict=False)) | kwargs
+            further = [
+                dim
+                for name, known in own.items()
+                for dim in _dims(given.get(name))
+                if dim not in known
+            ]
+            if not further:
+                return function(*args, **kwargs)
+            return _along(with_dims, given, further[0])
+
+        return with_dims
+
+    return decorate
+
+
+def _dims(value: Any) -> tuple[Hashable, ...]:
+    """Dims of what an argument holds; beside its spectrum a dataset may tell of its scans."""
+    holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
+    return tuple(getattr(holder, "dims", ()))
+
+
+def _along(function: Callable[..., Any], given: dict[str, Any], dim: Hashable) -> Any:
+    """Call a function for each place along a dim, and put the results together."""
+    import xarray as xr
+
+    having = {name: value for name, value in given.items() if dim in getattr(value, "dims", ())}
+    first = next(iter(having.values()))
+    results = []
+    for place in range(first.sizes[dim]):
+        cut = {name: _cut(value.isel({dim: place}, drop=True)) for name, value in having.items()}
+        result = function(**(given | cut))
+        known = isinstance(result, xr.Dataset | xr.DataArray)
+        results.append(result if known else _array(result, function.__name__))
+    index = first[dim] if dim in first.coords else xr.DataArray(range(len(results)), dims=[dim])
+    joined = xr.concat(
+        results, index, data_vars="all", coords="different", compat="equals", join="outer",
+        combine_attrs="drop_conflicts",
+    )  # fmt: skip
+    if any("validity" in result.attrs for result in results):
+        joined.attrs |= together(result.attrs for result in results)
+    return joined
+
+
+def _cut(value: Any) -> Any:
+    """Leave out the wavenumbers at which this part of several spectra has no value."""
+    if "wavenumber" not in value.dims or not hasattr(value, "data_vars"):
+        return value
+    return value.dropna("wavenumber", how="all")
+
+
+def _array(result: Any, who: str) -> Any:
+    import xarray as xr
+
+    if np.ndim(result):
+        raise AnalysisError(
+            f"{who}: with further dims, arrays must be DataArrays that name theirs, e.g. "
+            'xr.DataArray(pressure, dims="pressure")'
+        )
+    return xr.DataArray(result)
