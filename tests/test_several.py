@@ -59,7 +59,7 @@ def test_media_and_surfaces_give_both_dims_and_a_doubt_about_one_is_kept():
         f"{name}, {medium}" for name in NAMES for medium in ("dry", "wet")
     }
     steep = xr.concat([PSDS.sel(surface="Sb-S"), 4 * PSDS.sel(surface="Sb-R")], "surface")
-    doubted = tl.contact_area_ratio(4.2e4, steep, MODULUS)
+    doubted = tl.contact_area_ratio(xr.DataArray([4.2e4], dims="pressure"), steep, MODULUS)
     assert doubted.attrs["validity"] == "suspect" and doubted.attrs["validity_reasons"]
 
 
