@@ -12,13 +12,20 @@ from tribolab.rig import simulate_campaign
 RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")
 
 
-def simulated(folder: Path, repeats: int = 2, scans: bool = False, models: bool = False) -> Path:
+def simulated(
+    folder: Path,
+    repeats: int = 2,
+    scans: bool = False,
+    models: bool = False,
+    faults: tuple[str, ...] = (),
+) -> Path:
     """Runs in glycerol and dry, in repeats, at three speeds; returns campaign.toml.
 
     The campaign file names the scans only if asked to: tests of runs need no contact mechanics.
     The same holds for models; their own uncertainty is left out in any case.
     """
-    file = simulate_campaign(folder / "campaign", small=True, surfaces=("Sb-R",), n_repeats=repeats)
+    small = {"small": True, "surfaces": ("Sb-R",), "n_repeats": repeats, "faults": faults}
+    file = simulate_campaign(folder / "campaign", **small)
     text = file.read_text("utf-8")
     if not scans:
         text = re.sub(r"(?m)^scans = .*\n", "", text)

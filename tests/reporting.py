@@ -13,9 +13,10 @@ from tribolab.campaign.store import Store
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.records.frames import curve_table, stick_slip_table
+from tribolab.records.notices import notices_of
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome
-from tribolab.records.run_facts import facts_of, notices_of
+from tribolab.records.run_facts import facts_of
 from tribolab.records.run_record import RunRecord
 from tribolab.records.traces import page_trace, trace_size
 from tribolab.records.wording import plain_value

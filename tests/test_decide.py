@@ -111,13 +111,12 @@ def test_a_decision_holds_when_its_segment_moves_or_gets_another_number(run, seg
 
 def test_all_that_was_decided_is_told_and_survives_a_file(run, segments, tmp_path):
     where = within(segments, BAD)
-    made = [Decision("reject", **SAID, **where), Decision("note", "humid day", "B", "2026-11-21")]
-    decided = decide(segments, made)
-    assert (
-        decided["decision"].values[BAD]
-        == "rejected by A. Person: slipped off; note by B: humid day"
-    )
-    first, second = decided.attrs["decisions"]
+    squeaks = Decision("note", "squeaks", "B", "2026-11-21", **where)
+    humid = Decision("note", "humid day", "B", "2026-11-21")
+    decided = decide(segments, [Decision("reject", **SAID, **where), squeaks, humid])
+    text = "rejected by A. Person: slipped off; noted by B: squeaks"
+    assert decided["decision"].values.tolist() == ["", "", text, "", "", ""]
+    first, _, second = decided.attrs["decisions"]
     assert first["segments"] == [BAD + 1] and second["segments"] == [1, 2, 3, 4, 5, 6]
     assert (first["start_s"], first["date"], second["start_s"]) == (
         where["start"], "2026-11-20", None,

@@ -11,7 +11,14 @@ import tribolab
 from tribolab.records.mode_record import EvidenceRow, ModeRecord
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import FlaggedSpan, ModelOutcome, RunOutcome, SurfaceOutcome
-from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
+from tribolab.records.run_record import (
+    CheckRow,
+    DecisionRow,
+    Highlight,
+    LeftOut,
+    RunFacts,
+    Waveform,
+)
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.report.document import SCHEMA_VERSION
 
@@ -29,6 +36,7 @@ RECORDS = [
     (Highlight, RUN["highlights"]["items"]["properties"], NOTHING, NOTHING),
     (LeftOut, RUN["omitted"]["items"]["properties"], NOTHING, NOTHING),
     (CheckRow, RUN["checks"]["items"]["properties"], NOTHING, NOTHING),
+    (DecisionRow, RUN["decisions"]["items"]["properties"], NOTHING, NOTHING),
     (FlaggedSpan, RUN["flagged"]["items"]["properties"], NOTHING, NOTHING),
     (Waveform, RUN["stick_slip"]["properties"], {"class_"}, {"class"}),
     (FigureRecord, DEFS["figure"]["properties"], NOTHING, NOTHING),

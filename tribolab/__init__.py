@@ -70,6 +70,7 @@ _PUBLIC = {
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
     "load_campaign": "tribolab.campaign.load",
+    "load_review": "tribolab.campaign.review",
     "run_campaign": "tribolab.app.run",
     "TribolabError": "tribolab.errors",
     "plot": "",
@@ -129,6 +130,7 @@ __all__ = [
     "viscoelastic_friction",
     "read_modulus",
     "load_campaign",
+    "load_review",
     "run_campaign",
     "TribolabError",
     "plot",
@@ -140,6 +142,7 @@ if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.app.run import run_campaign
     from tribolab.campaign.load import load_campaign
+    from tribolab.campaign.review import load_review
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution

@@ -31,7 +31,8 @@ app = typer.Typer(
         "honest error bars and a report out.\n\n"
         "New here? `tribolab demo` simulates a campaign, analyses it and shows where to look.\n\n"
         "Exit codes: 0 fine; 1 a finding at or above the campaign's fail_on; 2 wrong use or a "
-        "mistake in the campaign file; 3 an input that cannot be read, or nothing found."
+        "mistake in the campaign or review file; 3 an input that cannot be read, a decision that "
+        "finds nothing to decide on, or nothing found."
     ),
 )
 
@@ -423,7 +424,11 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
         say(crash, to_stderr=True)
     if not outcome.segments:
         say("tribolab: no segment of constant speed was found in any run", to_stderr=True)
-    spoilt = outcome.failed or any(surface.unreadable for surface in outcome.surfaces)
+    spoilt = (
+        outcome.failed
+        or outcome.lost_decisions
+        or any(surface.unreadable for surface in outcome.surfaces)
+    )
     if spoilt or outcome.kept or crashes or not outcome.segments:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}

@@ -123,11 +123,29 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = shown(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
+    lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
         lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
+
+
+def _decisions(outcome: Outcome) -> list[str]:
+    """Say in a line what a person decided, and where it stands."""
+    decided = [run for run in outcome.runs if run.quality_as_found]
+    if not decided:
+        return []
+    counts = [
+        (f"{Count(sum(run.quality == word for run in decided)):run|runs} {word}", word)
+        for word in ("rejected", "accepted")
+    ]
+    parts = [said for said, word in counts if any(run.quality == word for run in decided)]
+    of = [run for run in decided if run.segments_rejected and run.quality != "rejected"]
+    if count := sum(run.segments_rejected for run in of):
+        parts.append(f"{Count(count):segment|segments} of {Count(len(of)):run|runs} rejected")
+    said = ", ".join(parts) or f"on {Count(len(decided)):run|runs}"
+    return [f"decided by hand: {said}: see {shown(outcome.folder / 'tables' / 'decisions.csv')}"]
 
 
 def _why(run: RunOutcome, outcome: Outcome) -> str:
@@ -138,7 +156,7 @@ def _why(run: RunOutcome, outcome: Outcome) -> str:
 
 def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
     """Return the checks that say so, and what they say."""
-    mine = [row for row in rows if row["status"] == status]
+    mine = [row for row in rows if row["status"] == status and not row.get("decision")]
     said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
     return "".join(f": {' '.join(one.split())}" for one in ["; ".join(said)] if one)
 
@@ -164,7 +182,8 @@ def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     from tribolab.records.mode_record import condition
 
-    failed = [f"{run.name} failed: {run.reason}" for run in outcome.failed]
+    failed = list(outcome.lost_decisions)
+    failed += [f"{run.name} failed: {run.reason}" for run in outcome.failed]
     for surface in outcome.surfaces:
         failed += [f"surface {surface.name}: {finding.message}" for finding in surface.unreadable]
     failed += [f"{run.name}: {run.kept}" for run in outcome.runs if run.kept]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import format_exception
@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.data_files import NETCDF, digest, write_data
 from tribolab.campaign.engine import Stage
 from tribolab.campaign.plan import distinct, safe_name
+from tribolab.campaign.run_analysis import AS_FOUND as FRICTION_AS_FOUND
 from tribolab.campaign.runs import RunCame
 from tribolab.campaign.store import Store
 from tribolab.errors import TribolabError
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import CurveRecord, Origin
-from tribolab.records.parts import CurveOutcome
+from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.stamping import stamp
 from tribolab.words import explain
 
@@ -25,16 +26,22 @@ if TYPE_CHECKING:
 
 KIND = "curve"
 SLIP = "stick_slip"  # group of the stick-slip over speed
+AS_FOUND = "as_found"  # group of the curve without a person's decisions
+Condition = tuple[str, str, float | None, str]
 
 
 @dataclass(frozen=True)
 class CurveTask:
-    """Data files of the runs that make one measured curve."""
+    """Data files of the runs that make one measured curve.
+
+    `found_files` are those that would make it without a person's decisions; none if nobody decided.
+    """
 
     curve: CurveOutcome
     data_files: tuple[str, ...]
     folder: Path
     fingerprint: str = ""
+    found_files: tuple[str, ...] = ()
 
 
 class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
@@ -56,33 +63,46 @@ class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
 
     def plan(self) -> list[CurveTask]:
         """Put together what is stated to be the same: surface, medium and load."""
-        groups: dict[tuple[str, str, float | None, str], list[RunCame]] = {}
+        groups: dict[Condition, list[RunCame]] = {}
         for came in self._runs:
-            run = came.outcome
-            if run.done and run.segments and run.quality not in ("fail", "error"):
-                # only what is stated to be the same is taken together
-                alone = "" if run.surface or run.medium else run.name
-                load = run.normal_force and float(f"{run.normal_force:.4g}")
-                groups.setdefault((run.surface, run.medium, load, alone), []).append(came)
+            if came.outcome.in_curves or came.outcome.in_curves_as_found:
+                groups.setdefault(_condition(came.outcome), []).append(came)
+        # a curve whose runs are all rejected is none
+        groups = {
+            key: members
+            for key, members in groups.items()
+            if any(came.outcome.in_curves for came in members)
+        }
         names = distinct(_curve_name(*key) for key in groups)
         return [
-            CurveTask(
-                CurveOutcome(
-                    name=name,
-                    surface=surface,
-                    medium=medium,
-                    normal_force=load,
-                    data_file=f"data/{name}.nc",
-                    run_names=tuple(came.outcome.name for came in members),
-                ),
-                tuple(came.outcome.data_file for came in members),
-                self._store.folder,
-                sha256_of([came.content for came in members]),
-            )
-            for name, ((surface, medium, load, _), members) in zip(
-                names, groups.items(), strict=True
-            )
+            self._task(name, key, members)
+            for name, (key, members) in zip(names, groups.items(), strict=True)
         ]
+
+    def _task(self, name: str, condition: Condition, members: Sequence[RunCame]) -> CurveTask:
+        used = [came for came in members if came.outcome.in_curves]
+        found: list[RunCame] = []
+        if any(came.outcome.quality_as_found for came in members):  # somebody decided
+            found = [came for came in members if came.outcome.in_curves_as_found]
+        surface, medium, load, _ = condition
+        outcome = CurveOutcome(
+            name=name,
+            surface=surface,
+            medium=medium,
+            normal_force=load,
+            data_file=f"data/{name}.nc",
+            run_names=tuple(came.outcome.name for came in used),
+        )
+        contents = [came.content for came in used]
+        if found:
+            contents += [("as found",), *(came.content for came in found)]
+        return CurveTask(
+            outcome,
+            tuple(came.outcome.data_file for came in used),
+            self._store.folder,
+            sha256_of(contents),
+            tuple(came.outcome.data_file for came in found),
+        )
 
     def known(self, task: CurveTask, place: int) -> CurveRecord | None:
         """Take over a curve whose runs are the same."""
@@ -148,15 +168,44 @@ def process_curve(task: CurveTask) -> CurveRecord:
         reason = explain(error)[0]
     shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
+    points = tuple(plain_value(curve_table(curve).to_dict("records")))
+    points_found: tuple[Row, ...] = ()
+    if (found := _as_found(task)) is not None:
+        points_found = tuple(plain_value(curve_table(found).to_dict("records")))
+        if points_found == points:  # e.g. a note
+            points_found = ()
+        else:
+            groups[AS_FOUND] = found
     write_data({None: curve} | groups, task.folder / task.curve.data_file)
     return CurveRecord(
         task.curve,
-        tuple(plain_value(curve_table(curve).to_dict("records"))),
+        points,
         tuple(levels),
         digest(curve),
         Origin(str(curve.attrs.get("source", "")), str(curve.attrs.get("source_sha256", ""))),
         reason,
+        points_found,
     )
+
+
+def _as_found(task: CurveTask) -> xr.Dataset | None:
+    """Return the curve as it would be without a person's decisions; None if nobody decided."""
+    from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.io.netcdf import read_groups
+
+    if not task.found_files:
+        return None
+    wanted = ("friction", FRICTION_AS_FOUND)
+    with NETCDF:
+        parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
+    return measured_stribeck_curve([part.get(wanted[1], part[wanted[0]]) for part in parts])
+
+
+def _condition(run: RunOutcome) -> Condition:
+    """Return what runs of one curve have in common; only what is stated to be the same."""
+    alone = "" if run.surface or run.medium else run.name
+    load = run.normal_force and float(f"{run.normal_force:.4g}")
+    return run.surface, run.medium, load, alone
 
 
 def _labels(curve: CurveOutcome) -> dict[str, Any]:

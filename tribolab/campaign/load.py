@@ -8,6 +8,7 @@ from tribolab.campaign import problems
 from tribolab.campaign.config import Campaign
 from tribolab.campaign.names import of_names
 from tribolab.campaign.plan import PlannedRun, plan
+from tribolab.campaign.toml_file import checked, text_of
 from tribolab.errors import ConfigError
 
 
@@ -48,30 +49,11 @@ def load_campaign(path: str | Path) -> Campaign:
 
 def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
-    import tomllib
-
-    from pydantic import ValidationError
-
     path = Path(path)
     path = (path / "campaign.toml" if path.is_dir() else path).absolute()
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        content = tomllib.loads(text)
-    except FileNotFoundError as error:
-        raise ConfigError(
-            f"{path}: there is no such file; 'tribolab demo' makes a campaign to start from"
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read ({error}); it wants to be UTF-8") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not a TOML file: {problems.toml_error(error, text)}") from error
-    except (RecursionError, ValueError) as error:
-        raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
-    try:
-        campaign = Campaign.model_validate(content, context={"in_file": True})
-    except ValidationError as error:
-        wrong = problems.from_pydantic(error, Campaign)
-    else:
+    text = text_of(path, "'tribolab demo' makes a campaign to start from")
+    campaign, wrong = checked(path, text, Campaign, "campaign")
+    if campaign is not None:
         campaign.lies_at(path)
         # names first: no file is looked at with an instrument that nobody knows
         wrong = of_names(campaign)

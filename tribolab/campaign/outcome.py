@@ -42,6 +42,8 @@ class Outcome:
         One record for each measured curve with a fluid, in the order of the curves.
     foreign
         Files in the results folder that are not ours; they were left there.
+    lost_decisions
+        Which decisions in the review file are on a run that there is not.
     """
 
     campaign: Campaign
@@ -53,6 +55,7 @@ class Outcome:
     surfaces: tuple[SurfaceOutcome, ...] = ()
     models: tuple[ModelOutcome, ...] = ()
     foreign: tuple[str, ...] = ()
+    lost_decisions: tuple[str, ...] = ()
 
     @property
     def kept(self) -> dict[str, str]:

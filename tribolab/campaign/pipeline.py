@@ -16,6 +16,7 @@ from tribolab.campaign.kept import keep_runs
 from tribolab.campaign.models import Models
 from tribolab.campaign.outcome import OpenOutcome
 from tribolab.campaign.plan import PlannedRun, planned_runs
+from tribolab.campaign.review import lost_decisions
 from tribolab.campaign.runs import RunCame, Runs
 from tribolab.campaign.store import Store
 from tribolab.campaign.surfaces import Surfaces
@@ -97,6 +98,7 @@ def process(
         sources=tuple({source[0]: source for source in sources}.values()),
         surfaces=tuple(surface.outcome for surface in surfaces),
         models=tuple(models),
+        lost_decisions=lost_decisions(campaign.file, [run.name for run in runs]),
     )
 
 

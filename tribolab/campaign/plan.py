@@ -7,12 +7,14 @@ import re
 import unicodedata
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribolab.campaign.problems import Problem, message
+from tribolab.campaign.review import REVIEW_FILE, review_beside
 from tribolab.errors import ConfigError, nearest, shown
+from tribolab.friction.decisions.decision import Decision
 from tribolab.provenance import as_text, sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ class PlannedRun:
         Arguments of `check_run`: limits, skip, contact_width.
     config_sha256
         Checksum of all of these, and of the dialect's content.
+    decisions
+        What a person decided on it.
     """
 
     name: str
@@ -62,6 +66,7 @@ class PlannedRun:
     friction: dict[str, Any] = field(default_factory=dict)
     quality: dict[str, Any] = field(default_factory=dict)
     config_sha256: str = ""
+    decisions: tuple[Decision, ...] = ()
 
 
 class Plan(NamedTuple):
@@ -97,16 +102,28 @@ def plan(campaign: Campaign) -> Plan:
         return Plan((), problems)
     names = unique_names([files for _, files in groups])
     settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
+    decisions = review_beside(campaign.file)
     runs = tuple(
-        PlannedRun(
-            name=name,
-            files=tuple(files),
-            labels=tuple(label_of(campaign, file) for file in files),
-            **settings[id(entry)],
+        _decided(
+            PlannedRun(
+                name=name,
+                files=tuple(files),
+                labels=tuple(label_of(campaign, file) for file in files),
+                **settings[id(entry)],
+            ),
+            decisions.get(name, ()),
         )
         for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
+
+
+def _decided(run: PlannedRun, decisions: tuple[Decision, ...]) -> PlannedRun:
+    """Return a run with what was decided on it; its checksum tells of these decisions alone."""
+    if not decisions:
+        return run
+    shaping = [run.config_sha256, *(decision.plain() for decision in decisions)]
+    return replace(run, decisions=decisions, config_sha256=sha256_of(shaping))
 
 
 def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
@@ -138,6 +155,7 @@ def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
 def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
     """Return every file that a campaign reads, and what it is in words."""
     inputs = [(campaign.file, "the campaign file")]
+    inputs.append((campaign.file.parent / REVIEW_FILE, "the review file"))
     for entry in campaign.run:
         inputs += [(f, "a raw file") for p in entry.files for f in _matching(campaign.raw, p)]
     inputs += [(file, "a scan") for file in scan_files(campaign)]

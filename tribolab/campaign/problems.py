@@ -67,7 +67,7 @@ def unreadable(error: Exception) -> str:
     return "a number in it has thousands of digits; write it shorter"
 
 
-def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
+def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
     """Return what the TOML parser says, with the line it means.
 
     The line is shown only of a text that is a TOML file to its first key or table: of another
@@ -75,7 +75,7 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str) -> str:
     """
     said = str(error)
     if not _FIRST_KEY.match(text):
-        return f"{said.split(' (at')[0]}; is it a campaign file?"
+        return f"{said.split(' (at')[0]}; is it a {kind} file?"
     if match := re.search(r"\(at line (\d+), column \d+\)", said):
         number = int(match[1])
         line = text.splitlines()[number - 1].strip() if number <= len(text.splitlines()) else ""
@@ -107,7 +107,8 @@ def _within(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
 def _words(item: Any, table: type[BaseModel] | None) -> str:
     kind, value = item["type"], item.get("input")
     if kind == "extra_forbidden" and table is not None:
-        return f"unknown key{nearest(str(item['loc'][-1]), table.model_fields)}"
+        known = [field.alias or name for name, field in table.model_fields.items()]
+        return f"unknown key{nearest(str(item['loc'][-1]), known)}"
     if kind == "missing":
         if item["loc"] == ("campaign",):
             return 'is missing; add [campaign] with name = "..." at the top'

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 from tribolab.campaign.data_files import write_data
 from tribolab.campaign.engine import Stage
 from tribolab.campaign.plan import PlannedRun
+from tribolab.campaign.run_analysis import QUALITY, analyse, labels_of
 from tribolab.campaign.store import Entry, Store
-from tribolab.campaign.zeros import attributes, zero_of
-from tribolab.errors import AnalysisError, ConfigError, OutputError, told
+from tribolab.campaign.zeros import zero_of
+from tribolab.errors import AnalysisError, OutputError, told
 from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
-from tribolab.records.run_record import RunRecord
+from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
 from tribolab.words import explain
 
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 KIND = "run"
-# Attributes of a data file's run: the gravest status of its checks, and what they said.
-QUALITY, FINDINGS = "quality", "findings"
 
 
 @dataclass(frozen=True)
@@ -185,26 +183,37 @@ def process_run(task: RunTask) -> RunAnswer:
     OutputError
         If the results cannot be written: that is no fault of the run.
     """
+    from tribolab.friction.decisions.rejected import rejected
+    from tribolab.records.decision_rows import not_applied
     from tribolab.records.frames import stick_slip_table
-    from tribolab.records.run_facts import facts_of, notices_of
+    from tribolab.records.notices import notices_of
+    from tribolab.records.run_facts import facts_of
     from tribolab.records.wording import plain_value
 
     began = time.monotonic()
     run = task.run
     try:
-        signals, segments, friction, slip, quality = _analyse(run)
-        groups = {"run": signals, "segments": segments, "friction": friction, "stick_slip": slip}
-        write_data({None: _root(run, signals.attrs)} | groups, task.folder / task.data_file)
-        notices = notices_of(run.name, signals, segments, friction)
+        found = analyse(run)
+        signals, segments, friction, slip = (
+            found.signals,
+            found.segments,
+            found.friction,
+            found.slip,
+        )
+        root: dict[str | None, xr.Dataset] = {None: _root(run, signals.attrs)}
+        write_data(root | found.groups, task.folder / task.data_file)
+        facts = facts_of(signals, segments, friction, slip, found.friction_as_found)
+        notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
-        facts = facts_of(signals, segments, friction, slip)
         rows = plain_value(stick_slip_table(slip).to_dict("records"))
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others
         reason, name = explain(error)
         outcome = failed_run(run, reason, name, time.monotonic() - began)
-        return RunAnswer(RunRecord(outcome, tuple(source_of(*pair) for pair in _files(run))))
+        sources = tuple(source_of(*pair) for pair in _files(run))
+        facts = RunFacts(decisions=not_applied(run.decisions))
+        return RunAnswer(RunRecord(outcome, sources, facts=facts))
     load = run.normal_force
     if load is None:
         load = signals.attrs.get("set_normal_force_N")
@@ -218,7 +227,9 @@ def process_run(task: RunTask) -> RunAnswer:
         data_file=task.data_file,
         seconds=time.monotonic() - began,
         segments=segments.sizes["segment"],
-        quality=quality,
+        quality=found.quality,
+        segments_rejected=int(rejected(segments).sum()),
+        quality_as_found=found.quality_as_found,
     )
     zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
     sources = sources_of(run, signals.attrs)
@@ -275,54 +286,6 @@ def _trace(
         return None, [Notice("error", task.run.name, "trace", text)]
 
 
-def _analyse(run: PlannedRun) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset, str]:
-    from tribolab.friction.coefficient.coefficient import friction_coefficient
-    from tribolab.friction.oscillation.stick_slip import stick_slip
-    from tribolab.friction.segments.find import find_segments
-    from tribolab.io.runs import read_run
-    from tribolab.qc.run_checks import check_run
-
-    files = list(run.files)
-    signals = read_run(
-        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
-    )
-    if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
-        missing = signals.attrs.get("companion_missing", "")
-        raise ConfigError(
-            f"{signals.attrs['source']}: there is no second log"
-            f"{missing and f' ({missing})'} whose clock could be shifted; "
-            "leave clock_shift out of its [[run]]"
-        )
-    if run.normal_force is not None:
-        signals.attrs["set_normal_force_N"] = run.normal_force
-    if run.sliding_speed is not None:
-        signals.attrs |= _stated_speed(signals, run.sliding_speed)
-    segments = find_segments(signals, **run.segments)
-    friction = friction_coefficient(signals, segments, **run.friction)
-    friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
-    slip = stick_slip(signals, segments)
-    said = check_run(signals, segments, friction, slip, **run.quality)
-    signals = said.marked
-    signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
-    for data in (signals, segments, friction, slip):
-        data.attrs.update(_labels(run), config_sha256=run.config_sha256)
-    return signals, segments, friction, slip, said.status
-
-
-def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
-    """Attributes of a run whose speed the campaign file says.
-
-    The segments take it where nothing was recorded; else the check of the speed compares with it.
-    """
-    own = signals.attrs.get("set_speed_m_s", speed)
-    if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
-        raise ConfigError(
-            f"{signals.attrs['source']}: the file says its set speed itself; "
-            "leave sliding_speed out of its [[run]]"
-        )
-    return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}
-
-
 def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
     """Attributes of the whole file, for those who open it without naming a group."""
     import xarray as xr
@@ -333,10 +296,4 @@ def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
         source_sha256=attrs["source_sha256"],
         config_sha256=run.config_sha256,
     )
-    return xr.Dataset(attrs=_labels(run) | origin | {QUALITY: attrs[QUALITY]})
-
-
-def _labels(run: PlannedRun) -> dict[str, str]:
-    return {"run_name": run.name} | {
-        key: value for key in ("surface", "medium") if (value := getattr(run, key))
-    }
+    return xr.Dataset(attrs=labels_of(run) | origin | {QUALITY: attrs[QUALITY]})

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 from tribolab.campaign.ledger import Ledger
 from tribolab.campaign.outcome import OpenOutcome, Outcome
 from tribolab.campaign.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.review import REVIEW_FILE, lost_decisions
 from tribolab.campaign.store import Catalogue, Identity
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
@@ -58,6 +59,7 @@ def fingerprint(
     """Return the checksum of all that results are made from, but of the raw files' content."""
     from tribolab.version import __version__
 
+    review = campaign.file.parent / REVIEW_FILE
     surfaces = [
         [label_of(campaign, path) for path in scans_of(campaign, s)] for s in campaign.surface
     ]
@@ -66,6 +68,7 @@ def fingerprint(
         {
             "tribolab_version": __version__,
             "campaign": sha256_of_file(campaign.file),
+            "review": sha256_of_file(review) if review.is_file() else "",
             "runs": [[run.name, run.config_sha256, *run.labels] for run in runs],
             "surfaces": surfaces,
             "dialects": dialects,
@@ -116,6 +119,7 @@ def unchanged(
         surfaces=_as_before(catalogue.outcomes("surface", SurfaceOutcome)),
         models=_as_before(catalogue.outcomes("model", ModelOutcome)),
         foreign=tuple(ledger.foreign()),
+        lost_decisions=lost_decisions(campaign.file, [run.name for run in runs]),
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.friction.decisions.rejected import kept
 from tribolab.records.parts import RunZero
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, Any]:
     """Attributes of a friction result that later say what `zero_of` returns."""
     method = str(friction.attrs.get("offset", ""))
     sure = all(d["status"] == "pass" for d in friction.attrs.get("zero_doubts", []))
+    friction = kept(friction)
     if method in ("half loop", "zero load") and sure and "friction_force_offset" in friction:
         zeros = friction["friction_force_offset"].values
         if np.isfinite(zeros).any():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, NotRequired, TypedDict
 
 import numpy as np
 
@@ -20,7 +20,10 @@ FAIL_ON = ("suspect", "fail", "never")
 
 
 class FindingRow(TypedDict):
-    """One result as a row; `value` is None where there is no number, limits are in SI."""
+    """One result as a row; `value` is None where there is no number, limits are in SI.
+
+    `decision` is there where a person settled an objection.
+    """
 
     name: str
     check: str
@@ -35,6 +38,7 @@ class FindingRow(TypedDict):
     limits: dict[str, float]
     question: str
     cure: str
+    decision: NotRequired[str]
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,12 +55,15 @@ class Findings:
         The data with their quality flags, where the checks set any.
     limits
         The limits that held, SI, by check and name.
+    verdict
+        "accepted" or "rejected" where a person decided on the run; else empty.
     """
 
     name: str
     results: tuple[tuple[Check, Result], ...]
     flagged: xr.Dataset | None = field(default=None, repr=False)
     limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
+    verdict: str = ""
 
     @property
     def marked(self) -> xr.Dataset:
@@ -92,6 +99,9 @@ class Findings:
             }
             for check, result in self.results
         ]
+        for row, (_, result) in zip(rows, self.results, strict=True):
+            if result.decision:
+                row["decision"] = result.decision
         return sorted(rows, key=lambda row: -STATUSES.index(row["status"]))
 
     @property
@@ -104,8 +114,14 @@ class Findings:
 
     @property
     def status(self) -> str:
-        """The gravest status; "pass" if at least one check passed and none objected."""
-        statuses = {result.status for _, result in self.results}
+        """The gravest status; "pass" if at least one check passed and none objected.
+
+        Where a person decided on the run it is "accepted" or "rejected"; objections that a person
+        settled do not count.
+        """
+        if self.verdict:
+            return self.verdict
+        statuses = {result.status for _, result in self.results if not result.settled}
         for status in reversed(STATUSES):
             if status in statuses and status != "skipped":
                 return status
@@ -189,8 +205,10 @@ def told_of(
         note = passed and row["noted"]
         if everything or (note and notes) or not passed:
             variable = f"{row['variable']}: " if row["variable"] else ""
-            status = "note" if note else row["status"]
-            lines.append((status, row["check"], f"{variable}{row['message']}", row["cure"]))
+            decision = f"{row['decision']}: " if row.get("decision") else ""
+            status = "note" if note or decision else row["status"]
+            message = f"{decision}{variable}{row['message']}"
+            lines.append((status, row["check"], message, "" if decision else row["cure"]))
     return lines
 
 

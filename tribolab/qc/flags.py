@@ -6,10 +6,12 @@ check that objected). The convention is stated here and nowhere else:
 ===== ============== =====================================================
 value meaning        when
 ===== ============== =====================================================
-1     good           at least one check looked at the sample, none objected
+1     good           at least one check looked at the sample, none objected; or
+                     a person accepted it in spite (`tribolab.qc.manual`)
 2     not_evaluated  no check looked at it; never to be read as good
 3     suspect        a check objected; a person should look
-4     fail           a check objected; not to be used as it is
+4     fail           a check objected, or a person rejected it; not to be
+                     used as it is
 9     missing        there is no value
 ===== ============== =====================================================
 """

@@ -15,6 +15,7 @@ from tribolab.words import Count
 
 # From harmless to grave; the order decides what a summary shows.
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
+OBJECTIONS = ("suspect", "fail", "error")
 
 
 class Skip(Exception):  # noqa: N818 - not an error: the check has nothing to look at
@@ -36,7 +37,8 @@ class Result:
 
     `noted` says that a status "pass" or "skipped" is worth a reader's while: something is there,
     too little to object to or to decide by. `cure` stands instead of the check's, where that
-    would lead astray.
+    would lead astray. `settled` says that a person "accepted" or "rejected" what is objected to,
+    and `settled_by` who: then it no longer counts.
     """
 
     status: str
@@ -49,6 +51,14 @@ class Result:
     flags: np.ndarray | None = field(default=None, repr=False, compare=False)
     noted: bool = False
     cure: str = ""
+    settled: str = ""
+    settled_by: str = ""
+
+    @property
+    def decision(self) -> str:
+        """What a person decided on the objection, in words; empty where nobody did."""
+        words = {"accepted": "accepted by {} in spite of", "rejected": "lies in what {} rejected"}
+        return words[self.settled].format(self.settled_by) if self.settled else ""
 
 
 @dataclass(frozen=True)

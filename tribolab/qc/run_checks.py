@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError, nearest, shown
+from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine, uniform
+from tribolab.qc.manual import BIT, MANUAL, reviewed
 from tribolab.qc.reading_checks import READING_CHECKS
 from tribolab.qc.record_checks import RECORD_CHECKS
 from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
@@ -50,7 +52,7 @@ def check_run(
         The run dataset (dim ``time``).
     segments, friction, slip
         What `find_segments`, `friction_coefficient` and `stick_slip` gave for it; computed if not
-        given.
+        given. Segments that a person rejected (`decide`) are not looked at.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
@@ -93,9 +95,7 @@ def check_run(
     unknown = float("nan")
     subject = RunSubject(
         run,
-        segments,
-        friction,
-        slip,
+        *_looked_at(segments, friction, slip),
         set_normal_force=unknown
         if normal_force is None
         else to_si(normal_force, "N", name="normal_force"),
@@ -105,7 +105,7 @@ def check_run(
     )
     answers = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
-    bits = {check.name: check.bit for check in checks.values()}
+    bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
     flagged = run
     # what is wrong with the time is wrong with every signal; that the time is right says nothing
     # of a signal's value
@@ -116,7 +116,18 @@ def check_run(
             by_check.setdefault(check.name, []).append(values)
         combined = {name: combine(found) for name, found in by_check.items()}
         flagged = attach(flagged, variable, combined, bits)
-    return Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
+    findings = Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
+    return findings if segments is None else reviewed(findings, segments)
+
+
+def _looked_at(
+    segments: xr.Dataset | None, friction: xr.Dataset | None, slip: xr.Dataset | None
+) -> list[xr.Dataset | None]:
+    """Return results without what a person rejected; all of a run that is rejected as a whole."""
+    parts = [segments, friction, slip]
+    if segments is None or rejected(segments).all():
+        return parts
+    return [part if part is None else kept(part) for part in parts]
 
 
 def _flags_on(

@@ -210,9 +210,10 @@ class RunSubject:
     def segment_label(self, number: int) -> str:
         """Return what a person calls a segment: its number as in tables, speed, direction, time."""
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
+        own = int(self.segments["segment"].values[number])  # of all, rejected ones among them
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
         how = f"{speed:.3g} m/s {arrow}".strip() if np.isfinite(speed) else "speed unknown"
-        return f"segment {number + 1} ({how}, from t = {start:.6g} s)"
+        return f"segment {own + 1} ({how}, from t = {start:.6g} s)"
 
     @cached_property
     def _found_slip(self) -> xr.Dataset | Skip:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.friction.coefficient.steadiness import undecided
 from tribolab.qc.run_checks import RUN_CHECKS
+from tribolab.records.parts import BAD
 from tribolab.words import percent
 
 _STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}
@@ -21,6 +22,7 @@ THRESHOLDS: dict[str, dict[str, float]] = {
 # Chance below which a trend counts as one, again as that check has it.
 SURE = _STEADINESS["chance"]
 _GRAVE = ("error", "fail", "suspect")
+_BY_HAND = {"rejected": "reject", "accepted": "accept"}  # a person's verdict, and the action
 
 
 def judge(kind: str, value: float | None) -> str:
@@ -87,12 +89,12 @@ def _trend_text(change: float, chance: float, is_open: bool) -> tuple[float, str
 
 
 def is_bad(run: Mapping[str, Any]) -> bool:
-    """Return whether nothing of a run went into the curves: it failed, or its checks did."""
-    return run["status"] != "done" or run["quality"] in ("fail", "error")
+    """Return whether nothing of a run went into the curves: failed, or rejected by whomever."""
+    return run["status"] != "done" or run["quality"] in BAD
 
 
 def status_word(run: Mapping[str, Any]) -> str:
-    """Return one word: failed, error, fail, kept (from before), suspect or done.
+    """Return one word: failed, error, fail, rejected, kept, accepted, suspect or done.
 
     Examples
     --------
@@ -103,11 +105,11 @@ def status_word(run: Mapping[str, Any]) -> str:
         return "failed"
     if run.get("kept") and not is_bad(run):
         return "kept"
-    return run["quality"] if run["quality"] in _GRAVE else "done"
+    return run["quality"] if run["quality"] in (*_GRAVE, *_BY_HAND) else "done"
 
 
 def why(run: Mapping[str, Any]) -> str:
-    """Return why a run stands as it does: the error, or the gravest objection of its checks.
+    """Return why a run stands as it does: error, decision, or gravest objection of its checks.
 
     Examples
     --------
@@ -119,9 +121,23 @@ def why(run: Mapping[str, Any]) -> str:
         return str(run["reason"] or run["error"])
     if run.get("kept"):
         return str(run["kept"])
-    grave = [row for row in run["checks"] if row["status"] in _GRAVE]
+    if run["quality"] in _BY_HAND:
+        return _decided(run, _BY_HAND[run["quality"]])
+    grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
     first = min(grave, key=lambda row: _GRAVE.index(row["status"]))
     more = f" (and {len(grave) - 1} more)" if len(grave) > 1 else ""
     return f"{first['check']}: {first['message']}{more}"
+
+
+def _decided(run: Mapping[str, Any], action: str) -> str:
+    """Say who rejected or accepted a run, in spite of what, and why."""
+    said = [
+        f"{run['quality']} by {row['author']}: {row['reason']}"
+        for row in run["decisions"]
+        if row["action"] == action
+    ]
+    spite = [row["check"] for row in run["checks"] if row["decision"].startswith("accepted")]
+    end = f" (in spite of {', '.join(dict.fromkeys(spite))})" if spite else ""
+    return "; ".join(dict.fromkeys(said)) + end

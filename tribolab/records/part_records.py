@@ -34,6 +34,8 @@ class CurveRecord:
         What it was made from.
     no_slip
         Why there is no stick-slip over speed; "" if there is.
+    points_as_found
+        What `points` would be without a person's decisions; none where that is the same.
     """
 
     outcome: CurveOutcome
@@ -42,6 +44,7 @@ class CurveRecord:
     digest: str = ""
     origin: Origin = Origin()
     no_slip: str = ""
+    points_as_found: tuple[Row, ...] = ()
 
 
 @dataclass(frozen=True)

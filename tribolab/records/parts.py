@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+BAD = ("fail", "error", "rejected")  # qualities of a run of which nothing goes into the curves
+
+
 @dataclass(frozen=True)
 class RunOutcome:
     """One run: done or failed, and where its data are.
@@ -42,10 +45,14 @@ class RunOutcome:
         Number of segments found.
     quality
         Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
-        a run that could not be checked.
+        a run that could not be checked; "accepted" or "rejected" where a person decided.
     kept
         Since when and why these are earlier results, because the raw file cannot be read now; ""
         for everything else.
+    segments_rejected
+        Number of segments, among those found, that a person rejected.
+    quality_as_found
+        What `quality` would be without decisions; "" where nobody decided.
     """
 
     name: str
@@ -62,11 +69,25 @@ class RunOutcome:
     segments: int = 0
     quality: str = ""
     kept: str = ""
+    segments_rejected: int = 0
+    quality_as_found: str = ""
 
     @property
     def done(self) -> bool:
         """Whether there are results of this run."""
         return self.status == "done"
+
+    @property
+    def in_curves(self) -> bool:
+        """Whether it goes into the measured curves."""
+        left = self.segments - self.segments_rejected
+        return self.done and left > 0 and self.quality not in BAD
+
+    @property
+    def in_curves_as_found(self) -> bool:
+        """Whether it would without a person's decisions."""
+        quality = self.quality_as_found or self.quality
+        return self.done and self.segments > 0 and quality not in BAD
 
 
 @dataclass(frozen=True)

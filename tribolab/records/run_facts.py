@@ -1,4 +1,4 @@
-"""What is said of one run: its numbers, and what a reader should know of it."""
+"""What is said of one run in numbers."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribolab.friction.segments.find import why_no_segment
+from tribolab.friction.decisions.rejected import kept
+from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_table
 from tribolab.records.judgement import SURE, not_decided
-from tribolab.records.parts import Notice
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.traces import flagged_spans
 from tribolab.records.wording import SPREAD_OF, plain_value
-from tribolab.words import duration, many, percent
+from tribolab.words import many
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +23,11 @@ _SPEED_TOLERANCE = 0.1
 
 
 def facts_of(
-    run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, slip: xr.Dataset
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    slip: xr.Dataset,
+    as_found: xr.Dataset | None = None,
 ) -> RunFacts:
     """Return the numbers of a run.
 
@@ -31,13 +35,17 @@ def facts_of(
     ----------
     run, segments, friction, slip
         The run with the flags and the findings of its checks (time), and its results (segment).
+    as_found
+        Its friction without a person's decisions, where there are any.
     """
+    decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
     return RunFacts(
         **_of_record(run),
         **friction_facts(friction),
+        decisions=decided,
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
-        omitted=tuple(_omitted(segments)),
+        omitted=tuple(left_out(segments)),
         segments=tuple(plain_value(friction_table(friction).to_dict("records"))),
         flagged=tuple(flagged_spans(run)),
     )
@@ -65,8 +73,8 @@ def _of_record(run: xr.Dataset) -> dict[str, Any]:
         "instrument": str(attrs.get("instrument", "")),
         "quality": str(attrs.get("quality", "")),
         "checks": tuple(
-            CheckRow(**{key: plain_value(row[key]) for key in _CHECK})
-            for row in attrs.get("findings", [])
+            CheckRow(**{k: plain_value(row[k]) for k in _CHECK}, decision=row.get("decision", ""))
+            for row in findings_of(run)
         ),
         "recorded_at": str(attrs.get("recorded_at", "")),
         "duration_s": float(time[-1] - time[0]) if time.size else 0.0,
@@ -80,17 +88,27 @@ def _of_record(run: xr.Dataset) -> dict[str, Any]:
     }
 
 
+def findings_of(run: xr.Dataset) -> list[dict[str, Any]]:
+    """Return what the checks said of a run, in plain rows."""
+    found: list[dict[str, Any]] = run.attrs.get("findings", [])
+    return found
+
+
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
 _CHECK = ("check", "status", "variable", "message", "value", "unit")
 
 
 def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
-    """Return what `RunFacts` says of a run's friction, by its fields."""
+    """Return what `RunFacts` says of a run's friction, by its fields.
+
+    Of segments that a person rejected it says nothing, unless all of them are.
+    """
+    friction = counting(friction)
     name = main_quantity(friction)
     value = np.asarray(friction[name], float) if name in friction else np.array([])
     of = SPREAD_OF.get(name, name)
-    std = _values(friction, f"{of}_std", value.size)
-    speed = _values(friction, "sliding_speed", value.size)
+    std = values_of(friction, f"{of}_std", value.size)
+    speed = values_of(friction, "sliding_speed", value.size)
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
     scatter = scatter[np.isfinite(scatter)]
@@ -104,10 +122,10 @@ def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
         "value_min": value[finite].min() if finite.any() else None,
         "value_max": value[finite].max() if finite.any() else None,
         "relative_scatter": float(np.median(scatter)) if scatter.size else None,
-        "relative_drift": _drift(friction, value),
-        "unsteady_segments": int((_values(friction, "steady", value.size) == 0).sum()),
+        "relative_drift": drift_of(friction, value),
+        "unsteady_segments": int((values_of(friction, "steady", value.size) == 0).sum()),
     }
-    sem = _values(friction, f"{of}_sem", value.size)
+    sem = values_of(friction, f"{of}_sem", value.size)
     return plain_value(facts) | {"highlights": tuple(_highlights(speed, value, std, sem))}
 
 
@@ -145,29 +163,38 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
     return Waveform(ordered[0], detail)
 
 
-def _drift(friction: xr.Dataset, value: np.ndarray) -> float | None:
+def counting(friction: xr.Dataset) -> xr.Dataset:
+    """Return the segments of which the numbers of a run are made."""
+    left = kept(friction)
+    return left if left.sizes["segment"] else friction
+
+
+def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
     """Return the largest significant change along a segment, of the run's typical friction.
 
     Measured as the check on steadiness does: at high speed in a liquid hardly any friction is
     left to divide by. None where there may be one that could not be told from chance.
     """
     size = friction.sizes["segment"]
-    change = _values(friction, "trend_change", size)
+    change = values_of(friction, "trend_change", size)
     if "force_trend" in friction and "trend_change" not in friction:
-        lasted = _values(friction, "trimmed_stop", size) - _values(friction, "trimmed_start", size)
-        change = _values(friction, "force_trend", size) * lasted
+        lasted = values_of(friction, "trimmed_stop", size) - values_of(
+            friction, "trimmed_start", size
+        )
+        change = values_of(friction, "force_trend", size) * lasted
     typical = np.abs(value[np.isfinite(value)])
     if not np.isfinite(change).any() or not (typical > 0).any():
         return None
     change = change / typical.mean()
-    chance, samples = (_values(friction, n, size) for n in ("trend_p_value", "effective_samples"))
+    chance, samples = (values_of(friction, n, size) for n in ("trend_p_value", "effective_samples"))
     sure = chance < SURE
     if not sure.any() and not_decided(change, chance, samples).any():
         return None
     return float(np.nanmax(np.abs(change[sure]), initial=0.0))
 
 
-def _values(data: xr.Dataset, name: str, size: int) -> np.ndarray:
+def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
+    """Return a variable as floats; NaN where there is none."""
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
@@ -201,7 +228,8 @@ def _highlights(
     ]
 
 
-def _omitted(segments: xr.Dataset) -> list[LeftOut]:
+def left_out(segments: xr.Dataset) -> list[LeftOut]:
+    """Return what was left out of a run, a row for each reason."""
     if "omitted_reason" not in segments:
         return []
     reasons = np.asarray(segments["omitted_reason"]).astype(str)
@@ -214,54 +242,3 @@ def _omitted(segments: xr.Dataset) -> list[LeftOut]:
         )
         for reason in dict.fromkeys(reasons.tolist())
     ]
-
-
-def notices_of(
-    name: str, run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset
-) -> list[Notice]:
-    """Return what a reader should know of a run, from its checks and its results."""
-    notices = [
-        Notice(
-            "note" if row["status"] in ("pass", "skipped") else row["status"],
-            name,
-            f"{row['check']} {row['variable']}".strip(),
-            f"{row['message']}. {row['cure']}".strip(". ") + ".",
-        )
-        for row in run.attrs.get("findings", [])
-        if row["status"] not in ("pass", "skipped") or row.get("noted")
-    ]
-
-    def say(severity: str, where: str, message: str) -> None:
-        notices.append(Notice(severity, name, where, message))
-
-    count = segments.sizes["segment"]
-    told = any(row["check"] == "segments" for row in run.attrs.get("findings", []))
-    if not told and (why := why_no_segment(segments)):
-        say("suspect", "segments", f"{why}.")
-    quantity = main_quantity(friction)
-    values = _values(friction, quantity, count)
-    if quantity in friction and count:
-        if missing := int(np.isnan(values).sum()):
-            say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
-        if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
-            text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
-            say("suspect", "friction", text + "; is the sign of the force or the offset right?")
-    # as the check on steadiness and the page's table count them
-    drift = int((_values(friction, "trend_p_value", count) < SURE).sum())
-    if drift:
-        text = f"{many(drift, 'segment')} of {count} with a significant trend"
-        largest = _drift(friction, values) if quantity in friction else None
-        if largest:
-            text += f", at most {percent(largest)} of the typical friction"
-        say("note", "friction", text)
-    if str(friction.attrs.get("offset", "")).startswith("none"):
-        say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
-    if (track := position_range(segments)) is not None:
-        low, high = (f"{1e3 * end:.4g}" for end in track)
-        say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
-    for entry in _omitted(segments):
-        text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
-        say("note", "left out", f"{entry.reason}: {text}")
-    if unused := str(run.attrs.get("columns_not_used", "")):
-        say("note", "columns", f"not used: {unused}")
-    return notices

@@ -30,7 +30,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """What one check said of a run."""
+    """What one check said of a run, and how a person settled it, if one did."""
 
     check: str
     status: str
@@ -38,6 +38,43 @@ class CheckRow:
     message: str
     value: float | None
     unit: str
+    decision: str = ""
+
+
+@dataclass(frozen=True)
+class DecisionRow:
+    """One decision on a run: what, when in the run [s], why, by whom, and what came of it.
+
+    `segments` has the numbers of those that it touches, from 1; the friction coefficients are means
+    over these, with all decisions on the run (without the rejected ones) and as they were found.
+    """
+
+    action: str
+    start_s: float | None
+    stop_s: float | None
+    new_start_s: float | None
+    new_stop_s: float | None
+    reason: str
+    author: str
+    date: str
+    segments: tuple[int, ...] = ()
+    effect: str = ""
+    friction_coefficient: float | None = None
+    friction_coefficient_as_found: float | None = None
+
+    @property
+    def where(self) -> str:
+        """What of the run it is about."""
+        if self.start_s is None:
+            return "the run"
+        return f"segment {self.segments[0]}" if self.segments else "a segment"
+
+    def row(self) -> Row:
+        """Return it as a row of a table."""
+        facts: Row = {
+            name: getattr(self, name) for name in self.__dataclass_fields__ if name != "segments"
+        }
+        return facts | {"segments": "; ".join(map(str, self.segments))}
 
 
 @dataclass(frozen=True)
@@ -71,6 +108,7 @@ class RunFacts:
     instrument: str = ""
     quality: str = ""
     checks: tuple[CheckRow, ...] = ()
+    decisions: tuple[DecisionRow, ...] = ()
     recorded_at: str = ""
     duration_s: float | None = None
     samples: int = 0

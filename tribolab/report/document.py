@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tribolab.records.run_record import RunRecord
 
 SCHEMA_VERSION = "2.0"
+BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
 _FACTS = TypeAdapter(RunFacts)
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
@@ -55,11 +56,12 @@ def report_document(
         All findings, gravest first.
     """
     rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
+    lost = len(outcome.lost_decisions)
     document = {
         "schema_version": SCHEMA_VERSION,
         "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "campaign": _campaign(outcome.campaign),
-        "verdict": verdict(runs, rejected),
+        "verdict": verdict(runs, rejected, lost),
         "thresholds": THRESHOLDS,
         "findings": [finding._asdict() for finding in findings],
         "sources": [
@@ -72,7 +74,9 @@ def report_document(
 
 
 def verdict(
-    runs: Sequence[Mapping[str, Any]], rejected_scans: Sequence[str] = ()
+    runs: Sequence[Mapping[str, Any]],
+    rejected_scans: Sequence[str] = (),
+    lost_decisions: int = 0,
 ) -> dict[str, Any]:
     """Return what came of the campaign in one sentence and its numbers.
 
@@ -82,16 +86,20 @@ def verdict(
         As in report.json.
     rejected_scans
         Surfaces whose scans failed their checks.
+    lost_decisions
+        How many decisions are on runs that there are not.
     """
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
     sound = [run for run in done if not is_bad(run)]
-    rejected = len(done) - len(sound)
+    by_hand = {word: sum(run["quality"] == word for run in done) for word in BY_HAND}
+    rejected = len(done) - len(sound) - by_hand["rejected"]
     segments = sum(run["segments_found"] for run in done)
+    segments_rejected = sum(run["segments_rejected"] for run in done)
     quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
     kept = sum(bool(run.get("kept")) for run in done)
     status = "incomplete" if done else "nothing"
-    if done and not (failed or rejected or rejected_scans or kept):
+    if done and not (failed or rejected or rejected_scans or kept or lost_decisions):
         status = "complete"
     parts = [f"{len(done)} of {many(len(runs), 'run')} done"]
     if failed:
@@ -102,7 +110,11 @@ def verdict(
         parts.append(f"{rejected} rejected by {'its' if rejected == 1 else 'their'} checks")
     if rejected_scans:
         parts.append(f"scans of {', '.join(rejected_scans)} rejected")
-    parts.append(many(segments, "segment"))
+    parts += [f"{count} {word} by hand" for word, count in by_hand.items() if count]
+    if lost_decisions:
+        parts.append(f"{many(lost_decisions, 'decision')} on no run")
+    out = f" ({segments_rejected} rejected by hand)" if segments_rejected else ""
+    parts.append(f"{many(segments, 'segment')}{out}")
     ranges = {}
     for name in ("friction_coefficient", "half_loop", "friction_force"):
         if name in quantities:
@@ -118,9 +130,11 @@ def verdict(
         "done": len(done),
         "failed": failed,
         "rejected": rejected,
+        **{f"{word}_by_hand": count for word, count in by_hand.items()},
         "kept": kept,
         "reused": sum(run["reused"] for run in runs),
         "segments": segments,
+        "segments_rejected": segments_rejected,
         "ranges": ranges,
     }
 
@@ -143,6 +157,8 @@ def run_document(record: RunRecord) -> dict[str, Any]:
         "kept": run.kept,
         "seconds": run.seconds,
         "segments_found": len(facts["segments"]),
+        "segments_rejected": run.segments_rejected,
+        "quality_as_found": run.quality_as_found,
         **facts,
     }
 

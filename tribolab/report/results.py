@@ -17,7 +17,7 @@ from tribolab.records.parts import Notice, Row
 from tribolab.records.run_record import RunRecord
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.records.wording import plain_value
-from tribolab.report import model_records, tables
+from tribolab.report import decisions, model_records, tables
 from tribolab.report.curve_figures import draw_curves, plan_figures
 from tribolab.report.document import brief_run, labels, report_document, run_document, write_json
 from tribolab.report.figure_choice import Wanted
@@ -78,6 +78,7 @@ def write_report(
     findings = _of_parts(outcome, surfaces, models) + said
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
+    findings += [note for curve in shown for note in decisions.curve_notices(curve)]
     modes, unjudged = _modes(outcome, curves, surfaces, models, executor)
     findings += unjudged
 
@@ -153,6 +154,7 @@ def _of_parts(
     findings = [Notice("note", "", "campaign", note)] if note else []
     findings += [_failure(run) for run in outcome.runs if not run.done]
     findings += [Notice("fail", run.name, "run", run.kept) for run in outcome.runs if run.kept]
+    findings += [Notice("fail", "", "decision", lost) for lost in outcome.lost_decisions]
     text = "left out of the measured curves, because its checks failed; its own numbers are shown"
     findings += [
         Notice("note", run.name, "curves", text)
@@ -222,7 +224,11 @@ def _figure(record: FigureRecord) -> dict[str, str]:
 def _curve(curve: CurveRecord) -> dict[str, Any]:
     """Return a curve for report.json."""
     outcome = curve.outcome
-    facts = {"runs": list(outcome.run_names), "points": list(curve.points)}
+    facts = {
+        "runs": list(outcome.run_names),
+        "points": list(curve.points),
+        "points_as_found": list(curve.points_as_found),
+    }
     return {"name": outcome.name, **labels(outcome), **facts}
 
 
@@ -298,6 +304,7 @@ def _write_tables(
     tables.write_rows(stribeck, folder / "stribeck.csv", first)
     first = ["run", "check", "variable", "status", "value", "unit", "message"]
     tables.write_rows(checks, folder / "checks.csv", first)
+    decisions.write_tables(outcome, curves, folder)
     columns = ["file", "sha256", "bytes"]
     tables.write(pd.DataFrame(list(outcome.sources), columns=columns), folder / "sources.csv")
     tables.write(tables.findings_table(findings), folder / "findings.csv")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab.campaign.curves import SLIP
+from tribolab.friction.decisions.rejected import kept
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.records.parts import number_of
 from tribolab.records.run_record import RunRecord
@@ -172,7 +173,8 @@ def _slow_segments(curve: CurveOutcome, outcome: Outcome) -> list[tuple[str, int
         moving = [
             (speed, k)
             for k, row in enumerate(rows)
-            if (speed := float(number_of(row, "sliding_speed_m_s") or 0.0)) > 0
+            if not row.get("rejected")
+            and (speed := float(number_of(row, "sliding_speed_m_s") or 0.0)) > 0
             and (number_of(row, "direction") or 0) >= 0
         ]
         apart: list[tuple[str, int, float]] = []
@@ -241,7 +243,7 @@ def _spectra(what: SlipFigure, folder: Path) -> Made:
 def _with(what: SlipFigure, slips: Sequence[xr.Dataset], dim: str) -> dict[str, xr.Dataset]:
     """Return what has something along a dimension, by its label."""
     pairs = zip(what.shown, slips, strict=True)
-    return {trace.label: slip for trace, slip in pairs if slip.sizes.get(dim, 0)}
+    return {trace.label: kept(slip) for trace, slip in pairs if kept(slip).sizes.get(dim, 0)}
 
 
 def _spectrogram(what: SlipFigure, folder: Path) -> Made | None:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.decisions.bounds import with_bounds
-from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, REJECT, Decision
+from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, NOTE, REJECT, Decision
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.stamping import stamp
@@ -18,7 +18,7 @@ from tribolab.stamping import stamp
 DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
 _MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means
 _SHOWN = 3  # segments that are named where none was found
-_WORDS = {REJECT: "rejected", ACCEPT: "accepted", BOUNDS: "new bounds", "note": "note"}
+WORDS = {REJECT: "rejected", ACCEPT: "accepted", BOUNDS: "bounded anew", NOTE: "noted"}
 
 
 def decide(
@@ -38,10 +38,11 @@ def decide(
     Returns
     -------
     xarray.Dataset
-        The same, with ``rejected`` (1 or 0) and ``decision`` (text) on dim ``segment``, and the
-        attribute ``decisions``: a list with all of each decision and the numbers of the
-        ``segments`` that it touches, from 1. What a segment with new bounds no longer holds is
-        ``omitted``. Without decisions the segments come back as they are.
+        The same, with ``rejected`` (1 or 0) and ``decision`` (text: what was decided on it, and why
+        it is rejected) on dim ``segment``, and the attribute ``decisions``: a list with all of each
+        decision and the numbers of the ``segments`` that it touches, from 1. What a segment with
+        new bounds no longer holds is ``omitted``. Without decisions the segments come back as they
+        are.
 
     Raises
     ------
@@ -89,8 +90,10 @@ def decide(
     rows: list[dict[str, Any]] = list(segments.attrs.get(DECISIONS, []))
     for decision, places in zip(made, touched, strict=True):
         out[places] |= decision.action == REJECT
-        for place in places:
-            told[place].append(f"{_WORDS[decision.action]} by {decision.author}: {decision.reason}")
+        # what is said of the whole run is not repeated of every segment, but why it is rejected
+        spoken = decision.interval is not None or decision.action == REJECT
+        for place in places if spoken else ():
+            told[place].append(f"{WORDS[decision.action]} by {decision.author}: {decision.reason}")
         rows.append(decision.plain() | {"segments": [place + 1 for place in places]})
     result[REJECTED] = "segment", out.astype(np.int8)
     result["decision"] = "segment", np.array(["; ".join(texts) for texts in told], dtype=object)

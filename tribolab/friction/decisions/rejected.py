@@ -7,9 +7,12 @@ combines segments leaves it out by `kept`.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 REJECTED = "rejected"
 
@@ -19,6 +22,7 @@ def rejected(data: xr.Dataset) -> np.ndarray:
 
     Examples
     --------
+    >>> import xarray as xr
     >>> rejected(xr.Dataset({"rejected": ("segment", [0, 1])})).tolist()
     [False, True]
     """
@@ -28,9 +32,15 @@ def rejected(data: xr.Dataset) -> np.ndarray:
 
 
 def kept(data: xr.Dataset) -> xr.Dataset:
-    """Return the data without the segments that a person rejected."""
+    """Return the data without the segments that a person rejected, and without their events."""
     out = rejected(data)
-    return data.isel(segment=np.flatnonzero(~out)) if out.any() else data
+    if not out.any():
+        return data
+    left = data.isel(segment=np.flatnonzero(~out))
+    if "event_segment" not in left:
+        return left
+    own = np.isin(left["event_segment"].values, left["segment"].values)
+    return left.isel(event=np.flatnonzero(own))
 
 
 def beside_rejected(

@@ -1,0 +1,300 @@
+"""A review file does in a campaign what `tl.decide` does in a notebook, and all of it is told."""
+
+import json
+import os
+import time
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+from campaigns import RUNS, copied, simulated
+from typer.testing import CliRunner
+
+import tribolab
+from tribolab.app.run import run_campaign
+from tribolab.campaign.load import load_campaign
+from tribolab.campaign.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
+from tribolab.cli import app
+from tribolab.errors import ConfigError
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.decisions.decide import decide
+from tribolab.friction.decisions.decision import Decision
+from tribolab.friction.segments.find import find_segments
+from tribolab.friction.stribeck import measured_stribeck_curve
+from tribolab.io.runs import read_run
+from tribolab.io.schema_folder import schema_folder
+from tribolab.qc.flags import FAIL, GOOD
+from tribolab.qc.manual import BIT
+from tribolab.qc.run_checks import check_run
+from tribolab.report.read_results import read_results
+
+SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
+FROZEN, SLIPPED, LATE, SOUND = RUNS  # what happened to the runs; the checks fail the first
+SLIP = 2  # place of the stroke that slipped off
+GLYCEROL, DRY = "curve_Sb-R_glycerol_31N", "curve_Sb-R_dry_31N"
+
+ENTRY = """[[decision]]
+run = "{run}"
+action = "{action}"
+{times}reason = "{reason}"
+author = "A. Person"
+date = 2026-11-20
+
+"""
+
+
+def entry(run, action, reason="seen by eye", **times):
+    """A decision as it stands in a review file; times in s, `start` and `stop` are from and to."""
+    names = {"start": "from", "stop": "to", "new_start": "new_from", "new_stop": "new_to"}
+    lines = "".join(f'{names[name]} = "{value:.4f} s"\n' for name, value in times.items())
+    return ENTRY.format(run=run, action=action, reason=reason, times=lines)
+
+
+def inside(rows, place):
+    """The middle of a segment, as an interval."""
+    start, stop = (float(rows[f"{end}_s"].iloc[place]) for end in ("start", "stop"))
+    return {"start": start + 0.3 * (stop - start), "stop": stop - 0.3 * (stop - start)}
+
+
+def rows_of(results, run):
+    table = read_results(results)["friction"]
+    return table[table.run == run]
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    """A campaign with results, in which one force signal froze and one stroke slipped off."""
+    file = simulated(tmp_path_factory.mktemp("review"), faults=("frozen",))
+    log = file.parent / f"raw/friction/{SLIPPED}_force.csv"
+    lines = log.read_text("utf-8").splitlines()
+    head = next(n for n, line in enumerate(lines) if line.startswith("Time"))
+    table = pd.read_csv(log, skiprows=head)
+    slid = table["Time [s]"].between(*SLID)
+    table.loc[slid, "Fx [N]"] *= 0.5
+    body = table.to_csv(index=False, lineterminator="\n")
+    log.write_text("\n".join(lines[:head]) + "\n" + body, "utf-8")
+    for path in (file.parent / "raw").rglob("*.csv"):
+        os.utime(path, (time.time() - 60,) * 2)
+    run_campaign(file, jobs=1, figures="none")
+    return file
+
+
+SLID = (340.0, 367.2)  # s on the force log's clock: about the third stroke
+
+
+@pytest.fixture(scope="module")
+def reviewed(original, tmp_path_factory):
+    """The same with decisions on three of four runs; and what the campaign came to."""
+    file = copied(original, tmp_path_factory.mktemp("reviewed"))
+    results = file.parent / "results"
+    late = rows_of(results, LATE)
+    begin = float(late.start_s.iloc[1]) + 20
+    text = entry(SLIPPED, "reject", "slipped off", **inside(rows_of(results, SLIPPED), SLIP))
+    text += entry(FROZEN, "accept", "the logger's buffer, at rest")
+    text += entry(LATE, "bounds", "began late", **inside(late, 1), new_start=begin)
+    text += entry(LATE, "note", "humid day")
+    (file.parent / REVIEW_FILE).write_text(text, "utf-8")
+    return file, run_campaign(file, jobs=1, figures="none")
+
+
+@pytest.mark.slow
+def test_only_what_was_decided_on_is_done_again(reviewed, tmp_path):
+    file, outcome = reviewed
+    assert [run.reused for run in outcome.runs] == [False, False, False, True]
+    assert run_campaign(file, jobs=1, figures="none").runs[0].reused
+    file = copied(file, tmp_path)
+    path = file.parent / REVIEW_FILE
+    path.write_text(path.read_text("utf-8").replace("slipped off", "lost its load"), "utf-8")
+    again = run_campaign(file, jobs=1, figures="none")
+    assert [run.reused for run in again.runs] == [True, False, True, True]
+    path.unlink()
+    bare = run_campaign(file, jobs=1, figures="none")
+    assert [run.reused for run in bare.runs] == [False, False, False, True]
+    assert "decisions" not in list(read_results(bare.folder))
+
+
+def test_a_notebook_gives_the_numbers_of_the_campaign(reviewed):
+    file, outcome = reviewed
+    decisions, frictions = load_review(file.parent), {}
+    for name in RUNS:
+        logs = [file.parent / f"raw/friction/{name}_{log}.csv" for log in ("force", "motion")]
+        run = read_run(logs, "linear_slider")
+        segments = decide(find_segments(run), decisions.get(name, ()), run)
+        friction = frictions[name] = friction_coefficient(run, segments)
+        rows = rows_of(outcome.folder, name)
+        for column in ("friction_coefficient", "friction_coefficient_sem", "start_s"):
+            values = friction[column.removesuffix("_s")].values
+            np.testing.assert_array_equal(rows[column].values, values)
+    table = read_results(outcome.folder)["stribeck"]
+    for curve, names in ((GLYCEROL, (FROZEN, SLIPPED)), (DRY, (LATE, SOUND))):
+        mine = measured_stribeck_curve([frictions[name] for name in names])
+        rows = table[table.curve == curve]
+        np.testing.assert_array_equal(rows.friction_coefficient, mine.friction_coefficient)
+        np.testing.assert_array_equal(rows.segments, mine.segments)
+
+
+def test_friction_with_decisions_and_without_are_both_kept(original, reviewed):
+    _, outcome = reviewed
+    now, before = (read_results(f) for f in (outcome.folder, original.parent / "results"))
+    found = now["stribeck_as_found"]
+    pd.testing.assert_frame_equal(found, before["stribeck"], check_dtype=False)
+    run = now.data(SLIPPED, "friction_as_found").friction_coefficient.values
+    earlier = rows_of(original.parent / "results", SLIPPED).friction_coefficient.values
+    np.testing.assert_array_equal(run, earlier)
+    # the stroke of half the friction spoilt the zero of its partner; rejected, it does not
+    rows = rows_of(outcome.folder, SLIPPED)
+    sound = float(rows.friction_coefficient.iloc[0])
+    assert abs(rows.friction_coefficient.iloc[SLIP + 1] / sound - 1) < 0.05
+    assert abs(run[SLIP + 1] / sound - 1) > 0.2
+    moved = now["findings"].query("where == @GLYCEROL").message.item()
+    assert moved.startswith("decisions change µ by at most ") and "stribeck_as_found" in moved
+
+
+def test_every_decision_stands_in_a_table_with_what_came_of_it(reviewed):
+    table = read_results(reviewed[1].folder)["decisions"]
+    packed = pd.read_parquet(reviewed[1].folder / "tables" / "decisions.parquet")
+    assert packed.reason.tolist() == table.reason.tolist()
+    rows = table.set_index(["run", "action"])
+    assert set(rows.author) == {"A. Person"} and set(rows.date) == {"2026-11-20"}
+    slipped = rows.loc[(SLIPPED, "reject")]
+    assert (str(slipped.segments), slipped.effect) == (str(SLIP + 1), "1 segment rejected")
+    assert np.isnan(slipped.friction_coefficient) and slipped.friction_coefficient_as_found > 0
+    assert "stuck" in rows.loc[(FROZEN, "accept")].effect
+    assert " instead of " in rows.loc[(LATE, "bounds")].effect
+    assert np.isnan(rows.loc[(LATE, "note")].start_s)
+
+
+def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
+    folder = reviewed[1].folder
+    report = json.loads((folder / "report.json").read_text("utf-8"))
+    jsonschema.validate(report, json.loads(SCHEMA.read_text("utf-8")))
+    verdict = report["verdict"]
+    counts = ("rejected", "rejected_by_hand", "accepted_by_hand", "segments_rejected")
+    assert [verdict[name] for name in counts] == [0, 0, 1, 1]
+    assert "1 accepted by hand; 24 segments (1 rejected by hand)" in verdict["text"]
+    frozen = next(run for run in report["runs"] if run["name"] == FROZEN)
+    assert (frozen["quality"], frozen["quality_as_found"]) == ("accepted", "fail")
+    said = [f["message"] for f in report["findings"] if f["run"] == FROZEN]
+    assert any(text.startswith("accepted by A. Person in spite of: fail: ") for text in said)
+    assert not [f for f in report["findings"] if f["severity"] == "fail"]
+    page = (folder / "report.html").read_text("utf-8")
+    assert page.count('<tr class="rejected">') == 1
+    assert "rejected by A. Person: slipped off" in page
+
+
+def test_flags_say_which_samples_a_person_decided_on(reviewed):
+    results = read_results(reviewed[1].folder)
+    run, rows = results.data(SLIPPED, "run"), rows_of(reviewed[1].folder, SLIPPED)
+    inside = run.time.values >= rows.start_s.iloc[SLIP]
+    inside &= run.time.values <= rows.stop_s.iloc[SLIP]
+    tests = run.friction_force_qc_tests
+    words = tests.attrs["flag_meanings"].split()
+    assert tests.attrs["flag_masks"][words.index("manual")] == 1 << BIT
+    assert ((tests.values & (1 << BIT) != 0) == inside).all()
+    assert (run.friction_force_qc.values[inside] == FAIL).all()
+    frozen = results.data(FROZEN, "run")
+    stuck = frozen.friction_force_qc_tests.values & (1 << words.index("stuck")) != 0
+    assert stuck.any() and (frozen.friction_force_qc.values[stuck] == GOOD).all()
+
+
+def test_a_run_that_is_rejected_is_in_no_curve_and_no_failure(original, tmp_path):
+    file = copied(original, tmp_path)
+    text = entry(FROZEN, "reject", "its signal froze") + entry(LATE, "reject")
+    (file.parent / REVIEW_FILE).write_text(text + entry(SOUND, "reject"), "utf-8")
+    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    assert told.exit_code == 0, told.output
+    assert "decided by hand: 3 runs rejected: see " in told.output
+    results = read_results(file.parent / "results")
+    assert set(results["stribeck"].curve) == {GLYCEROL}
+    report = json.loads((file.parent / "results/report.json").read_text("utf-8"))
+    assert "3 rejected by hand" in report["verdict"]["text"]
+    page = (file.parent / "results/report.html").read_text("utf-8")
+    assert "rejected by A. Person: its signal froze" in page
+
+
+def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_path):
+    file = copied(reviewed[0], tmp_path)
+    path = file.parent / REVIEW_FILE
+    text = path.read_text("utf-8") + entry(f"{SOUND}x", "reject")
+    line = text[: text.index(f"{SOUND}x")].count("\n") + 1
+    path.write_text(text + entry(SOUND, "reject", start=1.0, stop=2.0), "utf-8")
+    told = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    assert told.exit_code == 3
+    assert f"review.toml, line {line}: decision 5, run: no run is called '{SOUND}x'" in told.stderr
+    assert f"did you mean '{SOUND}'" in told.stderr
+    assert f"{SOUND} failed: " in told.stderr
+    assert "reject, 1 to 2 s (A. Person, 2026-11-20) finds no segment" in told.stderr
+    assert "correct its from and to in review.toml" in told.stderr
+    report = json.loads((file.parent / "results/report.json").read_text("utf-8"))
+    assert [run["status"] for run in report["runs"]] == ["done", "done", "done", "failed"]
+    assert [run["reused"] for run in report["runs"]] == [True, True, True, False]
+    assert report["verdict"]["status"] == "incomplete"
+    lost = read_results(file.parent / "results")["decisions"].set_index("run").loc[SOUND]
+    assert lost.effect == "not applied: the run failed"
+    again = CliRunner().invoke(app, ["run", str(file), "--jobs", "1", "-q", "--figures", "none"])
+    assert again.exit_code == 3 and again.stderr == told.stderr
+
+
+WRONG = {
+    "action": ('"reject"', '"rejct"', 3, "did you mean 'reject'"),
+    "key": ("from =", "form =", 4, "did you mean 'from'"),
+    "one end": ('to = "2.0000 s"\n', "", 1, "wants both its ends"),
+    "no unit": ('"2.0000 s"', "2", 5, "2 has no unit; write e.g. '31 s'"),
+    "no author": ('author = "A. Person"\n', "", 1, "author: is missing"),
+    "no date": ("2026-11-20", '"friday"', 8, "date"),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong", "line", "said"), WRONG.values(), ids=WRONG)
+def test_a_mistake_in_the_review_file_is_met_before_any_work(
+    original, tmp_path, right, wrong, line, said
+):
+    text = entry(SOUND, "reject", start=1.0, stop=2.0)
+    assert right in text
+    file = tmp_path / "campaign.toml"
+    file.write_text(original.read_text("utf-8"), "utf-8")
+    (tmp_path / "raw").symlink_to(original.parent / "raw")
+    (tmp_path / REVIEW_FILE).write_text(text.replace(right, wrong, 1), "utf-8")
+    with pytest.raises(ConfigError, match=f"{REVIEW_FILE}, line {line}: .*{said}"):
+        load_campaign(file)
+
+
+def test_the_published_schema_is_the_models_and_knows_every_key():
+    published = json.loads((schema_folder() / SCHEMA_FILE).read_text(encoding="utf-8"))
+    assert published == review_schema()
+    whole = {"run": "x", "action": "bounds", "from": "1 s", "to": "2 s", "new_to": "1.5 s"}
+    whole |= {"reason": "late", "author": "A", "date": "2026-11-20"}
+    jsonschema.validate({"decision": [whole]}, published)
+    for wrong in ({"action": "drop"}, {"from": 1.0}, {"number": 3}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({"decision": [whole | wrong]}, published)
+
+
+def test_an_objection_within_an_accepted_segment_no_longer_counts(original):
+    logs = [original.parent / f"raw/friction/{SOUND}_{log}.csv" for log in ("force", "motion")]
+    run = read_run(logs, "linear_slider")
+    segments = find_segments(run)
+    middle = float(segments.start[1] + segments.stop[1]) / 2
+    place = int(np.searchsorted(run.time.values, middle))
+    force = run.friction_force.values.copy()
+    force[place] += 20.0
+    run = run.assign(friction_force=run.friction_force.copy(data=force))
+    said = {"reason": "a door", "author": "A. Person", "date": "2026-11-20"}
+    window = {"start": middle - 5, "stop": middle + 5}
+    assert check_run(run, segments).status == "suspect"
+    found = {
+        action: check_run(run, decide(segments, Decision(action, **said, **window)))
+        for action in ("accept", "reject", "note")
+    }
+    assert {k: v.status for k, v in found.items()} == {
+        "accept": "accepted",
+        "reject": "pass",
+        "note": "suspect",
+    }
+    [row] = [row for row in found["accept"].rows if row["check"] == "spikes" and "decision" in row]
+    assert (row["status"], row["decision"]) == ("suspect", "accepted by A. Person in spite of")
+    assert "accepted by A. Person in spite of: friction_force: 1 single sample" in repr(
+        found["accept"]
+    )

@@ -1,0 +1,134 @@
+"""The analysis of one run: read, segments, decisions, friction, stick-slip, checks."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.campaign.plan import PlannedRun
+from tribolab.campaign.zeros import attributes
+from tribolab.errors import ConfigError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.qc.findings import Findings
+
+# Attributes of a data file's run: the gravest status of its checks, and what they said.
+QUALITY, FINDINGS = "quality", "findings"
+AS_FOUND = "friction_as_found"  # group of a data file: friction without a person's decisions
+
+
+class Analysed(NamedTuple):
+    """What a run came to.
+
+    Parameters
+    ----------
+    signals
+        The run with the flags and findings of its checks (time).
+    segments, friction, slip
+        Its results (segment).
+    quality
+        Gravest finding of its checks, or what a person decided.
+    friction_as_found, quality_as_found
+        The same without a person's decisions; None and "" where there are none.
+    """
+
+    signals: xr.Dataset
+    segments: xr.Dataset
+    friction: xr.Dataset
+    slip: xr.Dataset
+    quality: str
+    friction_as_found: xr.Dataset | None = None
+    quality_as_found: str = ""
+
+    @property
+    def groups(self) -> dict[str | None, xr.Dataset]:
+        """The groups of the data file."""
+        found: dict[str | None, xr.Dataset] = {"run": self.signals, "segments": self.segments}
+        found |= {"friction": self.friction, "stick_slip": self.slip}
+        if self.friction_as_found is not None:
+            found[AS_FOUND] = self.friction_as_found
+        return found
+
+
+def analyse(run: PlannedRun) -> Analysed:
+    """Read a run, find its segments and its friction, and check it, with what was decided on it.
+
+    Raises
+    ------
+    TribolabError
+        If it cannot be read or analysed, or a decision finds no segment.
+    """
+    from tribolab.friction.decisions.decide import decide
+    from tribolab.friction.segments.find import find_segments
+
+    signals = _read(run)
+    segments = find_segments(signals, **run.segments)
+    friction, slip, said = _examined(run, signals, segments)
+    before: tuple[xr.Dataset | None, str] = (None, "")
+    if run.decisions:
+        before = friction, said.status
+        segments = decide(segments, run.decisions, signals)
+        friction, slip, said = _examined(run, signals, segments)
+    signals = said.marked
+    signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
+    found = Analysed(signals, segments, friction, slip, said.status, *before)
+    for data in found.groups.values():
+        data.attrs.update(labels_of(run), config_sha256=run.config_sha256)
+    return found
+
+
+def labels_of(run: PlannedRun) -> dict[str, str]:
+    """Return what every dataset of a run is labelled with."""
+    return {"run_name": run.name} | {
+        key: value for key in ("surface", "medium") if (value := getattr(run, key))
+    }
+
+
+def _examined(
+    run: PlannedRun, signals: xr.Dataset, segments: xr.Dataset
+) -> tuple[xr.Dataset, xr.Dataset, Findings]:
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.qc.run_checks import check_run
+
+    friction = friction_coefficient(signals, segments, **run.friction)
+    friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
+    slip = stick_slip(signals, segments)
+    return friction, slip, check_run(signals, segments, friction, slip, **run.quality)
+
+
+def _read(run: PlannedRun) -> xr.Dataset:
+    from tribolab.io.runs import read_run
+
+    files = list(run.files)
+    signals = read_run(
+        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
+    )
+    if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
+        missing = signals.attrs.get("companion_missing", "")
+        raise ConfigError(
+            f"{signals.attrs['source']}: there is no second log"
+            f"{missing and f' ({missing})'} whose clock could be shifted; "
+            "leave clock_shift out of its [[run]]"
+        )
+    if run.normal_force is not None:
+        signals.attrs["set_normal_force_N"] = run.normal_force
+    if run.sliding_speed is not None:
+        signals.attrs |= _stated_speed(signals, run.sliding_speed)
+    return signals
+
+
+def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
+    """Attributes of a run whose speed the campaign file says.
+
+    The segments take it where nothing was recorded; else the check of the speed compares with it.
+    """
+    own = signals.attrs.get("set_speed_m_s", speed)
+    if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):
+        raise ConfigError(
+            f"{signals.attrs['source']}: the file says its set speed itself; "
+            "leave sliding_speed out of its [[run]]"
+        )
+    return {"set_speed_m_s": speed, "set_speed_source": "campaign file"}

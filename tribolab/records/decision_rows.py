@@ -1,0 +1,96 @@
+"""What a person decided on a run, and what came of it: a row for each decision."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.decisions.decide import DECISIONS, WORDS
+from tribolab.friction.decisions.decision import Decision
+from tribolab.friction.decisions.rejected import rejected
+from tribolab.records.parts import Notice
+from tribolab.records.run_record import DecisionRow
+from tribolab.records.wording import plain_value
+from tribolab.words import many
+
+NOT_APPLIED = "not applied: the run failed"
+
+
+def decision_rows(
+    friction: xr.Dataset, as_found: xr.Dataset, checks: Sequence[Mapping[str, Any]]
+) -> tuple[DecisionRow, ...]:
+    """Return what was decided on a run, and what came of it.
+
+    Parameters
+    ----------
+    friction, as_found
+        Results of `friction_coefficient` with the decisions and without.
+    checks
+        Rows of the findings.
+    """
+    return tuple(
+        DecisionRow(
+            **{key: value for key, value in decision.items() if key != "segments"},
+            segments=tuple(decision["segments"]),
+            effect=_effect(decision, friction, as_found, checks),
+            friction_coefficient=_mean(friction, decision["segments"]),
+            friction_coefficient_as_found=_mean(as_found, decision["segments"]),
+        )
+        for decision in friction.attrs.get(DECISIONS, [])
+    )
+
+
+def not_applied(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
+    """Return what was decided on a run that failed."""
+    return tuple(DecisionRow(**one.plain(), effect=NOT_APPLIED) for one in decisions)
+
+
+def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:
+    """Return what a reader should know of the decisions on a run."""
+    return [
+        Notice(
+            "note",
+            run,
+            "decision",
+            f"{row.where}: {WORDS[row.action]} by {row.author} ({row.date}): {row.reason}"
+            + (f" [{row.effect}]" if row.effect else ""),
+        )
+        for row in rows
+    ]
+
+
+def _effect(
+    decision: Mapping[str, Any],
+    friction: xr.Dataset,
+    as_found: xr.Dataset,
+    checks: Sequence[Mapping[str, Any]],
+) -> str:
+    count, action = len(decision["segments"]), decision["action"]
+    if action == "reject":
+        return f"{many(count, 'segment')} rejected"
+    if action == "accept":
+        by = f"accepted by {decision['author']}"
+        names = [row["check"] for row in checks if str(row.get("decision", "")).startswith(by)]
+        return f"in spite of {', '.join(dict.fromkeys(names))}" if names else "nothing objects"
+    if action == "bounds":
+        place = decision["segments"][0] - 1
+        new, old = (
+            f"{data['start'].values[place]:.6g} to {data['stop'].values[place]:.6g} s"
+            for data in (friction, as_found)
+        )
+        return f"{new} instead of {old}"
+    return ""
+
+
+def _mean(friction: xr.Dataset, numbers: Sequence[int]) -> float | None:
+    """Mean friction coefficient of segments, without those that are rejected."""
+    if "friction_coefficient" not in friction:
+        return None
+    out = rejected(friction)
+    places = [number - 1 for number in numbers if not out[number - 1]]
+    values = friction["friction_coefficient"].values[places]
+    values = values[np.isfinite(values)]
+    return plain_value(float(values.mean())) if values.size else None

@@ -1,0 +1,87 @@
+"""What a reader should know of one run: decisions, objections of its checks, oddities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.friction.segments.find import why_no_segment
+from tribolab.records.decision_rows import decision_notices
+from tribolab.records.judgement import SURE
+from tribolab.records.parts import Notice
+from tribolab.records.run_facts import (
+    counting,
+    drift_of,
+    findings_of,
+    left_out,
+    main_quantity,
+    position_range,
+    values_of,
+)
+from tribolab.records.run_record import DecisionRow
+from tribolab.words import duration, many, percent
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def notices_of(
+    name: str,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    decisions: Sequence[DecisionRow] = (),
+) -> list[Notice]:
+    """Return what a reader should know of a run, from decisions, its checks and its results."""
+    notices = decision_notices(name, decisions)
+    notices += [
+        _of_check(name, row)
+        for row in findings_of(run)
+        if row["status"] not in ("pass", "skipped") or row.get("noted")
+    ]
+
+    def say(severity: str, where: str, message: str) -> None:
+        notices.append(Notice(severity, name, where, message))
+
+    friction = counting(friction)
+    count = friction.sizes["segment"]
+    told = any(row["check"] == "segments" for row in findings_of(run))
+    if not told and (why := why_no_segment(segments)):
+        say("suspect", "segments", f"{why}.")
+    quantity = main_quantity(friction)
+    values = values_of(friction, quantity, count)
+    if quantity in friction and count:
+        if missing := int(np.isnan(values).sum()):
+            say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
+        if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
+            text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
+            say("suspect", "friction", text + "; is the sign of the force or the offset right?")
+    # as the check on steadiness and the page's table count them
+    drift = int((values_of(friction, "trend_p_value", count) < SURE).sum())
+    if drift:
+        text = f"{many(drift, 'segment')} of {count} with a significant trend"
+        largest = drift_of(friction, values) if quantity in friction else None
+        if largest:
+            text += f", at most {percent(largest)} of the typical friction"
+        say("note", "friction", text)
+    if str(friction.attrs.get("offset", "")).startswith("none"):
+        say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
+    if (track := position_range(segments)) is not None:
+        low, high = (f"{1e3 * end:.4g}" for end in track)
+        say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
+    for entry in left_out(segments):
+        text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
+        say("note", "left out", f"{entry.reason}: {text}")
+    if unused := str(run.attrs.get("columns_not_used", "")):
+        say("note", "columns", f"not used: {unused}")
+    return notices
+
+
+def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
+    where = f"{row['check']} {row['variable']}".strip()
+    if decision := row.get("decision", ""):
+        return Notice("note", name, where, f"{decision}: {row['status']}: {row['message']}.")
+    severity = "note" if row["status"] in ("pass", "skipped") else row["status"]
+    return Notice(severity, name, where, f"{row['message']}. {row['cure']}".strip(". ") + ".")
