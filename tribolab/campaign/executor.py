@@ -266,7 +266,7 @@ class LastingPool(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
-        with self._lock:
+        with _undisturbed(), self._lock:
             if self._closed:
                 raise RuntimeError("the pool is closed")
             future: Future[Any] = Future()
@@ -399,8 +399,7 @@ class _OneThreadProcess(SpawnProcess):
         before = {name: os.environ.get(name) for name in _ONE_THREAD}
         os.environ.update(_ONE_THREAD)
         try:
-            with _undisturbed():
-                super().start()
+            super().start()
         finally:
             for name, value in before.items():
                 if value is None:
@@ -411,7 +410,7 @@ class _OneThreadProcess(SpawnProcess):
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """Let signals wait until a process has been started, and Ctrl-C until it can ignore it.
+    """Let signals wait until processes and threads are started, and Ctrl-C until it is ignored.
 
     What is interrupted while it starts a process leaves one that dies with a traceback.
     """
