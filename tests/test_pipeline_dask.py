@@ -13,7 +13,8 @@ import pytest
 from campaigns import simulated
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign.executor import ClusterGone, workers
+from tribolab.campaign.cluster import ClusterGone
+from tribolab.campaign.executor import workers
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.errors import ConfigError

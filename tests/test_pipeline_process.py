@@ -18,10 +18,11 @@ from campaigns import RUNS, copied, fingerprint, simulated
 import tribolab
 import tribolab as tl
 from tribolab.campaign import runs
-from tribolab.campaign.executor import WorkerDied, workers
+from tribolab.campaign.executor import workers
 from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.plan import planned_runs
+from tribolab.campaign.pool import WorkerDied
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.traces import trace_size

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.curves import Curves
 from tribolab.campaign.data_files import UNFINISHED
 from tribolab.campaign.engine import Progress, perform
-from tribolab.campaign.executor import WorkerDied
 from tribolab.campaign.kept import keep_runs
 from tribolab.campaign.models import Models
 from tribolab.campaign.outcome import OpenOutcome
 from tribolab.campaign.plan import PlannedRun, planned_runs
+from tribolab.campaign.pool import WorkerDied
 from tribolab.campaign.review import lost_decisions
 from tribolab.campaign.runs import RunCame, Runs
 from tribolab.campaign.store import Store

@@ -153,6 +153,8 @@ class Classes:
         """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""
         _, number, total = self._parts(shift)
         full = number > 0
+        if not full.any():  # the logs do not overlap
+            return 0.0
         return float((total[full] ** 2 / number[full]).sum() - total.sum() ** 2 / number.sum())
 
     def _residual(self, shift: float) -> Array:
@@ -179,6 +181,8 @@ class Classes:
     def uncertainty(self, shift: float) -> float:
         """Shift at which the explained sum of squares falls by more than chance allows."""
         residual = self._residual(shift)
+        if not residual.size:
+            return np.inf
         variance = float(residual.var())
         if variance == 0.0:
             return 0.5 * self.period
@@ -195,6 +199,8 @@ class Classes:
 
 def _correlated(residual: Array) -> float:
     """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
+    if not residual.size:
+        return 1.0
     block = -(-len(residual) // _GRID)
     rows = len(residual) // block
     means = residual[: rows * block].reshape(rows, block).mean(axis=1)

@@ -1,0 +1,107 @@
+"""A Dask cluster as an executor, and how it is told that it is gone."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
+from typing import Any
+
+from tribolab.errors import ConfigError, OutputError
+
+DASK_TIMEOUT = "20s"
+
+
+LOOK = 1.0  # s between two looks at a cluster that does not answer
+
+
+_PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
+
+
+class ClusterGone(OutputError):
+    """The scheduler or all of its workers are gone, and nothing more can be done there."""
+
+
+def gone(why: str, done: int, of: int) -> str:
+    """Say that the cluster is lost, why, and what of the work was done."""
+    said = f"; {done} of {of} pieces of work were done" if of else ""
+    return (
+        f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
+        "they were; start scheduler and workers again and repeat the command, or leave "
+        "--scheduler out"
+    )
+
+
+@contextlib.contextmanager
+def dask_executor(scheduler: str) -> Iterator[Executor]:
+    """Yield the executor of a scheduler at an address.
+
+    Raises
+    ------
+    ConfigError
+        If Dask is not installed, no scheduler answers there, or it has no workers.
+    """
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ConfigError(
+            "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
+        ) from error
+    try:
+        client = Client(scheduler, timeout=DASK_TIMEOUT, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ConfigError(
+            f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
+            "its address, e.g. tcp://localhost:8786"
+        ) from error
+    try:
+        with _silent("distributed"):  # what it would say of a lost worker is said by us
+            if not client.scheduler_info()["workers"]:
+                raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
+            yield Cluster(client)
+    finally:
+        with contextlib.suppress(Exception), _silent("distributed"):
+            client.close(timeout=2)  # a scheduler that is gone cannot be told goodbye
+
+
+@contextlib.contextmanager
+def _silent(package: str) -> Iterator[None]:
+    """Hear only what is critical of a package's loggers, those with a level of their own too."""
+    names = [package, *(n for n in logging.root.manager.loggerDict if n.startswith(f"{package}."))]
+    levels = {name: logging.getLogger(name).level for name in names}
+    try:
+        for name, level in levels.items():
+            if name == package or level != logging.NOTSET:
+                logging.getLogger(name).setLevel(logging.CRITICAL)
+        yield
+    finally:
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)
+
+
+class Cluster(Executor):
+    """The workers of a Dask scheduler, and whether they are still there."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._inner = client.get_executor(pure=False)
+        self._missed: float | None = None
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Queue a call on the cluster and return its future."""
+        return self._inner.submit(function, *args, **kwargs)
+
+    def lost(self) -> str:
+        """Return why no answer will come any more; "" as long as one may."""
+        why = ""
+        if self._client.status != "running":
+            why = "its scheduler does not answer any more"
+        elif not self._client.scheduler_info()["workers"]:
+            why = "all of its workers are gone"
+        if not why:
+            self._missed = None
+            return ""
+        self._missed = self._missed or time.monotonic()
+        return why if time.monotonic() - self._missed > _PATIENCE else ""
