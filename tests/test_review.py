@@ -28,6 +28,7 @@ from tribolab.io.schema_folder import schema_folder
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.manual import BIT
 from tribolab.qc.run_checks import check_run
+from tribolab.records.decision_rows import decision_rows
 from tribolab.report.read_results import read_results
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
@@ -272,29 +273,44 @@ def test_the_published_schema_is_the_models_and_knows_every_key():
             jsonschema.validate({"decision": [whole | wrong]}, published)
 
 
-def test_an_objection_within_an_accepted_segment_no_longer_counts(original):
+@pytest.fixture(scope="module")
+def spiked(original):
+    """A run with a spike in the middle of its second and of its fourth segment, and these."""
     logs = [original.parent / f"raw/friction/{SOUND}_{log}.csv" for log in ("force", "motion")]
     run = read_run(logs, "linear_slider")
     segments = find_segments(run)
-    middle = float(segments.start[1] + segments.stop[1]) / 2
-    place = int(np.searchsorted(run.time.values, middle))
+    middles = [float(segments.start[k] + segments.stop[k]) / 2 for k in (1, 3)]
     force = run.friction_force.values.copy()
-    force[place] += 20.0
-    run = run.assign(friction_force=run.friction_force.copy(data=force))
-    said = {"reason": "a door", "author": "A. Person", "date": "2026-11-20"}
-    window = {"start": middle - 5, "stop": middle + 5}
-    assert check_run(run, segments).status == "suspect"
-    found = {
-        action: check_run(run, decide(segments, Decision(action, **said, **window)))
-        for action in ("accept", "reject", "note")
-    }
-    assert {k: v.status for k, v in found.items()} == {
-        "accept": "accepted",
-        "reject": "pass",
-        "note": "suspect",
-    }
-    [row] = [row for row in found["accept"].rows if row["check"] == "spikes" and "decision" in row]
-    assert (row["status"], row["decision"]) == ("suspect", "accepted by A. Person in spite of")
-    assert "accepted by A. Person in spite of: friction_force: 1 single sample" in repr(
-        found["accept"]
-    )
+    force[np.searchsorted(run.time.values, middles)] += 20.0
+    windows = [{"start": middle - 2, "stop": middle + 2} for middle in middles]
+    return run.assign(friction_force=run.friction_force.copy(data=force)), segments, windows
+
+
+@pytest.mark.parametrize(
+    ("actions", "status", "effects", "said"),
+    [
+        ("n", "suspect", [""], ""),
+        ("a", "suspect", ["no objection lies in it alone"], ""),
+        ("aa", "accepted", ["in spite of spikes"] * 2, "accepted by A, B in spite of"),
+        ("ra", "accepted", ["1 segment rejected", "in spite of spikes"], "accepted by B"),
+        ("rr", "pass", ["1 segment rejected"] * 2, "lies in what A, B rejected"),
+    ],
+)
+def test_an_objection_no_longer_counts_where_persons_decided_on_all_of_it(
+    spiked, actions, status, effects, said
+):
+    run, segments, windows = spiked
+    words = {"n": "note", "a": "accept", "r": "reject"}
+    made = [
+        Decision(words[action], "a door", author, "2026-11-20", **window)
+        for action, author, window in zip(actions, "AB", windows, strict=False)
+    ]
+    decided = decide(segments, made)
+    found = check_run(run, decided)
+    assert (check_run(run, segments).status, found.status) == ("suspect", status)
+    [row] = [row for row in found.rows if row["check"] == "spikes" and row["count"]]
+    assert row["status"] == "suspect" and row.get("decision", "").startswith(said)
+    assert ("note  spikes" in repr(found)) == bool(said)
+    friction = friction_coefficient(run, decided)
+    rows = decision_rows(friction, friction_coefficient(run, segments), found.rows)
+    assert [row.effect for row in rows] == effects

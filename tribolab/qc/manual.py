@@ -8,7 +8,7 @@ these segments carry the bit ``manual``: of rejected ones the flag is "fail", of
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -26,13 +26,29 @@ MANUAL, BIT = "manual", 26  # its name and bit in ``<variable>_qc_tests``, as of
 ACCEPTED, REJECTED = "accepted", "rejected"
 
 
+class _Heard(NamedTuple):
+    """A decision as the samples hear it: what, by whom, on which pieces of the record."""
+
+    action: str
+    author: str
+    pieces: tuple[slice, ...]
+
+
 class _Reviewed(NamedTuple):
-    """Samples of a run that a person accepted or rejected, and who did."""
+    """Samples of a run that a person accepted or rejected (rejecting wins), and who did."""
 
     accepted: np.ndarray
     rejected: np.ndarray
-    accepters: str
-    rejecters: str
+    decisions: tuple[_Heard, ...]
+
+    def who(self, action: str, bad: np.ndarray) -> str:
+        """Names of those whose decisions touch samples."""
+        names = [
+            heard.author
+            for heard in self.decisions
+            if heard.action == action and any(bad[piece].any() for piece in heard.pieces)
+        ]
+        return ", ".join(dict.fromkeys(names))
 
 
 def reviewed(findings: Findings, segments: xr.Dataset) -> Findings:
@@ -64,23 +80,19 @@ def _samples(
     time: np.ndarray, segments: xr.Dataset, rows: Sequence[Mapping[str, Any]]
 ) -> _Reviewed:
     masks = {action: np.zeros(time.size, dtype=bool) for action in (ACCEPT, REJECT)}
-    who: dict[str, list[str]] = {ACCEPT: [], REJECT: []}
+    decisions = []
     first = np.searchsorted(time, segments["start"].values, "left")
     last = np.searchsorted(time, segments["stop"].values, "right")
     for row in rows:
         if row["action"] not in masks:
             continue
-        who[row["action"]].append(str(row["author"]))
+        pieces = tuple(slice(first[n - 1], last[n - 1]) for n in row["segments"])
         if row["start_s"] is None:
-            masks[row["action"]][:] = True
-        for number in row["segments"]:
-            masks[row["action"]][first[number - 1] : last[number - 1]] = True
-    accepted = masks[ACCEPT] & ~masks[REJECT]
-    return _Reviewed(accepted, masks[REJECT], _names(who[ACCEPT]), _names(who[REJECT]))
-
-
-def _names(names: Iterable[str]) -> str:
-    return ", ".join(dict.fromkeys(names))
+            pieces = (slice(None),)
+        for piece in pieces:
+            masks[row["action"]][piece] = True
+        decisions.append(_Heard(row["action"], row["author"], pieces))
+    return _Reviewed(masks[ACCEPT] & ~masks[REJECT], masks[REJECT], tuple(decisions))
 
 
 def _settled(result: Result, seen: _Reviewed) -> Result:
@@ -91,9 +103,9 @@ def _settled(result: Result, seen: _Reviewed) -> Result:
     if result.flags is not None and (result.flags >= SUSPECT).any():
         bad = result.flags >= SUSPECT
     if seen.rejected[bad].all():
-        return replace(result, settled=REJECTED, settled_by=seen.rejecters)
+        return replace(result, settled=REJECTED, settled_by=seen.who(REJECT, bad))
     if (seen.accepted | seen.rejected)[bad].all():
-        return replace(result, settled=ACCEPTED, settled_by=seen.accepters)
+        return replace(result, settled=ACCEPTED, settled_by=seen.who(ACCEPT, bad))
     return result
 
 

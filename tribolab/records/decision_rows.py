@@ -11,6 +11,7 @@ import xarray as xr
 from tribolab.friction.decisions.decide import DECISIONS, WORDS
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.decisions.rejected import rejected
+from tribolab.qc.register import OBJECTIONS
 from tribolab.records.parts import Notice
 from tribolab.records.run_record import DecisionRow
 from tribolab.records.wording import plain_value
@@ -72,9 +73,7 @@ def _effect(
     if action == "reject":
         return f"{many(count, 'segment')} rejected"
     if action == "accept":
-        by = f"accepted by {decision['author']}"
-        names = [row["check"] for row in checks if str(row.get("decision", "")).startswith(by)]
-        return f"in spite of {', '.join(dict.fromkeys(names))}" if names else "nothing objects"
+        return _accepted(decision, checks)
     if action == "bounds":
         place = decision["segments"][0] - 1
         new, old = (
@@ -83,6 +82,22 @@ def _effect(
         )
         return f"{new} instead of {old}"
     return ""
+
+
+def _accepted(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
+    """Say in spite of which checks something was accepted."""
+    said = [(row["check"], str(row.get("decision", ""))) for row in checks]
+    by = f", {decision['author']}, "  # among those who did
+    names = [
+        check
+        for check, text in said
+        if text.startswith("accepted by ")
+        and by in f", {text.removeprefix('accepted by ').removesuffix(' in spite of')}, "
+    ]
+    if names:
+        return f"in spite of {', '.join(dict.fromkeys(names))}"
+    objected = any(row["status"] in OBJECTIONS for row in checks)
+    return "no objection lies in it alone" if objected else "nothing objects"
 
 
 def _mean(friction: xr.Dataset, numbers: Sequence[int]) -> float | None:
