@@ -123,18 +123,18 @@ class Page:
             assert time.monotonic() < end, f"in {seconds} s it did not come true: {condition}"
             time.sleep(0.02)
 
-    def click(self, selector):
+    def click(self, selector, shift=False):
         """Bring an element into view and click on its middle, as a mouse does."""
         x, y = self.run(
             f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
             "e.scrollIntoView({block: 'center', behavior: 'instant'});"
             "const b = e.getClientRects()[0]; return [b.x + b.width / 2, b.y + b.height / 2] })()"
         )
-        self.mouse([(x, y)])
+        self.mouse([(x, y)], shift)
 
-    def mouse(self, points):
+    def mouse(self, points, shift=False):
         """Press at the first point, move over the others, release at the last."""
-        button = {"button": "left", "clickCount": 1}
+        button = {"button": "left", "clickCount": 1, "modifiers": 8 if shift else 0}
         for kind, (x, y), more in (
             ("mouseMoved", points[0], {}),
             ("mousePressed", points[0], button),
@@ -184,7 +184,7 @@ class Page:
 
     @property
     def requests(self):
-        """The addresses that were asked for, of files too; data and what was stopped aside."""
+        """The addresses that were asked for, of files too; not what is in the page or stopped."""
         self.run("0")
         told = [(event["method"], event["params"]) for event in self._tab.events]
         stopped = {
@@ -197,7 +197,7 @@ class Page:
             for method, what in told
             if method == "Network.requestWillBeSent" and what["requestId"] not in stopped
         ]
-        return [url for url in urls if not url.startswith("data:")]
+        return [url for url in urls if not url.startswith(("data:", "blob:"))]
 
 
 class _Devtools:

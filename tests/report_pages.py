@@ -1,5 +1,9 @@
-"""A report with a flagged run, a long one and a failed one, and a reader of its page."""
+"""A report with a flagged run, a long one and a failed one, and readers of its page."""
 
+import base64
+import json
+import re
+import zlib
 from html.parser import HTMLParser
 
 import numpy as np
@@ -77,3 +81,31 @@ class Reader(HTMLParser):
 
 def page_of(folder):
     return (folder / "report.html").read_text(encoding="utf-8")
+
+
+# For a browser: all that is folded away is opened, and all figures are drawn; returns how many.
+OPEN_ALL = (
+    "Promise.all(Array.from(document.querySelectorAll('details'),"
+    "one => { one.open = true; return report.unfold(one) })).then(() => 0)"
+)
+DRAW_ALL = (
+    "Promise.all(Array.from(document.querySelectorAll('figure.live'),"
+    "one => report.charts.chartOf(one).draw()))"
+    ".then(() => document.querySelectorAll('figure.live .js-plotly-plot').length)"
+)
+PACKED = r'<script type="application/octet-stream"%s>([^<]*)</script>'
+
+
+def details_of(folder):
+    """What stands under each run, as HTML."""
+    return [_unpacked(one) for one in re.findall(PACKED % ' class="packed"', page_of(folder))]
+
+
+def figures_of(folder):
+    """What the figures of a page show, by their ids."""
+    packed = re.findall(PACKED % "", page_of(folder))
+    return {figure["id"]: figure for figure in (json.loads(_unpacked(one)) for one in packed)}
+
+
+def _unpacked(text):
+    return zlib.decompress(base64.b64decode(text)).decode()

@@ -21,7 +21,7 @@ from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
 from tribolab.records.parts import beyond_limits
 from tribolab.records.wording import validity_of
-from tribolab.report.page import environment
+from tribolab.report.templating import environment
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026

@@ -20,7 +20,7 @@ from tribolab.paper.figures import FIGURES, DrawTask, draw
 from tribolab.paper.work import Task, compute
 from tribolab.records.frames import rows_of
 from tribolab.report import tables
-from tribolab.report.page import framed
+from tribolab.report.templating import framed
 
 if TYPE_CHECKING:
     from tribolab.campaign.outcome import Outcome

@@ -31,12 +31,12 @@ def stress_interval(low: float | None, high: float | None) -> str:
     Examples
     --------
     >>> stress_interval(0.8e6, 0.88e6), stress_interval(-0.092e6, 0.335e6)
-    ('0.800 to 0.880', 'up to 0.335: not told from 0')
+    ('0.800 to 0.880', 'up to 0.335: it may be zero')
     """
     if low is None or high is None:
         return "–"
     if low <= 0:
-        return f"up to {aligned(1e-6 * high)}: not told from 0"
+        return f"up to {aligned(1e-6 * high)}: it may be zero"
     return f"{aligned(1e-6 * low)} to {aligned(1e-6 * high)}"
 
 

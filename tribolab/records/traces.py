@@ -23,8 +23,9 @@ _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position":
 _MOST_SPANS = 400
 _FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal takes
 _FINEST = 24_000  # points of a signal that the page zooms into
-_SIGNAL_BYTES = 2 * 16 / 3  # of a point of two signals: four bytes each, as text a third more
-_COARSE_BYTES, _FINE_BYTES = 3e6, 6e6  # of all runs together
+_POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
+_BYTES, _FEW = 1.5e6, 32  # of all traces together, of so many runs or fewer
+_COARSE_SHARE = 0.3  # of that for what is shown at once
 
 
 def page_trace(
@@ -61,11 +62,13 @@ def trace_size(runs: int) -> tuple[int, int]:
     Examples
     --------
     >>> trace_size(5), trace_size(200), trace_size(2000)
-    ((2000, 750000), (1098, 23437), (500, 2929))
+    ((2000, 131250), (621, 11600), (300, 4101))
     """
     runs = 1 << max(runs - 1, 0).bit_length()
-    points = _COARSE_BYTES / (_SIGNAL_BYTES * max(runs, 1))
-    return int(np.clip(points, 500, 2000)), int(_FINE_BYTES // max(runs, 1))
+    # of many runs the page grows, but more slowly than their number
+    each = _BYTES * max(1.0, (runs / _FEW) ** 0.5) / runs
+    points = _COARSE_SHARE * each / _POINT_BYTES
+    return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
 
 
 def trace(
@@ -85,7 +88,7 @@ def trace(
     Returns
     -------
     dict
-        Ready for JSON; `assets/chart.js` reads it. ``complete`` says that nothing was left out.
+        Ready for JSON; `assets/trace.js` reads it. ``complete`` says that nothing was left out.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def trace(
         "length_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
         "clock": [clock.knots, clock.at_s],
-        **_signals(run, segments, friction, clock, points, deflate=False),
+        **_signals(run, segments, friction, clock, points),
         "segments": _segments(segments, friction, main_signal(run, friction).name),
         "flags": [asdict(span) for span in flagged_spans(run)],
     }
@@ -131,7 +134,7 @@ def finer_trace(
     clock = clock_of(np.asarray(run["time"], float))
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
-        text = as_text(_signals(run, segments, friction, clock, finer, deflate=True))
+        text = as_text(_signals(run, segments, friction, clock, finer))
         if len(text) <= size:
             return text
         finer = int(0.95 * finer * size / len(text))
@@ -144,8 +147,6 @@ def _signals(
     friction: xr.Dataset | None,
     clock: Clock,
     points: int,
-    *,
-    deflate: bool,
 ) -> dict[str, Any]:
     time = np.asarray(run["time"], float)
     bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
@@ -168,7 +169,7 @@ def _signals(
                 "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
-                **packed_points(clock.place[chosen], levels, deflate=deflate),
+                **packed_points(clock.place[chosen], levels, deflate=True),
             }
         )
     return {

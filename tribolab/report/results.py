@@ -22,6 +22,8 @@ from tribolab.report.curve_figures import draw_curves, plan_figures
 from tribolab.report.document import brief_run, labels, report_document, run_document, write_json
 from tribolab.report.figure_choice import Wanted
 from tribolab.report.figures import Figures, FigureTask, planned
+from tribolab.report.live.gather import live_figures
+from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.page import write_page
 from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
@@ -74,7 +76,7 @@ def write_report(
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
     models = [entry.record for entry in store.all("model", ModelRecord)]
-    briefs, said = _runs(outcome)
+    briefs, said, points = _runs(outcome)
     findings = _of_parts(outcome, surfaces, models) + said
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
@@ -83,6 +85,8 @@ def write_report(
     findings += unjudged
 
     rows = model_records.model_rows_of(models)
+    live, undrawn = live_figures(outcome, shown, points, rows, modes, executor)
+    findings += undrawn
     tasks: list[FigureTask] = []
     if figures != "none":
         tasks += planned(
@@ -125,7 +129,7 @@ def write_report(
         **drawn,
     }
     write_json(document, _documents(outcome), folder / "report.json")
-    write_page(document | {"runs": briefs}, folder, lambda: _documents(outcome), store)
+    write_page(document | {"runs": briefs}, folder, lambda: _documents(outcome), store, live)
     store.save()
     tell("page", 1, 1)
 
@@ -136,14 +140,19 @@ def _documents(outcome: Outcome) -> Iterator[dict[str, Any]]:
         yield run_document(entry.record)
 
 
-def _runs(outcome: Outcome) -> tuple[list[dict[str, Any]], list[Notice]]:
-    """Return what is brief of every run, and what is said of it."""
+def _runs(
+    outcome: Outcome,
+) -> tuple[list[dict[str, Any]], list[Notice], dict[str, list[RunPoint]]]:
+    """Return what is brief of every run, what is said of it, and its friction over speed."""
     briefs: list[dict[str, Any]] = []
     said: list[Notice] = []
+    points: dict[str, list[RunPoint]] = {}
     for entry in outcome.store.all("run", RunRecord):
         briefs.append(brief_run(run_document(entry.record)))
         said += entry.record.notices
-    return briefs, said
+        name = entry.record.outcome.name
+        points[name] = run_points(name, entry.record.facts.segments)
+    return briefs, said, points
 
 
 def _of_parts(

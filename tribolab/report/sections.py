@@ -37,18 +37,18 @@ class Section:
 
 
 SECTIONS = (
-    Section("runs", "Runs", "sections/runs.html.j2"),
-    Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
-    Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
-    Section("curves", "Stribeck curves", "sections/curves.html.j2", "figures"),
-    Section(
-        "model", "Mixed lubrication: model beside measurement", "sections/model.html.j2", "models"
-    ),
+    Section("answer", "What was found", "sections/answer.html.j2"),
+    Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
+    Section("model", "Model beside measurement", "sections/model.html.j2", "models"),
     Section(
         "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
     ),
+    Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
+    Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
+    Section("runs", "Runs", "sections/runs.html.j2"),
     Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
     Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
+    Section("methods", "Methods and words", "sections/methods.html.j2"),
     Section("provenance", "Where it comes from", "sections/provenance.html.j2"),
 )
 
@@ -59,6 +59,6 @@ def shown_sections(document: Mapping[str, Any]) -> list[Section]:
     Examples
     --------
     >>> [section.id for section in shown_sections({"runs": ["one"]})]
-    ['runs', 'surfaces', 'details', 'findings', 'provenance']
+    ['answer', 'surfaces', 'runs', 'details', 'findings', 'methods', 'provenance']
     """
     return [one for one in SECTIONS if not one.key or document.get(one.key)]

@@ -1,317 +1,352 @@
 "use strict";
-// The traces of a run: drawn by uPlot, zoomed and panned by mouse, keys and buttons.
-(() => {
-  const TOP = 65534; // as report/packed.py has it
-  const LIGHT = {
-    ink: "#1c2126", grid: "#d8dee4", mean: "#c00000", suspect: "#b07500", fail: "#a8201a",
-    forward: "58, 58, 58", backward: "230, 159, 0", unknown: "86, 180, 233",
-  };
-  const DARK = {
-    ink: "#e4e8ec", grid: "#333b44", mean: "#ff9d94", suspect: "#f0c36a", fail: "#ff9d94",
-    forward: "190, 200, 210", backward: "230, 159, 0", unknown: "86, 180, 233",
-  };
-  const HEIGHTS = [260, 150];
-  const PAPER = 640; // fits between the margins of A4 and of Letter
-  const charts = new Map(); // by key of the run
-  let printing = false;
+// One figure: what it shows comes as data, Plotly draws it. When, charts.js says.
+report.drawing = (() => {
+  // Okabe and Ito's palette, which people with any common colour deficiency tell apart.
+  const HUES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b6b6b", "#000000"];
+  const DARKER = ["#5db4ee", "#ff8a3d", "#35c79a", "#e79cc6", "#f2bd45", "#8fd0f5", "#a8b0b8", "#ffffff"];
+  const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
+  const DASHES = { line: "solid", dashed: "dash", dotted: "dot" };
+  const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
+  const PAPER = 680;
+  const still = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
+  let library = null;
+  const state = { printing: false };
 
-  function colours() {
+  function isDark() {
     const theme = document.documentElement.dataset.theme;
-    const dark = theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    return dark && !printing ? DARK : LIGHT;
+    return !state.printing && (theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches);
   }
+  // Plotly reads a little HTML in labels; names from files are text and nothing else.
+  const text = (words) => String(words).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
+  const lines = (words) => text(words).replaceAll("\n", "<br>");
+  const force = (load) => `${Number(load.toPrecision(3))} N`;
+  const axis = (kind, panel) => kind + (panel ? panel + 1 : "");
 
-  // Bytes of one kind stand side by side: the lowest of all steps, the next ones, then those of the values.
-  function decode(bytes, signal, [knots, at]) {
-    const { points, step_bytes: width } = signal;
-    const share = (signal.high - signal.low) / TOP;
-    const value = signal.linear_below === null ? (level) => level : (level) => signal.linear_below * Math.sinh(level);
-    const times = new Array(points), values = new Array(points);
-    for (let k = 0, place = 0, part = 0; k < points; k++) {
-      for (let b = 0; b < width; b++) place += bytes[b * points + k] * 256 ** b;
-      while (part < knots.length - 2 && place > knots[part + 1]) part++;
-      const pace = (at[part + 1] - at[part]) / (knots[part + 1] - knots[part]);
-      times[k] = place === knots[part] ? at[part] : at[part] + (place - knots[part]) * pace;
-      const level = bytes[width * points + k] + 256 * bytes[(width + 1) * points + k];
-      values[k] = level > TOP ? null : value(signal.low + level * share);
-    }
-    return [times, values];
-  }
+  // The page's policy forbids style attributes as text; the library means what a script may set.
+  const asText = Element.prototype.setAttribute;
+  Element.prototype.setAttribute = function (name, value) {
+    if (name === "style") this.style.cssText = value;
+    else asText.call(this, name, value);
+  };
 
-  // Speeds span decades in both directions, so their axis is linear only near zero.
-  function decades(slowest, low, high) {
-    const first = Math.floor(Math.log10(slowest) + 1e-9);
-    const last = Math.floor(Math.log10(Math.max(-low, high)) + 1e-9);
-    const step = Math.max(1, Math.ceil((last - first) / 2));
-    const found = [0];
-    for (let k = last; k > first || k === last; k -= step) found.push(10 ** k, -(10 ** k));
-    return found.filter((v) => v >= low && v <= high).sort((a, b) => a - b);
+  // The library is unpacked and started from the page itself, once.
+  function plotly() {
+    library ??= (async () => {
+      const code = await report.unpacked(document.getElementById("library").textContent);
+      const script = document.createElement("script");
+      script.src = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+      await new Promise((done, failed) => {
+        script.onload = done;
+        script.onerror = failed;
+        document.head.append(script);
+      });
+      return globalThis.Plotly;
+    })();
+    return library;
   }
-  const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-  function power(value) {
-    if (value === 0) return "0";
-    const exponent = Math.round(Math.log10(Math.abs(value)));
-    return (value < 0 ? "−" : "") + "10" + String(exponent).replace(/./g, (c) => RAISED[c]);
-  }
-  const plain = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
 
   class Chart {
     constructor(figure) {
       this.figure = figure;
       this.place = figure.querySelector(".plot");
-      this.data = JSON.parse(figure.querySelector("script").textContent);
-      this.finer = figure.querySelector("script.finer");
-      this.level = this.data; // what is drawn: this, or the finer one once it is there
-      this.range = [0, this.data.length_s];
-      this.state = figure.querySelector(".state");
-      this.readout = figure.querySelector(".readout");
-      this.drawn = this.data.signals.map((signal) => decode(report.bytes(signal.data), signal, this.data.clock));
-      this.build();
+      this.load = null; // the one that is shown, of a figure of one load
+      this.scales = {}; // what the reader chose: log or linear, by axis
+      this.off = new Map(); // what the legend switches, by label
       this.listen();
-      this.tell();
     }
 
-    build() {
-      for (const chart of this.plots ?? []) chart.destroy();
-      this.plots = this.data.signals.map((signal, row) => new uPlot(this.options(signal, row), this.drawn[row], this.place));
-      this.show(...this.range);
+    async unpack() {
+      this.data ??= await this.read();
+      return this.data;
     }
 
-    options(signal, row) {
-      const colour = colours();
-      const log = signal.linear_below !== null;
-      const last = row === this.data.signals.length - 1;
-      const axis = { stroke: colour.ink, grid: { stroke: colour.grid, width: 1 }, ticks: { stroke: colour.grid, width: 1 }, font: "12px sans-serif", labelFont: "12px sans-serif" };
-      const vertical = { ...axis, scale: "y", size: 64, label: signal.label + (signal.unit ? ` (${signal.unit})` : "") };
-      if (log) {
-        vertical.splits = (u, i, low, high) => decades(signal.linear_below, low, high);
-        vertical.values = (u, splits) => splits.map(power);
-        vertical.filter = (u, splits) => splits;
-      } else {
-        vertical.values = (u, splits) => splits.map((v) => (v === null ? "" : plain(v)));
-      }
-      return {
-        width: printing ? PAPER : Math.max(280, this.place.clientWidth), height: HEIGHTS[Math.min(row, 1)],
-        legend: { show: false },
-        scales: { x: { time: false }, y: log ? { distr: 4, asinh: signal.linear_below } : {} },
-        series: [{}, { stroke: colour.ink, width: 1, points: { show: false }, spanGaps: false }],
-        axes: [{ ...axis, label: last ? "time (s)" : undefined, size: 30, gap: 3, labelSize: 18, values: (u, splits) => splits.map(plain) }, vertical],
-        cursor: {
-          sync: { key: this.figure.dataset.key },
-          drag: { x: true, y: false, setScale: true },
-          bind: { mousedown: (u, target, handler) => (event) => (event.shiftKey ? this.grab(event, u) : handler(event)) },
-        },
-        hooks: {
-          drawClear: [(u) => this.shade(u, row)],
-          draw: [(u) => this.means(u, row)],
-          setScale: [(u, key) => { if (key === "x") this.follow(u); }],
-          setCursor: [(u) => this.read(u, row)],
-        },
-      };
+    async read() {
+      const packed = this.figure.querySelector("script").textContent;
+      return JSON.parse(new TextDecoder().decode(await report.unpacked(packed)));
     }
 
-    shade(u, row) {
-      const colour = colours(), { ctx, bbox } = u;
-      const at = (t) => Math.min(Math.max(u.valToPos(t, "x", true), bbox.left), bbox.left + bbox.width);
-      const fill = (style, from, to, top, height, least = 0) => {
-        const a = Math.round(at(from)), width = Math.max(Math.round(at(to)) - a, least);
-        if (width <= 0 || to < this.range[0] || from > this.range[1]) return;
-        ctx.fillStyle = style;
-        ctx.fillRect(a, top, width, height);
-      };
-      ctx.save();
-      for (const [start, stop, inner, outer, sign] of this.data.segments) {
-        const rgb = sign > 0 ? colour.forward : sign < 0 ? colour.backward : colour.unknown;
-        fill(`rgba(${rgb}, 0.07)`, start, stop, bbox.top, bbox.height);
-        fill(`rgba(${rgb}, 0.12)`, inner, outer, bbox.top, bbox.height);
-      }
-      const bar = 7 * devicePixelRatio;
-      for (const span of this.data.flags) {
-        if (!this.concerns(span, row)) continue;
-        const tone = colour[span.severity];
-        ctx.globalAlpha = 0.28;
-        fill(tone, span.start_s, span.stop_s, bbox.top, bbox.height, 3);
-        ctx.globalAlpha = 1;
-        fill(tone, span.start_s, span.stop_s, bbox.top, bar, 3);
-        if (span.severity === "fail") fill(tone, span.start_s, span.stop_s, bbox.top + bbox.height - bar, bar, 3);
-      }
-      ctx.restore();
+    get loads() {
+      return [...new Set(this.data.series.map((one) => one.load).filter((load) => load !== undefined))].sort((a, b) => a - b);
     }
 
-    concerns(span, row) {
-      const motion = /velocity|speed|position/.test(span.signal);
-      return motion === (row > 0);
+    // One load is chosen for all figures together; a figure that does not have it shows its lowest.
+    chosen() {
+      if (!this.data.one_load) return report.view.get("load") || null;
+      const loads = this.loads.map(force), wanted = report.view.get("load");
+      return loads.includes(wanted) ? wanted : loads[0] ?? null;
     }
 
-    means(u, row) {
-      if (row > 0) return;
-      const { ctx } = u;
-      ctx.save();
-      ctx.beginPath();
-      ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
-      ctx.clip();
-      ctx.strokeStyle = colours().mean;
-      ctx.lineWidth = 1.5 * devicePixelRatio;
-      ctx.beginPath();
-      for (const [, , inner, outer, , mean] of this.data.segments) {
-        if (mean === null) continue;
-        const y = u.valToPos(mean, "y", true);
-        ctx.moveTo(u.valToPos(inner, "x", true), y);
-        ctx.lineTo(u.valToPos(outer, "x", true), y);
-      }
-      ctx.stroke();
-      ctx.restore();
-    }
-
-    // One of the plots was zoomed: the others follow, and the finer trace is unpacked if need be.
-    follow(u) {
-      const { min, max } = u.scales.x;
-      if (this.moving || min === null || (min === this.range[0] && max === this.range[1])) return;
-      queueMicrotask(() => this.show(min, max));
-    }
-
-    show(low, high) {
-      const whole = this.data.length_s;
-      const span = Math.min(Math.max(high - low, whole * 1e-6), whole);
-      const start = Math.min(Math.max(low, 0), whole - span);
-      this.range = [start, start + span];
-      this.moving = true;
-      for (const plot of this.plots) plot.batch(() => plot.setScale("x", { min: start, max: start + span }));
-      this.moving = false;
-      if (span < 0.4 * whole && this.finer) this.refine();
-      this.tell();
-    }
-
-    zoom(factor, about = 0.5) {
-      const [low, high] = this.range, at = low + about * (high - low);
-      this.show(at - (at - low) * factor, at + (high - at) * factor);
-    }
-
-    pan(share) {
-      const [low, high] = this.range, by = share * (high - low);
-      this.show(low + by, high + by);
-    }
-
-    async refine() {
-      const finer = JSON.parse(this.finer.textContent);
-      this.finer = null; // once is enough
-      const unpacking = finer.signals.map((signal) => report.unpacked(signal.data));
-      const bytes = await Promise.all(unpacking).catch(() => null);
-      if (bytes === null) {
-        this.missing = true;
-        return this.tell();
-      }
-      this.level = finer;
-      this.drawn = finer.signals.map((signal, row) => decode(bytes[row], signal, this.data.clock));
-      this.plots.forEach((plot, row) => plot.setData(this.drawn[row], false));
-      this.show(...this.range);
-    }
-
-    tell() {
-      const [low, high] = this.range;
-      const points = this.level.signals[0].points;
-      const part = this.level.complete ? `all ${this.data.samples} samples` : `${points} of ${this.data.samples} samples, extremes kept`;
-      const lost = this.missing ? "; this browser cannot unpack the finer trace" : "";
-      this.state.textContent = `${plain(low)} s to ${plain(high)} s of ${plain(this.data.length_s)} s; ${part}${lost}`;
-    }
-
-    read(u, row) {
-      const place = u.cursor.idx;
-      if (row > 0 || place === null || place === undefined) return;
-      const [t, v] = [u.data[0][place], u.data[1][place]];
-      const segment = this.data.segments.findIndex(([start, stop]) => t >= start && t <= stop);
-      const where = segment < 0 ? "" : `, segment ${segment + 1} (${this.data.segments[segment][6]})`;
-      const unit = this.data.signals[0].unit;
-      this.readout.textContent = v === null ? "" : `${plain(t)} s: ${this.data.signals[0].label} ${Number(v.toPrecision(4))}${unit && " " + unit}${where}`;
-    }
-
-    grab(event, u) {
-      event.preventDefault();
-      const width = u.bbox.width / devicePixelRatio, [low, high] = this.range;
-      const move = (later) => {
-        const by = ((event.clientX - later.clientX) / width) * (high - low);
-        this.show(low + by, high + by);
-      };
-      const end = () => {
-        removeEventListener("pointermove", move);
-        removeEventListener("pointerup", end);
-        removeEventListener("pointercancel", end);
-      };
-      addEventListener("pointermove", move);
-      addEventListener("pointerup", end);
-      addEventListener("pointercancel", end);
-    }
-
-    listen() {
-      const keys = {
-        ArrowLeft: () => this.pan(-0.2), ArrowRight: () => this.pan(0.2),
-        "+": () => this.zoom(0.5), "=": () => this.zoom(0.5), ArrowUp: () => this.zoom(0.5),
-        "-": () => this.zoom(2), ArrowDown: () => this.zoom(2),
-        Home: () => this.show(0, this.data.length_s), 0: () => this.show(0, this.data.length_s),
-      };
-      this.place.addEventListener("keydown", (event) => {
-        if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
-        event.preventDefault();
-        keys[event.key]();
+    shown() {
+      const load = this.chosen(), hidden = report.view.hidden;
+      return this.data.series.filter((one) => {
+        if (one.load !== undefined && load && force(one.load) !== load) return false;
+        if (one.runs?.length && one.runs.every((name) => hidden.has(name))) return false;
+        return report.view.shows({ surface: one.surface, medium: one.medium });
       });
-      this.place.addEventListener("wheel", (event) => {
-        if (!event.ctrlKey && !event.metaKey) return; // else the page scrolls, as everywhere
-        event.preventDefault();
-        const box = this.place.querySelector(".u-over").getBoundingClientRect();
-        this.zoom(event.deltaY < 0 ? 0.7 : 1 / 0.7, Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1));
-      }, { passive: false });
-      this.place.addEventListener("pointerdown", (event) => {
-        if (event.pointerType === "touch") this.grab(event, this.plots[0]);
-      });
-      const acts = {
-        in: keys["+"], out: keys["-"], left: keys.ArrowLeft, right: keys.ArrowRight, all: keys.Home,
-        svg: () => report.save(`${this.figure.dataset.key}_view.svg`, "image/svg+xml", report.drawing(this)),
-        csv: () => report.save(`${this.figure.dataset.key}_view.csv`, "text/csv", this.table()),
-      };
-      this.figure.addEventListener("click", (event) => {
-        const button = event.target.closest("button");
-        if (!button) return;
-        if (button.dataset.act) acts[button.dataset.act]();
-        if (button.dataset.from) {
-          const [from, to] = [Number(button.dataset.from), Number(button.dataset.to)];
-          const room = Math.max(to - from, this.data.length_s / 500);
-          this.show(from - room, to + room);
-          this.place.scrollIntoView({ block: "nearest" });
+    }
+
+    isLog(side, panel) {
+      return this.scales[`${side}${panel}`] ?? Boolean(this.data.panels[panel][side].log);
+    }
+
+    traces() {
+      const hues = isDark() ? DARKER : HUES, seen = new Set(), traces = [];
+      const marking = report.view.get("mark");
+      for (const one of this.shown()) {
+        const panel = one.panel ?? 0, place = one.colour ?? 0, style = one.style ?? "line";
+        const hue = hues[place % hues.length];
+        const faded = marking && !report.view.marks([one.label, ...(one.runs ?? [])].join(" "));
+        const base = {
+          name: text(one.label), legendgroup: one.label, showlegend: !seen.has(one.label) && style !== "band",
+          x: one.x, y: one.y, xaxis: axis("x", panel), yaxis: axis("y", panel), opacity: faded ? 0.15 : 1,
+          visible: (this.off.get(one.label) ?? one.faint) ? "legendonly" : true, meta: one.goes_to,
+          hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
+        };
+        if (one.told?.length > 1 || (one.told?.length && one.style === "points")) Object.assign(base, { text: one.told.map(lines), hovertemplate: "%{text}<extra></extra>" });
+        if (style !== "band") seen.add(one.label);
+        const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
+        if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: one.faint ? 5 : 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
+        else if (style === "band") traces.push(...this.band(one, base, hue));
+        else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", marker: { color: hue } });
+        else if (style === "heat") traces.push({ ...base, mode: "markers", marker: { color: one.high, symbol: "square", size: 7, colorscale: "Cividis", showscale: traces.length === 0, cmin: 0.3, cmax: 3, colorbar: { title: { text: "log₁₀ of<br>the ratio" }, thickness: 12 } }, hovertemplate: `${text(one.label)}<br>%{x} m/s, %{y} Hz<br>log₁₀ ratio %{marker.color}<extra></extra>` });
+        else traces.push({ ...base, mode: "lines", line: { color: hue, width: style === "line" ? 2 : 1.6, dash: DASHES[style] } });
+      }
+      return traces;
+    }
+
+    bars(one, hue) {
+      if (!one.error?.some((value) => value > 0)) return {};
+      return { error_y: { type: "data", array: one.error.map((value) => value ?? 0), color: hue, thickness: 1.4, width: 4 } };
+    }
+
+    band(one, base, hue) {
+      const log = this.isLog("y", one.panel ?? 0);
+      const least = log ? Math.min(...one.high.filter((value) => value > 0)) / 1e3 : -Infinity;
+      const edge = { ...base, mode: "lines", line: { width: 0, color: hue }, hoverinfo: "skip", hovertemplate: null, text: null };
+      return [
+        { ...edge, y: one.y.map((value) => Math.max(value, least)) },
+        { ...edge, y: one.high, fill: "tonexty", fillcolor: `${hue}2e` },
+      ];
+    }
+
+    // Bands may reach far beyond what was measured: the first view is that of points and lines.
+    range(side, panel) {
+      const log = this.isLog(side, panel);
+      let low = Infinity, high = -Infinity;
+      for (const one of this.shown()) {
+        if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || (this.off.get(one.label) ?? one.faint)) continue;
+        const values = side === "x" ? one.x : one.y;
+        for (let k = 0; k < values.length; k++) {
+          const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;
+          if (typeof value !== "number") { if (typeof value === "string") return undefined; continue; }
+          for (const end of [value - bar, value + bar, value]) {
+            if (log && !(end > 0)) continue;
+            if (log && end < value / 20) continue;
+            low = Math.min(low, end);
+            high = Math.max(high, end);
+          }
         }
-      });
-      new ResizeObserver(() => this.resize()).observe(this.place);
+      }
+      if (!(high >= low)) return undefined;
+      const decades = this.data.panels[panel][side].decades;
+      if (log) [low, high] = [Math.log10(low), Math.log10(high)];
+      if (log && decades) low = Math.max(low, high - decades);
+      else if (side === "y" && low > 0 && low < 0.6 * high) low = 0;
+      const room = (high - low || Math.abs(high) * 0.1 || 0.5) * 0.06;
+      return [low === 0 && !log ? 0 : low - room, high + room];
     }
 
-    resize() {
-      if (printing) return;
-      const width = Math.max(280, this.place.clientWidth);
-      if (!this.place.clientWidth || width === this.plots[0].width) return;
-      this.plots.forEach((plot, row) => plot.setSize({ width, height: HEIGHTS[Math.min(row, 1)] }));
+    layout() {
+      const dark = isDark(), ink = dark ? "#e4e8ec" : "#1c2126", grid = dark ? "#333b44" : "#d8dee4";
+      const panels = this.data.panels, count = panels.length, narrow = this.width < 520;
+      const layout = {
+        width: this.width, height: this.height, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+        font: { family: FONT, size: 13, color: ink }, hovermode: "closest", dragmode: still ? false : "zoom",
+        margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.legend().length > 1,
+        hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: 13 } },
+        legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: 12 }, groupclick: "togglegroup", itemsizing: "constant" },
+        shapes: this.shapes?.() ?? [],
+        ...(this.more?.() ?? {}),
+      };
+      const gap = 0.09, tall = (1 - gap * (count - 1)) / count;
+      panels.forEach((panel, row) => {
+        const last = row === count - 1;
+        const name = ({ label, unit }) => text(unit ? `${label} (${unit})` : label ?? "");
+        const side = (kind, what) => ({
+          type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
+          title: { text: kind === "x" && !last ? "" : name(what), standoff: 8 }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
+          tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
+          minorloglabels: "none", nticks: narrow ? 5 : 8, range: this.range(kind, row),
+        });
+        const x = side("x", panel.x), y = side("y", panel.y);
+        if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
+        if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
+        x.anchor = axis("y", row);
+        if (row) x.matches = "x";
+        if (!last && count > 1) x.showticklabels = false;
+        y.domain = [1 - row * (tall + gap) - tall, 1 - row * (tall + gap)];
+        y.anchor = axis("x", row);
+        Object.assign(x, this.axes?.("x", row)), Object.assign(y, this.axes?.("y", row));
+        layout[axis("xaxis", row)] = x;
+        layout[axis("yaxis", row)] = y;
+      });
+      return layout;
+    }
+
+    legend() { return [...new Set(this.shown().filter((one) => one.style !== "band").map((one) => one.label))]; }
+
+    get width() {
+      if (this.full) return innerWidth - 24;
+      if (state.printing) return Math.min(PAPER, this.place.dataset.paper ? Number(this.place.dataset.paper) : PAPER);
+      return Math.max(260, this.place.clientWidth);
+    }
+
+    get height() {
+      if (this.full) return innerHeight - 110;
+      const count = this.data.panels.length;
+      const columns = Math.max(1, Math.floor(this.width / 210));
+      const legend = this.legend().length > 1 ? Math.ceil(this.legend().length / columns) * 20 : 0;
+      const heights = this.place.dataset.height ? [Number(this.place.dataset.height)] : [320, 460, 620];
+      return (state.printing && count === 1 ? Math.min(250, heights[0]) : heights[Math.min(count, heights.length) - 1]) + Math.min(legend, 160);
+    }
+
+    async draw() {
+      const [Plotly] = await Promise.all([plotly(), this.unpack()]);
+      this.paint(Plotly);
+    }
+
+    paint(Plotly = globalThis.Plotly) {
+      if (!Plotly || !this.data || !(state.printing || this.place.clientWidth)) return;
+      const config = { displayModeBar: false, scrollZoom: false, doubleClick: "reset", showTips: false, locale: "en" };
+      Plotly.react(this.place, this.traces(), this.layout(), config);
+      if (!this.drawn) this.attach(Plotly);
+      this.drawn = true;
+      this.chips();
+      this.tell?.();
+    }
+
+    attach(Plotly) {
+      this.place.on("plotly_click", (event) => {
+        const point = event.points[0], goals = point?.data.meta ?? [];
+        const goal = goals.length === 1 ? goals[0] : goals[point.pointIndex ?? point.pointNumber];
+        if (goal) report.goToRun(goal);
+      });
+      this.place.on("plotly_legendclick", (event) => {
+        const label = event.data[event.curveNumber].legendgroup;
+        this.off.set(label, event.data[event.curveNumber].visible !== "legendonly");
+        this.paint(Plotly);
+        return false;
+      });
+      this.place.on("plotly_legenddoubleclick", (event) => {
+        const label = event.data[event.curveNumber].legendgroup;
+        const alone = this.legend().every((one) => one === label || this.off.get(one));
+        for (const one of this.legend()) this.off.set(one, !alone && one !== label);
+        this.paint(Plotly);
+        return false;
+      });
+      this.place.on("plotly_relayout", () => this.follow?.());
+    }
+
+    // Chips for the loads, and what the switches say.
+    chips() {
+      const holder = this.figure.querySelector(".loads");
+      if (holder && this.data.one_load) {
+        const loads = this.loads.map(force), now = this.chosen();
+        if (holder.childElementCount !== loads.length) {
+          holder.replaceChildren(...loads.map((load) => {
+            const chip = document.createElement("button");
+            chip.type = "button";
+            chip.textContent = load;
+            chip.addEventListener("click", () => report.view.set("load", load));
+            return chip;
+          }));
+          holder.hidden = loads.length < 2;
+        }
+        for (const chip of holder.children) chip.setAttribute("aria-pressed", String(chip.textContent === now));
+      }
+      for (const button of this.figure.querySelectorAll("[data-scale]")) {
+        const side = button.dataset.scale, log = this.isLog(side, 0);
+        button.hidden = side === "y" && !this.data.panels[0].y.label;
+        button.textContent = `${side === "x" ? "→" : "↑"} ${log ? "log" : "linear"}`;
+        button.setAttribute("aria-label", `${side === "x" ? "Horizontal" : "Vertical"} axis: ${log ? "logarithmic, make it linear" : "linear, make it logarithmic"}`);
+      }
+    }
+
+    rescale(side) {
+      const log = !this.isLog(side, 0);
+      this.data.panels.forEach((panel, row) => { if (side === "x" || row === 0 || panel.y.log) this.scales[`${side}${row}`] = log; });
+      this.paint();
+    }
+
+    zoom(factor, shift = 0) {
+      const now = this.place._fullLayout.xaxis.range.map(Number);
+      const middle = (now[0] + now[1]) / 2 + shift * (now[1] - now[0]), half = ((now[1] - now[0]) / 2) * factor;
+      return globalThis.Plotly.relayout(this.place, { "xaxis.range": [middle - half, middle + half] });
+    }
+
+    whole() { this.paint(); }
+
+    async save(kind) {
+      await this.draw();
+      const name = this.figure.id || "figure";
+      if (kind === "csv") return report.save(`${name}.csv`, "text/csv", this.table());
+      const size = { width: this.place._fullLayout.width, height: this.place._fullLayout.height };
+      const dark = isDark();
+      state.printing = true; // what leaves the page is for paper: light
+      try {
+        const layout = { ...this.layout(), ...size, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff" };
+        for (const key of Object.keys(layout)) if (/^[xy]axis/.test(key)) layout[key].range = this.place._fullLayout[key].range;
+        const picture = await globalThis.Plotly.toImage({ data: this.traces(), layout }, { format: kind, scale: kind === "png" ? 3 : 1, ...size });
+        if (kind === "svg") report.save(`${name}.svg`, "image/svg+xml", decodeURIComponent(picture.slice(picture.indexOf(",") + 1)));
+        else report.save(`${name}.png`, "image/png", report.bytes(picture.slice(picture.indexOf(",") + 1)));
+      } finally {
+        state.printing = false;
+        if (dark) this.paint();
+      }
     }
 
     // What is seen, as numbers.
     table() {
-      const [low, high] = this.range;
-      const rows = ["signal,unit,time_s,value"];
-      this.level.signals.forEach((signal, row) => {
-        const [times, values] = this.drawn[row];
-        times.forEach((t, k) => {
-          if (t >= low && t <= high && values[k] !== null) rows.push(`${signal.name},${signal.unit || 1},${t},${values[k]}`);
+      const quote = (value) => (/[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : value);
+      const rows = [["series", "surface", "medium", "load_N", "x", "x_unit", "y", "y_unit", "error", "high", "runs"].join(",")];
+      for (const one of this.shown()) {
+        const panel = this.data.panels[one.panel ?? 0];
+        one.x.forEach((x, k) => {
+          const cells = [one.label, one.surface ?? "", one.medium ?? "", one.load ?? "", x, panel.x.unit || 1, one.y[k] ?? "", panel.y.unit || 1, one.error?.[k] ?? "", one.high?.[k] ?? "", (one.runs ?? []).join(" ")];
+          rows.push(cells.map(report.harmless).map(quote).join(","));
         });
-      });
+      }
       return rows.join("\n") + "\n";
+    }
+
+    listen() {
+      const acts = {
+        whole: () => this.whole(), in: () => this.zoom(0.5), out: () => this.zoom(2), left: () => this.zoom(1, -0.2), right: () => this.zoom(1, 0.2),
+        svg: () => this.save("svg"), png: () => this.save("png"), csv: () => this.save("csv"),
+        full: () => this.enlarge(),
+      };
+      const keys = { ArrowLeft: "left", ArrowRight: "right", "+": "in", "=": "in", ArrowUp: "in", "-": "out", ArrowDown: "out", Home: "whole", 0: "whole" };
+      this.place.addEventListener("keydown", (event) => {
+        if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey || !this.drawn) return;
+        event.preventDefault();
+        acts[keys[event.key]]();
+      });
+      this.figure.addEventListener("click", (event) => {
+        const button = event.target.closest("button");
+        if (button?.dataset.act) acts[button.dataset.act]?.();
+        if (button?.dataset.scale) this.rescale(button.dataset.scale);
+      });
+      this.figure.addEventListener("fullscreenchange", () => {
+        this.full = document.fullscreenElement === this.figure;
+        this.paint();
+      });
+    }
+
+    enlarge() {
+      if (document.fullscreenElement) document.exitFullscreen();
+      else this.figure.requestFullscreen?.().catch(() => {});
     }
   }
 
-  const draw = (details) => {
-    for (const figure of details.querySelectorAll("figure.chart")) {
-      if (!charts.has(figure)) charts.set(figure, new Chart(figure));
-    }
-  };
-  report.opened.push(draw);
-  const again = () => { for (const chart of charts.values()) chart.build(); };
-  addEventListener("appearance", again);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
-  addEventListener("beforeprint", () => { printing = true; again(); });
-  addEventListener("afterprint", () => { printing = false; again(); });
+  return { Chart, plotly, isDark, state };
 })();

@@ -63,41 +63,6 @@ document.documentElement.classList.add("js");
 })();
 
 const report = {
-  opened: [], // called with the <details> of a run when it is opened
-  open(details) {
-    details.open = true;
-    for (const call of this.opened) call(details);
-  },
+  begun: [], // called when all scripts are there
+  goTo() {}, // leads to a place on the page
 };
-
-(() => {
-  function openTarget() {
-    const target = location.hash && document.getElementById(location.hash.slice(1));
-    if (target && target.tagName === "DETAILS") {
-      report.open(target);
-      target.scrollIntoView();
-      target.querySelector("summary").focus({ preventScroll: true });
-    }
-  }
-  const most = 40; // more charts at once than anyone looks at
-  function openAll(open) {
-    Array.from(document.querySelectorAll("details.run"), (details, place) => {
-      if (!open) details.open = false;
-      else if (place < most) report.open(details);
-    });
-  }
-  addEventListener("hashchange", openTarget);
-  document.addEventListener("click", (event) => {
-    // a link to where the page already stands changes no hash
-    if (event.target.closest?.("a[href^='#run-']")) setTimeout(openTarget);
-  });
-  document.addEventListener("toggle", (event) => {
-    if (event.target.matches?.("details.run") && event.target.open) report.open(event.target);
-  }, true);
-  addEventListener("beforeprint", () => {
-    if (!document.querySelector("details.run[open]")) openAll(true);
-  });
-  document.getElementById("open-all")?.addEventListener("click", () => openAll(true));
-  document.getElementById("close-all")?.addEventListener("click", () => openAll(false));
-  addEventListener("load", openTarget);
-})();

@@ -1,0 +1,367 @@
+"""What a reader does with the page: choose, hide, sort, zoom, take along, print."""
+
+import base64
+import io
+import json
+import os
+import re
+import zipfile
+
+import numpy as np
+import openpyxl
+import pytest
+from chromium import BROWSER, chromium
+from report_pages import DRAW_ALL, FLAGGED, LONG, OPEN_ALL, RUNS, figures_of, made, page_of
+from reporting import made_run
+
+FAILED = "the page could not be opened: no chromium was found"
+SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    if not BROWSER:
+        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
+            pytest.fail(FAILED)
+        pytest.skip(FAILED)
+    with chromium(tmp_path_factory.mktemp("profile")) as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return made(tmp_path_factory.mktemp("live"))
+
+
+@pytest.fixture(scope="module")
+def alone(results, tmp_path_factory):
+    """The page as it is sent: one file in a folder of its own."""
+    file = tmp_path_factory.mktemp("sent") / "report.html"
+    file.write_text(page_of(results), encoding="utf-8")
+    return file
+
+
+def drawn(page, figure):
+    """Bring a figure near, wait until it is drawn, and return the names of what it shows."""
+    page.run(f"document.getElementById({json.dumps(figure)}).scrollIntoView()")
+    page.wait(f"document.querySelector('#{figure} .js-plotly-plot')?._fullData !== undefined")
+    return names(page, figure)
+
+
+def names(page, figure):
+    """Return the names of what a figure shows."""
+    return page.run(
+        f"document.querySelector('#{figure} .plot')._fullData"
+        ".filter(one => one.visible === true).map(one => one.name)"
+    )
+
+
+def rows(page):
+    """Return the names in the table of runs, as they stand there."""
+    return page.run(
+        "Array.from(document.querySelectorAll('#runs-table tbody tr[data-run]:not([hidden])'),"
+        "row => row.dataset.run)"
+    )
+
+
+def span_of(page, run):
+    """Return what a run's trace says of the time that it shows: from, to [s]."""
+    text = page.run(f"document.querySelector('#run-{run} .state').textContent")
+    return tuple(float(word) for word in re.match(r"([\d.]+) s to ([\d.]+) s", text).groups())
+
+
+@pytest.mark.slow
+def test_the_first_screen_is_the_answer(browser, results):
+    with browser.page(results / "report.html", 1400, 900) as page:
+        assert drawn(page, "card-1") == ["measured"]
+        page.run("scrollTo(0, 0)")
+        seen = page.run(
+            "Array.from(document.querySelectorAll('.answer'), card => ({"
+            "top: card.getBoundingClientRect().top, name: card.querySelector('h3').textContent,"
+            "said: card.querySelector('[data-at-load]').textContent}))"
+        )
+        assert [card["name"] for card in seen] == ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]
+        assert all(0 < card["top"] < 450 for card in seen)
+        # 15 % a decade over seven decades: the curve says what the sentence says
+        assert re.match(
+            r"31 N: Highest µ = 0.800 ± 0.008 at 1 µm/s; half of it at", seen[0]["said"]
+        )
+        assert "oscillat" in seen[0]["said"] or "sliding" in seen[0]["said"]
+
+
+@pytest.mark.slow
+def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, results):
+    series = figures_of(results)["card-1"]["series"][0]
+    assert "(between runs)" in series["told"][0] and "within the run: ± " in series["told"][0]
+    assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
+    with browser.page(results / "report.html") as page:
+        drawn(page, "card-1")
+        page.click("#card-1 .points .point")
+        page.wait("document.querySelector('#run-1').open")
+        assert page.run("location.hash") == "#run-1"
+
+
+@pytest.mark.slow
+def test_axes_switch_between_logarithmic_and_linear_by_key(browser, results):
+    kind = "document.querySelector('#card-1 .plot')._fullLayout.yaxis.type"
+    with browser.page(results / "report.html") as page:
+        drawn(page, "card-1")
+        assert page.run(kind) == "log"
+        page.run("document.querySelector('#card-1 [data-scale=y]').focus()")
+        page.key("Enter", "\r")
+        assert page.run(kind) == "linear"
+        assert "linear" in page.run("document.activeElement.textContent")
+
+
+@pytest.mark.slow
+def test_what_is_looked_at_stands_in_the_address_and_rules_tables_and_figures(browser, results):
+    address = (results / "report.html").as_uri()
+    with browser.page(f"{address}#surface=Sb-S&medium=dry") as page:
+        assert rows(page) == ["sb-s_1"]
+        shown = (
+            "Array.from(document.querySelectorAll('.answer:not([hidden]) h3'), h => h.textContent)"
+        )
+        assert page.run(shown) == ["Sb-S, dry"]
+        assert drawn(page, "curves-compared") == ["Sb-S, dry"]
+        # a link to a section keeps it
+        page.click("nav a[href='#runs']")
+        assert page.run("location.hash") == "#runs&surface=Sb-S&medium=dry"
+        page.click(".filters [type=reset]")
+        page.wait("document.querySelectorAll('.answer:not([hidden])').length === 3")
+        assert names(page, "curves-compared") == ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]
+        # hidden by its box in the table, a run goes from the figures too
+        page.click("input[data-hide=sb-r_1]")
+        assert page.run("location.hash").endswith("&hide=sb-r_1")
+        assert "sb-r_1" not in rows(page)
+        assert names(page, "curves-compared") == ["Sb-S, dry", "Sb-S, glycerol"]
+        assert "1 hidden" in page.run("document.querySelector('.filters output').textContent")
+        assert page.console == page.stopped == []
+
+
+@pytest.mark.slow
+def test_a_highlighted_run_stands_out(browser, results):
+    with browser.page(f"{(results / 'report.html').as_uri()}#mark=sb-s_long") as page:
+        marked = "Array.from(document.querySelectorAll('tr.marked'), row => row.dataset.run)"
+        assert page.run(marked) == ["sb-s_long"]
+        drawn(page, "curves-compared")
+        faded = page.run(
+            "document.querySelector('#curves-compared .plot')._fullData.map(o => o.opacity)"
+        )
+        assert faded == [0.15, 0.15, 1]
+
+
+@pytest.mark.slow
+def test_tables_sort_by_several_columns_filter_and_hide_columns(browser, results):
+    with browser.page(results / "report.html") as page:
+        head = "#runs-table th[data-name={}]"
+        page.click(f"{head.format('surface')} button")
+        page.click(f"{head.format('slowest')} button", shift=True)
+        page.click(f"{head.format('slowest')} button", shift=True)
+        assert rows(page) == ["sb-r_1", "sb-s_1", "sb-s_long", "broken"]
+        orders = "['surface', 'slowest'].map(name => document.querySelector("
+        orders += "`#runs-table th[data-name=${name}]`)).map(head => head.ariaSort)"
+        assert page.run(orders) == ["ascending", "descending"]
+        page.click("#runs input[type=search]")
+        page.type("no unit")
+        assert rows(page) == ["broken"]
+        assert page.run("document.querySelector('#runs output').textContent") == "1 of 4 runs"
+        page.click("#runs [type=reset]")
+        assert rows(page) == [name for name, *_ in RUNS] + ["broken"]
+        width = "document.querySelector('#runs-table th[data-name=medium]').offsetWidth"
+        assert page.run(width) > 0
+        page.click(".columns summary")
+        page.click("[data-hides=medium]")
+        assert page.run(width) == 0
+
+
+@pytest.mark.slow
+def test_heads_of_columns_explain_themselves_on_hover_and_focus(browser, results):
+    tip = "document.getElementById('tip').hidden ? '' : document.getElementById('tip').textContent"
+    with browser.page(results / "report.html") as page:
+        page.run("document.querySelector('[data-name=noise] button').focus()")
+        assert page.run(tip).startswith("Standard deviation of friction along a segment")
+        page.key("Escape")
+        assert page.run(tip) == ""
+        x, y = page.run(
+            "(() => { const e = document.querySelector('[data-name=drift]');"
+            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
+            "const b = e.getBoundingClientRect(); return [b.x + 5, b.y + 5] })()"
+        )
+        page.mouse([(x, y)])
+        assert "significant change" in page.run(tip)
+
+
+@pytest.mark.slow
+def test_the_page_sent_alone_hands_out_tables_and_figures(browser, alone):
+    with browser.page(alone) as page:
+        page.run(SAVING)
+        for kind in ("csv", "xlsx"):
+            page.click(f"#runs [data-out={kind}]")
+        name, _, text = page.run("saved[0]")
+        assert name == "runs.csv"
+        assert text.splitlines()[1].startswith("1,done,0.800 ± ") and "sb-s_long" in text
+        book = page.run(
+            "saved[1][2].arrayBuffer().then(b => btoa(String.fromCharCode(...new Uint8Array(b))))"
+        )
+        raw = io.BytesIO(base64.b64decode(book))
+        assert zipfile.ZipFile(raw).testzip() is None
+        sheet = openpyxl.load_workbook(raw).active
+        assert [cell.value for cell in sheet[1]][:2] == ["Run", "Status"]
+        assert sheet["A2"].value == 1 and sheet.max_row == 1 + 4
+        drawn(page, "card-1")
+        for kind in ("csv", "svg", "png"):
+            page.click(f"#card-1 [data-act={kind}]")
+            page.wait(f"saved.some(file => file[0] === 'card-1.{kind}')")
+        files = page.run("Object.fromEntries(saved.map(f => [f[0], f[2].length ?? 0]))")
+        assert files["card-1.png"] > 5000
+        svg = page.run("saved.find(f => f[0] === 'card-1.svg')[2]")
+        assert svg.startswith("<svg") and "friction coefficient" in svg
+        table = page.run("saved.find(f => f[0] === 'card-1.csv')[2]").splitlines()
+        assert len(table) == 1 + len(figures_of(alone.parent)["card-1"]["series"][0]["x"])
+        assert page.requests == [alone.as_uri()] and page.console == page.stopped == []
+
+
+@pytest.mark.slow
+def test_a_cell_that_a_spreadsheet_would_compute_is_handed_out_as_text(browser, alone):
+    with browser.page(alone) as page:
+        cells = page.run("['=1+1', '-3.5', '@x', 'Sb-R'].map(report.harmless)")
+        assert cells == ["'=1+1", "-3.5", "'@x", "Sb-R"]
+
+
+@pytest.mark.slow
+def test_a_flagged_run_is_two_clicks_away_with_its_span_marked(browser, results):
+    number = FLAGGED + 1
+    with browser.page(results / "report.html") as page:
+        page.click(".banner a[href='#findings']")
+        page.click(f"#findings a[href='#run-{number}']")
+        page.wait(f"document.querySelector('#run-{number} .js-plotly-plot') !== null")
+        page.wait(f"document.querySelector('#run-{number} .state').textContent !== ''")
+        # a third click zooms to what was flagged
+        page.click(f"#run-{number} .flags button")
+        page.wait(f"!document.querySelector('#run-{number} .state').textContent.startsWith('0 s')")
+        low, high = span_of(page, number)
+        assert low < 3.0 < high and high - low < 0.1
+        shapes = page.run(
+            f"document.querySelector('#run-{number} .plot').layout.shapes.map(s => s.fillcolor)"
+        )
+        assert "#b07500" in shapes, "the flagged span has its colour in the trace"
+
+
+@pytest.mark.slow
+def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
+    state = "document.querySelector('#run-1 .state').textContent"
+    with browser.page(f"{(results / 'report.html').as_uri()}#run-1") as page:
+        page.wait("document.querySelector('#run-1 .nsewdrag') !== null")
+        whole = span_of(page, 1)
+        box = page.run(
+            "(() => { const e = document.querySelector('#run-1 .nsewdrag');"
+            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
+            "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()"
+        )
+        x, y = box[0], box[1] + box[3] / 2
+        page.mouse([(x + box[2] * share, y) for share in (0.25, 0.4, 0.5)])
+        page.wait(f"!{state}.startsWith('0 s')")
+        low, high = span_of(page, 1)
+        assert (low / whole[1], high / whole[1]) == pytest.approx((0.25, 0.5), abs=0.01)
+        page.run("document.querySelector('#run-1 .plot').focus()")
+        page.key("ArrowRight")
+        later = span_of(page, 1)
+        assert later[0] - low == pytest.approx(0.2 * (high - low), rel=1e-3)
+        page.key("+", "+")
+        near = span_of(page, 1)
+        assert near[1] - near[0] == pytest.approx((high - low) / 2, rel=1e-3)
+        page.click("#run-1 [data-act=out]")
+        assert span_of(page, 1) == pytest.approx(later, rel=1e-3)
+        page.run("document.querySelector('#run-1 .plot').focus()")
+        page.key("Home")
+        assert span_of(page, 1) == whole
+        assert page.console == []
+
+
+@pytest.mark.slow
+def test_the_page_sent_alone_zooms_into_the_finer_trace(browser, alone):
+    number = LONG[0] + 1
+    state = f"document.querySelector('#run-{number} .state').textContent"
+    with browser.page(f"{alone.as_uri()}#run-{number}") as page:
+        page.wait(f"document.querySelector('#run-{number} .js-plotly-plot') !== null")
+        page.wait(f"{state}.includes('extremes kept')")
+        page.run(SAVING)
+        for _ in range(2):
+            page.click(f"#run-{number} [data-act=in]")
+        page.wait(f"{state}.includes('all 10100 samples')")
+        page.click(f"#run-{number} [data-act=csv]")
+        page.wait("saved.length === 1")
+        table = page.run("saved[0][2]").splitlines()[1:]
+        assert page.requests == [alone.as_uri()] and page.console == page.stopped == []
+        low, high = span_of(page, number)
+    # what is handed out is what was measured
+    index, samples = LONG
+    _, _, _, load, mu = RUNS[index]
+    run, _, _ = made_run([1e-3, 1e-2], load, mu, seed=9, samples=samples)
+    shown = np.array([row.split(",")[2:] for row in table if row.startswith("friction_")], float)
+    time = run.time.values
+    inside = (time >= low) & (time <= high)
+    assert abs(len(shown) - inside.sum()) <= 2 and len(shown) > 2000
+    ratio = (run.friction_force / run.normal_force).values
+    found = np.interp(shown[:, 0], time, ratio)
+    np.testing.assert_allclose(shown[:, 1], found, atol=1e-3 * np.ptp(ratio))
+
+
+@pytest.mark.slow
+def test_a_browser_that_cannot_unpack_says_so_and_keeps_tables_and_sentences(browser, alone):
+    with browser.page(alone, before="delete window.DecompressionStream") as page:
+        page.wait("document.querySelector('#card-1 .plot').textContent.includes('too old')")
+        assert len(rows(page)) == 4
+        assert "Highest µ" in page.run("document.querySelector('.answer').textContent")
+        page.click("#details summary")
+        page.wait("document.querySelector('#run-1').textContent.includes('report.json')")
+        assert page.console == []
+
+
+@pytest.mark.slow
+def test_on_a_narrow_screen_only_tables_move_and_their_first_column_stays(browser, results):
+    where = (
+        "['run', 'left-out'].map(name => Math.round(document.querySelector("
+        "`#runs-table th[data-name=${name}]`).getBoundingClientRect().left))"
+    )
+    with browser.page(results / "report.html", 400) as page:
+        left, right = page.run(where)
+        page.run("document.querySelector('#runs-table').parentNode.scrollLeft = 5000")
+        stays, comes = page.run(where)
+        assert stays == left < 400 < right and comes < 400
+
+
+@pytest.mark.slow
+def test_paper_has_the_answer_first_and_runs_only_when_asked(browser, results, tmp_path):
+    address = (results / "report.html").as_uri()
+    pages = {}
+    ready = "Promise.all(Array.from(document.querySelectorAll('figure.live'), one =>"
+    ready += "report.charts.chartOf(one).unpack())).then(report.charts.plotly).then(() => 0)"
+    for query, runs in (("", 0), ("?print=all", 4)):
+        with browser.page(address + query) as page:
+            page.wait(f"document.querySelectorAll('details.run[open]').length === {runs}")
+            page.run(ready)
+            page.pdf(tmp_path / "page.pdf")
+            raw = (tmp_path / "page.pdf").read_bytes()
+            pages[query] = len(re.findall(rb"/Type\s*/Page\b", raw))
+            # what nobody scrolled to is drawn as well
+            blank = "figure.live .plot:not(.js-plotly-plot)"
+            assert page.run(f"document.querySelectorAll('{blank}').length") == 0
+    assert 2 <= pages[""] < pages["?print=all"]
+
+
+@pytest.mark.slow
+def test_every_figure_is_drawn_again_when_the_light_changes(browser, results):
+    ink = "document.querySelector('#card-1 .plot').layout.font.color"
+    with browser.page(results / "report.html") as page:
+        page.run(OPEN_ALL)
+        page.run(DRAW_ALL)
+        light = page.run(ink)
+        for _ in range(2):
+            page.click("#theme")
+        assert page.run("document.documentElement.dataset.theme") == "dark"
+        assert page.run(ink) != light
+
+
+def test_the_library_comes_with_its_licence(results):
+    assert "Copyright (c) 2016-2024 Plotly Technologies Inc." in page_of(results)

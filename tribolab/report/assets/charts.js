@@ -1,0 +1,63 @@
+"use strict";
+// All figures: drawn when the reader comes near them, again when the light or the view changes, and on paper.
+report.charts = (() => {
+  const charts = new Map(); // by figure element
+  const { Chart, plotly, state } = report.drawing;
+
+  // Figures are made when the reader comes near; on a browser that cannot unpack, a word says so.
+  const near = new IntersectionObserver((entries) => {
+    for (const entry of entries) if (entry.isIntersecting) show(entry.target);
+  }, { rootMargin: "600px" });
+  const sized = new ResizeObserver((entries) => {
+    for (const entry of entries) {
+      const chart = charts.get(entry.target.closest("figure"));
+      if (chart?.drawn && !state.printing && entry.target.clientWidth && Math.abs(entry.target.clientWidth - chart.place._fullLayout.width) > 1) chart.paint();
+    }
+  });
+
+  function chartOf(figure) {
+    if (!charts.has(figure)) {
+      charts.set(figure, new (figure.classList.contains("trace") ? report.Trace : Chart)(figure));
+      sized.observe(figure.querySelector(".plot"));
+    }
+    return charts.get(figure);
+  }
+
+  async function show(figure) {
+    near.unobserve(figure);
+    try {
+      await chartOf(figure).draw();
+    } catch (error) {
+      if (typeof DecompressionStream !== "undefined") throw error;
+      figure.querySelector(".plot").textContent = "This browser is too old to unpack the figure; the tables have its numbers.";
+    }
+  }
+
+  const watch = (place) => { for (const figure of place.querySelectorAll("figure.live")) near.observe(figure); };
+  const repaint = () => { for (const chart of charts.values()) if (chart.drawn) chart.paint(); };
+  addEventListener("appearance", repaint);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+
+  // On paper everything is drawn, what nobody scrolled to as well; that is unpacked beforehand.
+  const printed = () => Array.from(document.querySelectorAll("figure.live")).filter((figure) => !figure.closest("details:not([open])"));
+  async function prepare() {
+    for (const figure of printed()) await chartOf(figure).unpack().catch(() => {});
+  }
+  addEventListener("beforeprint", () => {
+    state.printing = true;
+    document.documentElement.classList.add("printing");
+    for (const figure of printed()) chartOf(figure).paint();
+  });
+  addEventListener("afterprint", () => {
+    state.printing = false;
+    document.documentElement.classList.remove("printing");
+    repaint();
+  });
+
+  report.begun.push(() => {
+    watch(document);
+    report.view.changed(repaint);
+    (globalThis.requestIdleCallback ?? setTimeout)(() => plotly().then(prepare, () => {}));
+  });
+  return { watch, plotly, chartOf };
+})();

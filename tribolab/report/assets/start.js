@@ -1,0 +1,44 @@
+"use strict";
+// Last: opening what a link points to, and drawing.
+(() => {
+  report.goTo = async (target) => {
+    const place = target && document.getElementById(target);
+    if (!place) return;
+    if (place.tagName === "DETAILS") {
+      place.open = true;
+      await report.unfold(place);
+      place.querySelector("summary").focus({ preventScroll: true });
+    }
+    place.closest("details:not([open])")?.setAttribute("open", "");
+    place.scrollIntoView();
+  };
+  report.goToRun = (name) => {
+    const place = Array.from(document.querySelectorAll("details.run")).find((one) => one.dataset.run === name);
+    if (place) report.view.go(place.id);
+  };
+  const most = 40; // more at once than anyone looks at
+  function openAll(open) {
+    const every = Array.from(document.querySelectorAll("details.run:not([hidden])")).slice(0, open ? most : undefined);
+    return Promise.all(every.map((details) => { details.open = open; return open && report.unfold(details); }));
+  }
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest?.("a[href^='#']");
+    // a link to where the page already stands changes no address
+    if (link && link.getAttribute("href").slice(1) === report.view.anchor) report.goTo(report.view.anchor);
+  });
+  document.addEventListener("toggle", (event) => {
+    if (event.target.matches?.("details") && event.target.open) {
+      report.unfold(event.target);
+      report.charts?.watch(event.target);
+    }
+  }, true);
+  document.getElementById("open-all")?.addEventListener("click", () => openAll(true));
+  document.getElementById("close-all")?.addEventListener("click", () => openAll(false));
+  // Runs are printed only if the address asks for them: ?print=all
+  if (new URLSearchParams(location.search).get("print") === "all") {
+    document.documentElement.classList.add("print-all");
+    openAll(true);
+  }
+  for (const call of report.begun) call();
+  addEventListener("load", () => report.goTo(report.view.anchor));
+})();

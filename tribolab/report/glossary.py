@@ -1,0 +1,92 @@
+"""What the words of the page mean: shown at the heads of its tables, and as a list."""
+
+from __future__ import annotations
+
+GLOSSARY: dict[str, str] = {
+    "µ": "Friction coefficient: friction force divided by normal force, both at the same moment, "
+    "averaged over a stroke. The number behind ± says what it holds.",
+    "± within the run": "Standard error of the mean from the scatter inside one run, with "
+    "neighbouring samples counted as far as they are independent. It knows nothing of how well a "
+    "run can be repeated.",
+    "± between runs": "Spread of repeated runs of the same surface, medium and load. It is shown "
+    "wherever there are repeats and it is the larger one.",
+    "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
+    "the solids touch and the liquid carries nothing.",
+    "Segment": "A stretch of a run at constant speed in one direction: one stroke.",
+    "Independent samples": "How many samples a record is worth once those that repeat their "
+    "neighbours are not counted twice (n_eff).",
+    "Noise": "Standard deviation of friction along a segment divided by its mean; the median over "
+    "the segments of a run.",
+    "Drift": "Largest significant change of friction along a segment, divided by the mean friction "
+    "of the run.",
+    "Left out": "Time of the record that no number rests on: at rest, while the speed changes, or "
+    "too short.",
+    "Half loop": "Half the difference of the forces of a stroke forward and a stroke back: the "
+    "friction force without the offset of the sensor.",
+    "Shear stress σ": "Friction force divided by the real contact area, fitted to the measured "
+    "curve; one number for all speeds.",
+    "95 % interval": "Range that holds the true value in 95 of 100 such campaigns, if the model is "
+    "right.",
+    "χ² per freedom": "Mean square of measured less computed friction in units of the error bars; "
+    "about 1 if the model describes the curve within them.",
+    "Runs test p": "Probability that residuals of a right model have as long rows of one sign as "
+    "these. Below 0.05: the shape of the curve differs.",
+    "A/A₀": "Real contact area over the nominal one.",
+    "Pull-off force": "Force needed to pull the bodies apart: there is one if adhesion reaches the "
+    "macroscopic scale.",
+    "h rms": "Root mean square of the roughness heights.",
+    "Slope rms": "Root mean square of the slopes of the roughness.",
+    "Hurst exponent": "How roughness grows with the length it is looked at: slope of the power "
+    "spectrum is −2(1 + H).",
+    "Roll-off": "Wavenumber below which the power spectrum no longer rises.",
+    "Stick-slip": "Friction rises and falls at constant speed: sticking and slipping by turns.",
+    "Sliding mode": "Whether a contact slides steadily, slips because of the rig's spring, or "
+    "because adhesion folds the surface.",
+    "Rejected": "A run whose checks failed: its numbers are shown, struck through, and no curve "
+    "rests on them.",
+    "Suspect": "A check found something that may spoil the numbers; they are used.",
+}
+
+# Heads of columns that are explained by a word of the glossary or in their own words.
+HEADS: dict[str, str] = {
+    "Run": "Number of the run on this page; leads to its trace and segments.",
+    "File": "Name of the run, from its raw file.",
+    "Status": "done; suspect: look at it; fail: its checks failed, no curve rests on it; failed: "
+    "it could not be read.",
+    "Why": "Why a run stands as it does: the gravest objection of its checks, or the error.",
+    "Noise": GLOSSARY["Noise"],
+    "Drift": GLOSSARY["Drift"],
+    "Left out": GLOSSARY["Left out"],
+    "Segments": GLOSSARY["Segment"],
+    "Stick-slip": GLOSSARY["Stick-slip"],
+    "Load": "Normal force that was set.",
+    "Medium": "What is between the surfaces.",
+    "A/A₀": GLOSSARY["A/A₀"],
+    "Hurst exponent": GLOSSARY["Hurst exponent"],
+    "h rms (µm)": GLOSSARY["h rms"] + " Small: outer bounds of the extrapolated spectrum.",
+    "Slope rms": GLOSSARY["Slope rms"],
+    "Roll-off (1/mm)": GLOSSARY["Roll-off"],
+    "σ (MPa)": GLOSSARY["Shear stress σ"],
+    "95 % interval (MPa)": GLOSSARY["95 % interval"],
+    "Part of the spectrum": "How far the fitted shear stress moves when the roughness spectrum "
+    "goes to the ends of its band.",
+    "Verdict": "Whether the model describes the curve, from χ² per freedom and the order of the "
+    "residuals.",
+    "χ² per freedom": GLOSSARY["χ² per freedom"],
+    "Runs test p": GLOSSARY["Runs test p"],
+    "Describes": "Widest range of speeds that one shear stress describes within the errors.",
+    "Pull-off force": GLOSSARY["Pull-off force"],
+    "Effective samples": GLOSSARY["Independent samples"],
+    "Independent samples": GLOSSARY["Independent samples"],
+    "Standard error": GLOSSARY["± within the run"],
+    "Standard deviation": "How far friction varies about its mean while sliding.",
+    "Trend": "Change of friction along the segment, and whether chance alone explains it.",
+    "± between runs": GLOSSARY["± between runs"],
+    "± within the run": GLOSSARY["± within the run"],
+    "Macroscopic (mJ/m²)": "Effective work of adhesion seen without a magnifier, as the load "
+    "vanishes; above zero there is a pull-off force.",
+    "Work of adhesion (mJ/m²)": "Energy per area to part two smooth surfaces of these materials.",
+    "Enhancement": "Contact area with adhesion over that without.",
+    "Mean gap (µm)": "Mean distance between the surfaces' mean planes.",
+    "µ viscoelastic, 1 mm/s": "Friction by losses in the rubber alone, without adhesion.",
+}

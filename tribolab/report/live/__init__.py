@@ -1,0 +1,1 @@
+"""The figures that the page itself draws: what they show, as data."""

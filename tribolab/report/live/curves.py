@@ -1,0 +1,310 @@
+"""Measured and computed friction over speed: the answer's cards, the comparison, the model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tribolab.records.part_records import CurveRecord
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, safe
+from tribolab.report.live.points import RunPoint, at_speed, point_error, told
+from tribolab.report.live.record import Band, Missed
+from tribolab.report.model_records import ModelRow
+from tribolab.report.plain import listed, plain_speed
+from tribolab.words import is_dry, many, number, span, speeds
+
+if TYPE_CHECKING:
+    from tribolab.records.parts import Row
+
+SPEED = Axis("sliding speed v", "m/s", log=True)
+FRICTION = Axis("friction coefficient µ", log=True)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """All that is known of friction over speed.
+
+    Parameters
+    ----------
+    curves
+        Measured curves that can be shown.
+    points
+        Of every run, by its name.
+    models
+        By the name of the measured curve.
+    bands, missed
+        What the models do not know, and what they miss, by the same name.
+    surfaces
+        Names in the order of the campaign, which their colours follow.
+    """
+
+    curves: Sequence[CurveRecord]
+    points: Mapping[str, Sequence[RunPoint]]
+    models: Mapping[str, ModelRow]
+    bands: Mapping[str, Band]
+    missed: Mapping[str, Missed]
+    surfaces: Sequence[str]
+
+
+def systems(known: Friction) -> dict[tuple[str, str], list[CurveRecord]]:
+    """Return the measured curves of each surface and medium, the lowest load first."""
+    found: dict[tuple[str, str], list[CurveRecord]] = {}
+    for curve in known.curves:
+        found.setdefault((curve.outcome.surface, curve.outcome.medium), []).append(curve)
+    for curves in found.values():
+        curves.sort(key=lambda curve: curve.outcome.normal_force or 0.0)
+    return found
+
+
+def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
+    """Return surface and medium in words; runs that name neither stand for themselves."""
+    return ", ".join(filter(None, (surface, medium))) or listed(list(runs)[:3]) or "runs"
+
+
+def card_figures(known: Friction) -> list[LiveFigure]:
+    """Return one figure for each surface and medium: measured, and the model with its band."""
+    return [
+        _card(known, place, surface, medium, curves)
+        for place, ((surface, medium), curves) in enumerate(systems(known).items(), start=1)
+    ]
+
+
+def _card(
+    known: Friction, place: int, surface: str, medium: str, curves: Sequence[CurveRecord]
+) -> LiveFigure:
+    series: list[Series] = []
+    for number_, curve in enumerate(curves):
+        model = known.models.get(curve.outcome.name)
+        if model is not None and _has_stress(model):
+            series += _modelled(known, model, curve, number_, "model")
+        series.append(_measured(known, curve, number_, "measured"))
+    name = system_name(surface, medium, curves[0].outcome.run_names)
+    values = [row["friction_coefficient"] for curve in curves for row in curve.points]
+    every = [row["sliding_speed_m_s"] for curve in curves for row in curve.points]
+    return LiveFigure(
+        id=f"card-{place}",
+        section=f"card-{place}",
+        title=f"{name}: friction over sliding speed",
+        note="",
+        alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
+        f"{speeds(map(_float, every))}, µ {span(map(_float, values))}.",
+        panels=(Panel(SPEED, FRICTION),),
+        series=tuple(series),
+        one_load=True,
+    )
+
+
+def _float(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _labels(curve: CurveRecord) -> dict[str, Any]:
+    outcome = curve.outcome
+    return {
+        "surface": outcome.surface,
+        "medium": outcome.medium,
+        "load": outcome.normal_force,
+        "open": is_dry(outcome.medium),
+        "runs": outcome.run_names,
+    }
+
+
+def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> Series:
+    every = [p for name in curve.outcome.run_names for p in known.points.get(name, ())]
+    words, errors, targets = [], [], []
+    for row in curve.points:
+        points = at_speed(every, float(row["sliding_speed_m_s"] or 0.0))
+        error = point_error(row, points)
+        words.append(told(row, error, points))
+        errors.append(error.size)
+        targets.append(points[0].run if points else curve.outcome.run_names[0])
+    return Series(
+        label,
+        [row["sliding_speed_m_s"] for row in curve.points],
+        [row["friction_coefficient"] for row in curve.points],
+        style="points",
+        colour=colour,
+        error=errors,
+        told=words,
+        goes_to=targets,
+        **_labels(curve),
+    )
+
+
+def _singly(known: Friction, curve: CurveRecord, colour: int, label: str) -> list[Series]:
+    """Return the points of each run, where there are repeats."""
+    names = [name for name in curve.outcome.run_names if known.points.get(name)]
+    if len(names) < 2:
+        return []
+    return [
+        Series(
+            label,
+            [point.speed for point in known.points[name]],
+            [point.mu for point in known.points[name]],
+            style="points",
+            colour=colour,
+            error=[point.within for point in known.points[name]],
+            told=[_told(point) for point in known.points[name]],
+            goes_to=(name,),
+            faint=True,
+            **(_labels(curve) | {"runs": (name,)}),
+        )
+        for name in names
+    ]
+
+
+def _told(point: RunPoint) -> str:
+    within = "not known" if point.within is None else f"± {number(point.within, 2)}"
+    return (
+        f"{point.run}\nv = {plain_speed(point.speed)}\nµ = {number(point.mu)}\n"
+        f"within the run: {within}\n{many(point.segments, 'segment')}, "
+        f"{point.effective_samples:.0f} independent samples"
+    )
+
+
+def _has_stress(model: ModelRow) -> bool:
+    return model.fit is not None and bool(model.fit["shear_stress_Pa"] > 0)
+
+
+def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
+    """Return the speeds of a model's curve that matter: those measured, and a decade around."""
+    known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
+    low, high = min(known) / 10, max(known) * 10
+    return [row for row in rows if low <= float(row["sliding_speed_m_s"] or 0) <= high]
+
+
+def _modelled(
+    known: Friction, model: ModelRow, curve: CurveRecord, colour: int, label: str
+) -> list[Series]:
+    labels = _labels(curve)
+    rows = _within(model.curve, curve)
+    line = Series(
+        label,
+        [row["sliding_speed_m_s"] for row in rows],
+        [row["friction_coefficient"] for row in rows],
+        colour=colour,
+        **labels,
+    )
+    if curve.outcome.name not in known.bands or not rows:
+        return [line]
+    speed, low, high = known.bands[curve.outcome.name]
+    first, last = (float(row["sliding_speed_m_s"] or 0) for row in (rows[0], rows[-1]))
+    kept = [k for k, v in enumerate(speed) if v is not None and first <= v <= last]
+    band = Series(
+        label,
+        [speed[k] for k in kept],
+        [low[k] for k in kept],
+        style="band",
+        high=[high[k] for k in kept],
+        colour=colour,
+        **labels,
+    )
+    return [band, line]
+
+
+def comparison(known: Friction) -> list[LiveFigure]:
+    """Return all surfaces and media in one figure, with every run."""
+    series: list[Series] = []
+    colours = places([*known.surfaces, *(c.outcome.surface for c in known.curves)])
+    for curve in known.curves:
+        outcome = curve.outcome
+        label = system_name(outcome.surface, outcome.medium, outcome.run_names)
+        colour = colours[outcome.surface]
+        series.append(_measured(known, curve, colour, label))
+        series += _singly(known, curve, colour, f"{label}: single runs")
+    if not series:
+        return []
+    every = [row["friction_coefficient"] for curve in known.curves for row in curve.points]
+    return [
+        LiveFigure(
+            id="curves-compared",
+            section="curves",
+            title="All surfaces and media at a load",
+            note="Filled: in a liquid; open: dry. Bars: standard error of the mean, between runs "
+            "where there are repeats, else within the run. Single runs are switched on in the "
+            "legend.",
+            alt=f"Friction coefficient over sliding speed of {many(len(known.curves), 'curve')}, "
+            f"µ {span(map(_float, every))}.",
+            panels=(Panel(SPEED, FRICTION),),
+            series=tuple(series),
+            one_load=True,
+        )
+    ]
+
+
+_PART = Axis("friction coefficient µ", log=True, decades=4)
+_PARTS: tuple[tuple[str, str, Style, int], ...] = (
+    ("friction_coefficient_solid", "shear in the solid contact", "dashed", 1),
+    ("friction_coefficient_couette", "shear of the liquid", "dotted", 2),
+    ("friction_without_factors", "without friction factors", "dashed", 3),
+)
+
+
+def model_figures(known: Friction) -> list[LiveFigure]:
+    """Return one figure for each surface and medium: the model's parts, and what it misses."""
+    figures = []
+    for (surface, medium), curves in systems(known).items():
+        series: list[Series] = []
+        for curve in curves:
+            model = known.models.get(curve.outcome.name)
+            if model is not None and model.fit is not None:
+                series += _taken_apart(model, curve, known.missed.get(curve.outcome.name))
+        if series:
+            name = system_name(surface, medium)
+            figures.append(
+                LiveFigure(
+                    id=f"model-{safe(name)}",
+                    section="model",
+                    title=f"{name}: the model taken apart",
+                    note="Above: the model with the fitted shear stress, and what it is made of. "
+                    "Below: measured less model, with the standard error of the measured point.",
+                    alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
+                    "and the difference between measurement and model.",
+                    panels=(
+                        Panel(SPEED, _PART),
+                        Panel(SPEED, Axis("measured − model")),
+                    ),
+                    series=tuple(series),
+                    one_load=True,
+                )
+            )
+    return figures
+
+
+def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> list[Series]:
+    labels = _labels(curve)
+    rows = _within(model.curve, curve)
+    speed = [row["sliding_speed_m_s"] for row in rows]
+    stressed = _has_stress(model)
+    series = []
+    if stressed:
+        series.append(
+            Series("model", speed, [row["friction_coefficient"] for row in rows], **labels)
+        )
+    for name, words, style, colour in _PARTS:
+        if stressed or name == "friction_coefficient_couette":
+            values = [row.get(name) for row in rows]
+            series.append(Series(words, speed, values, style, colour, **labels))
+    if stressed and missed is not None:
+        series.append(_missed(missed, curve, labels))
+    return series
+
+
+def _missed(missed: Missed, curve: CurveRecord, labels: dict[str, Any]) -> Series:
+    words = [
+        f"v = {plain_speed(v)}\nmeasured − model = {number(off, 2)}\nmodel: {number(mu)}"
+        for v, off, mu in zip(missed.speed, missed.residual, missed.model, strict=True)
+        if off is not None and mu is not None
+    ]
+    return Series(
+        "measured − model",
+        missed.speed,
+        missed.residual,
+        style="points",
+        panel=1,
+        error=missed.error,
+        told=words,
+        goes_to=(curve.outcome.run_names[0],),
+        **labels,
+    )

@@ -1,0 +1,227 @@
+"""What a live figure is: panels, series and words, small enough to stand inside the page.
+
+`assets/chart.js` draws all of them, so a figure says what it shows and nothing of how.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from tribolab.records.packed import deflated
+from tribolab.records.traces import as_text
+
+Style = Literal["points", "line", "dashed", "dotted", "band", "bars", "heat"]
+Values = Sequence[Any] | np.ndarray
+_DIGITS = 6  # more than any screen resolves
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is drawn along one side: its name, its unit, whether logarithmic at first.
+
+    Of `decades` so many below the highest value are seen at first; 0 is all of them.
+    """
+
+    label: str
+    unit: str = ""
+    log: bool = False
+    decades: int = 0
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes; panels of a figure stand below each other."""
+
+    x: Axis
+    y: Axis
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve, band or set of points.
+
+    Parameters
+    ----------
+    label
+        In the legend; series with the same label are switched together.
+    x, y
+        In the units of the panel's axes; where nothing is known, None.
+    style
+        How it is drawn. Of a "band" `y` is the lower edge, `high` the upper one; of "bars" `y`
+        has names and `x` the lower, `high` the upper end; of "heat" `high` has the colours.
+    colour
+        Place in the palette: that of the surface in comparisons, else in the order of appearance.
+    panel
+        Number of the panel, from 0.
+    surface, medium, load
+        What it is of, for the choice of loads and the filters; ``""`` and None are of all.
+    error
+        Half lengths of the error bars, as `y`.
+    told
+        What the pointer reads: a text for each point, or one for all of them.
+    runs
+        Names of the runs in it: it goes when all of them are hidden.
+    goes_to
+        The run that a click on each point leads to; one for all of them, or one for each.
+    faint
+        Whether it is drawn small and starts switched off.
+    open
+        Whether its markers are open, as those of dry runs are.
+    """
+
+    label: str
+    x: Values
+    y: Values
+    style: Style = "line"
+    colour: int = 0
+    panel: int = 0
+    high: Values = ()
+    surface: str = ""
+    medium: str = ""
+    load: float | None = None
+    error: Sequence[Any] = ()
+    told: Sequence[str] = ()
+    runs: Sequence[str] = ()
+    goes_to: Sequence[str] = ()
+    faint: bool = False
+    open: bool = False
+
+
+@dataclass(frozen=True)
+class LiveFigure:
+    """A figure that the page draws.
+
+    Parameters
+    ----------
+    id
+        Its address on the page, and the name of its downloads.
+    section
+        Section of the page, or card of the answer, that it belongs to.
+    title, note, alt
+        What stands above and below it, and what it shows in words for who does not see it.
+    panels, series
+        What is drawn.
+    one_load
+        Whether one load is shown at a time, the lowest at first; else all may be seen together.
+    """
+
+    id: str
+    section: str
+    title: str
+    note: str
+    alt: str
+    panels: tuple[Panel, ...]
+    series: tuple[Series, ...]
+    one_load: bool = False
+
+    @property
+    def surface(self) -> str:
+        """Surface that all of it is of; "" where there are several."""
+        names = {one.surface for one in self.series}
+        return names.pop() if len(names) == 1 else ""
+
+    @property
+    def medium(self) -> str:
+        """Medium that all of it is of; "" where there are several."""
+        names = {one.medium for one in self.series}
+        return names.pop() if len(names) == 1 else ""
+
+    def shown(self) -> ShownFigure:
+        """Return what the page has of it."""
+        return ShownFigure(
+            self.id,
+            self.section,
+            self.title,
+            self.note,
+            self.alt,
+            self.surface,
+            self.medium,
+            len(self.panels),
+            deflated(as_text(_plain(self)).encode()),
+        )
+
+
+@dataclass(frozen=True)
+class ShownFigure:
+    """A live figure as it stands in the page.
+
+    Parameters
+    ----------
+    id, section, title, note, alt
+        As of `LiveFigure`.
+    surface, medium
+        What all of it is of; "" where there are several.
+    panels
+        How many there are.
+    packed
+        What it shows, compressed, as text that may stand in a script element.
+    """
+
+    id: str
+    section: str
+    title: str
+    note: str
+    alt: str
+    surface: str
+    medium: str
+    panels: int
+    packed: str
+
+
+def _plain(value: Any) -> Any:
+    """Return a figure as plain data, without what is as usual and with the digits that are seen."""
+    if is_dataclass(value) and not isinstance(value, type):
+        found = {field.name: getattr(value, field.name) for field in fields(value)}
+        usual = {field.name: field.default for field in fields(value)}
+        return {
+            name: _plain(one)
+            for name, one in found.items()
+            if one is not usual[name] and not (isinstance(one, str | tuple | list) and not one)
+        }
+    if isinstance(value, np.ndarray | list | tuple):
+        return [_plain(one) for one in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None
+    return value
+
+
+def thinned(count: int, most: int = 400) -> np.ndarray:
+    """Return which of so many points of a smooth curve are kept, both ends among them.
+
+    Examples
+    --------
+    >>> thinned(5).tolist(), thinned(1000, 5).tolist()
+    ([0, 1, 2, 3, 4], [0, 250, 500, 749, 999])
+    """
+    if count <= most:
+        return np.arange(count)
+    return np.round(np.linspace(0, count - 1, most)).astype(int)
+
+
+def places(names: Iterable[str]) -> dict[str, int]:
+    """Return the place of each name in the palette, in the order of appearance.
+
+    Examples
+    --------
+    >>> places(["Smooth", "Sb-R", "Smooth"])
+    {'Smooth': 0, 'Sb-R': 1}
+    """
+    return {name: place for place, name in enumerate(dict.fromkeys(names))}
+
+
+def safe(text: str) -> str:
+    """Return text as a part of an address or a file's name.
+
+    Examples
+    --------
+    >>> safe("Sb-R, glycerol")
+    'sb-r_glycerol'
+    """
+    kept = "".join(c if c.isascii() and (c.isalnum() or c == "-") else " " for c in text.lower())
+    return "_".join(kept.split()) or "unnamed"

@@ -1,0 +1,138 @@
+"""All live figures of a campaign: made from its records, and from data files where they changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.engine import perform
+from tribolab.records.mode_record import ModeRecord
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import Notice, number_of
+from tribolab.records.run_record import RunRecord
+from tribolab.report.live.curves import Friction, card_figures, comparison, model_figures
+from tribolab.report.live.figure import ShownFigure
+from tribolab.report.live.models import record_of_models
+from tribolab.report.live.points import RunPoint
+from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask, Missed, live_task
+from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
+from tribolab.report.live.surfaces import record_of_surfaces
+from tribolab.report.model_records import ModelRow
+
+if TYPE_CHECKING:
+    from tribolab.campaign.outcome import OpenOutcome
+    from tribolab.records.parts import CurveOutcome
+
+_SLOWEST = 2  # speeds of each condition whose traces are drawn
+
+
+def live_figures(
+    outcome: OpenOutcome,
+    curves: Sequence[CurveRecord],
+    points: Mapping[str, Sequence[RunPoint]],
+    rows: Mapping[str, ModelRow],
+    modes: Mapping[str, ModeRecord],
+    executor: Executor | None = None,
+) -> tuple[list[ShownFigure], list[Notice]]:
+    """Return the figures that the page draws, and why others could not be made.
+
+    Parameters
+    ----------
+    outcome
+        What the campaign came to.
+    curves
+        Measured curves that can be shown.
+    points
+        Friction over speed of each run, by its name.
+    rows
+        Models that are done, by their names.
+    modes
+        How the curves slide, by the curve's name.
+    executor
+        Where those that need data files are made; without one it is done here.
+    """
+    surfaces = tuple(surface.name for surface in outcome.surfaces)
+    models = list(rows.values())
+    tasks = list(_tasks(outcome, curves, models, modes, surfaces))
+    records: list[LiveRecord] = []
+    findings: list[Notice] = []
+    for came in perform(LiveFigures(tasks, outcome.store), executor, lambda *_: None):
+        if isinstance(came, Notice):
+            findings.append(came)
+        else:
+            records.append(came)
+    bands: dict[str, Band] = {}
+    missed: dict[str, Missed] = {}
+    for record in records:
+        bands |= record.bands
+        missed |= record.missed
+    by_curve = {row.model.curve: row for row in models}
+    known = Friction(curves, points, by_curve, bands, missed, surfaces)
+    made = [*card_figures(known), *comparison(known), *model_figures(known)]
+    return [
+        *(figure.shown() for figure in made),
+        *(figure for record in records for figure in record.figures),
+    ], findings
+
+
+def _tasks(
+    outcome: OpenOutcome,
+    curves: Sequence[CurveRecord],
+    models: Sequence[ModelRow],
+    modes: Mapping[str, ModeRecord],
+    surfaces: tuple[str, ...],
+) -> list[LiveTask]:
+    """Plan what is made from data files, of each kind all at once."""
+    judged = [
+        Judged(one.outcome, modes[one.outcome.name], _slow(outcome, one.outcome))
+        for one in curves
+        if one.outcome.name in modes
+    ]
+    store = outcome.store
+    done = [surface for surface in outcome.surfaces if surface.done]
+    traced = dict.fromkeys(one.slow.file for one in judged if one.slow)
+    return [
+        live_task(
+            "models",
+            partial(record_of_models, models, surfaces),
+            ([(row.labels, row.fit, row.sensitivity) for row in models], surfaces),
+            [row.model.data_file for row in models],
+            store,
+        ),
+        live_task(
+            "surfaces",
+            partial(record_of_surfaces, done, surfaces),
+            ([(one.name, one.parts, one.quality) for one in done], surfaces),
+            [surface.data_file for surface in done],
+            store,
+        ),
+        live_task(
+            "sliding",
+            partial(record_of_sliding, judged, surfaces),
+            (judged, surfaces),
+            list(traced),
+            store,
+        ),
+    ]
+
+
+def _slow(outcome: OpenOutcome, curve: CurveOutcome) -> Slow | None:
+    """Return the first run of a curve, and its forward segments at the slowest speeds."""
+    for name in curve.run_names:
+        entry = outcome.store.get("run", name, RunRecord)
+        if entry is None or not entry.record.outcome.done:
+            continue
+        apart: list[tuple[int, float]] = []
+        moving = [
+            (float(number_of(row, "sliding_speed_m_s") or 0.0), number)
+            for number, row in enumerate(entry.record.slip)
+            if (number_of(row, "direction") or 0) >= 0
+        ]
+        for speed, number in sorted(moving):
+            if speed > 0 and (not apart or speed > 1.2 * apart[-1][1]):
+                apart.append((number, speed))
+        if apart:
+            return Slow(name, entry.record.outcome.data_file, tuple(apart[:_SLOWEST]))
+    return None

@@ -1,0 +1,127 @@
+"""What is recorded of live figures, and the stage that makes them where their data changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.campaign.engine import Stage
+from tribolab.campaign.store import Store
+from tribolab.provenance import sha256_of
+from tribolab.records.parts import Notice
+from tribolab.report.live.figure import ShownFigure
+from tribolab.words import explain
+
+KIND = "live"
+
+
+class Band(NamedTuple):
+    """Speeds [m/s], and the lower and upper edge of what a model does not know of friction."""
+
+    speed: list[float | None]
+    low: list[float | None]
+    high: list[float | None]
+
+
+class Missed(NamedTuple):
+    """Speeds [m/s] of a fit, measured less computed friction, its error, and the computed one."""
+
+    speed: list[float | None]
+    residual: list[float | None]
+    error: list[float | None]
+    model: list[float | None]
+
+
+@dataclass(frozen=True)
+class LiveRecord:
+    """Figures made from data files, and what curves need of them, by the name of the curve."""
+
+    figures: tuple[ShownFigure, ...] = ()
+    bands: dict[str, Band] = field(default_factory=dict)
+    missed: dict[str, Missed] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LiveTask:
+    """Figures of one kind to make: `make` takes the results folder, and may travel."""
+
+    name: str
+    make: Callable[[Path], LiveRecord]
+    folder: Path
+    fingerprint: str
+
+
+def live_task(
+    name: str,
+    make: Callable[[Path], LiveRecord],
+    shaping: object,
+    files: Sequence[str],
+    store: Store,
+) -> LiveTask:
+    """Return a task with the checksum of all that shapes its figures.
+
+    Parameters
+    ----------
+    name
+        Of the kind of figures.
+    make
+        What makes them: a function of a module, with what it wants to know.
+    shaping
+        That, as text that is another when it is something else.
+    files
+        Data files that are read, relative to the results folder.
+    store
+        It knows whether these are as they were.
+    """
+    from tribolab.version import __version__
+
+    identities = [store.identity(file) for file in files]
+    fingerprint = sha256_of([__version__, name, repr(shaping), identities])
+    return LiveTask(name, make, store.folder, fingerprint)
+
+
+class LiveFigures(Stage[LiveTask, "LiveRecord | Notice", "LiveRecord | Notice"]):
+    """The stage of the figures that the page draws.
+
+    Parameters
+    ----------
+    tasks
+        What is to be made.
+    store
+        What is known, and where it is written down.
+    """
+
+    name = "page"
+
+    def __init__(self, tasks: Sequence[LiveTask], store: Store) -> None:
+        self._tasks = tasks
+        self._store = store
+
+    def plan(self) -> Sequence[LiveTask]:
+        """Return what is to be made."""
+        return self._tasks
+
+    def known(self, task: LiveTask, place: int) -> LiveRecord | Notice | None:
+        """Take over figures whose data are the same."""
+        entry = self._store.before.get(KIND, task.name, LiveRecord)
+        if entry is None or entry.fingerprint != task.fingerprint:
+            return None
+        self._store.put(KIND, task.name, place, task.fingerprint, entry.record)
+        return entry.record
+
+    @staticmethod
+    def work(task: LiveTask) -> LiveRecord | Notice:
+        """Make figures of one kind."""
+        return task.make(task.folder)
+
+    def failed(self, task: LiveTask, error: BaseException) -> LiveRecord | Notice:
+        """Return why figures could not be made."""
+        return Notice("error", "", f"figures of {task.name}", explain(error)[0])
+
+    def keep(self, task: LiveTask, place: int, record: LiveRecord | Notice) -> LiveRecord | Notice:
+        """Write figures down."""
+        if isinstance(record, LiveRecord):
+            self._store.put(KIND, task.name, place, task.fingerprint, record)
+        return record

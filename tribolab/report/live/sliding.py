@@ -1,0 +1,318 @@
+"""How the contacts slide: waveforms over speed, frequencies, slow traces, spectra, events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribolab.records.mode_record import ModeRecord
+from tribolab.records.parts import CurveOutcome
+from tribolab.report.live.curves import SPEED, system_name
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, thinned
+from tribolab.report.live.record import LiveRecord
+from tribolab.report.plain import plain_speed
+from tribolab.words import force_text, is_dry, number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST_EVENTS = 300
+_EXCERPT = 800  # points of a slow trace
+
+
+class Slow(NamedTuple):
+    """A run, its data file, and its slowest forward segments with their speeds [m/s]."""
+
+    run: str
+    file: str
+    segments: tuple[tuple[int, float], ...]
+
+
+class Judged(NamedTuple):
+    """A measured curve, how it slides, and a run of it to look at; None where there is none."""
+
+    curve: CurveOutcome
+    mode: ModeRecord
+    slow: Slow | None
+
+
+def record_of_sliding(
+    judged: Sequence[Judged], surfaces: Sequence[str], folder: Path
+) -> LiveRecord:
+    """Return the figures of the section on stick-slip for which there are data.
+
+    Parameters
+    ----------
+    judged
+        All curves whose mode was judged.
+    surfaces
+        Names in the order of the campaign, which colours follow.
+    folder
+        The results folder with the data files of the runs.
+    """
+    colours = places([*surfaces, *(one.curve.surface for one in judged)])
+    lowest = list(_lowest(judged))
+    opened = [_opened(one, colours, folder) for one in lowest if one.slow is not None]
+    found = [
+        _waveforms(judged),
+        _frequencies(judged, colours),
+        _traces(opened),
+        _spectra(opened),
+        _events(opened),
+        _spectrogram(opened),
+    ]
+    return LiveRecord(tuple(figure.shown() for figure in found if figure is not None))
+
+
+def _lowest(judged: Iterable[Judged]) -> Iterable[Judged]:
+    """Return the lowest load of each surface and medium: the others slide alike or more evenly."""
+    best: dict[tuple[str, str], Judged] = {}
+    for one in judged:
+        key = one.curve.surface, one.curve.medium
+        force = one.curve.normal_force or 0.0
+        if key not in best or force < (best[key].curve.normal_force or 0.0):
+            best[key] = one
+    return best.values()
+
+
+def _name(curve: CurveOutcome) -> str:
+    name = system_name(curve.surface, curve.medium, curve.run_names)
+    return name if curve.normal_force is None else f"{name}, {force_text(curve.normal_force)}"
+
+
+def _labels(curve: CurveOutcome) -> dict[str, Any]:
+    return {
+        "surface": curve.surface,
+        "medium": curve.medium,
+        "open": is_dry(curve.medium),
+        "runs": curve.run_names,
+    }
+
+
+def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
+    """Return which waveform is seen at every speed."""
+    series = []
+    colours = places(str(row["waveform"]) for one in judged for row in one.mode.speeds)
+    for one in judged:
+        for waveform in dict.fromkeys(str(row["waveform"]) for row in one.mode.speeds):
+            rows = [row for row in one.mode.speeds if row["waveform"] == waveform]
+            series.append(
+                Series(
+                    waveform,
+                    [row["sliding_speed_m_s"] for row in rows],
+                    [_name(one.curve)] * len(rows),
+                    style="points",
+                    colour=colours[waveform],
+                    told=[_seen(one, row) for row in rows],
+                    goes_to=(one.curve.run_names[0],),
+                    load=one.curve.normal_force,
+                    **(_labels(one.curve) | {"open": waveform == "smooth sliding"}),
+                )
+            )
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-waveforms",
+        "sliding",
+        "Steady or stick-slip at every speed",
+        "Open: steady sliding; filled: friction rises and falls.",
+        "Class of waveform of each condition at each sliding speed.",
+        (Panel(SPEED, Axis("")),),
+        tuple(series),
+    )
+
+
+def _seen(one: Judged, row: Mapping[str, Any]) -> str:
+    lines = [_name(one.curve), f"v = {plain_speed(row['sliding_speed_m_s'])}"]
+    lines.append(" ".join(filter(None, (row["regularity"], row["waveform"]))))
+    if row["drop"] is not None:
+        lines.append(f"µ drops by {number(row['drop'])} on average")
+    if row["recurrence_distance_m"] is not None:
+        lines.append(f"every {number(1e6 * row['recurrence_distance_m'])} µm")
+    return "\n".join(lines)
+
+
+def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFigure | None:
+    series = []
+    for one in judged:
+        rows = [row for row in one.mode.speeds if row["dominant_frequency_Hz"]]
+        if rows:
+            series.append(
+                Series(
+                    system_name(one.curve.surface, one.curve.medium, one.curve.run_names),
+                    [row["sliding_speed_m_s"] for row in rows],
+                    [row["dominant_frequency_Hz"] for row in rows],
+                    style="points",
+                    colour=colours[one.curve.surface],
+                    told=[_seen(one, row) for row in rows],
+                    goes_to=(one.curve.run_names[0],),
+                    load=one.curve.normal_force,
+                    **_labels(one.curve),
+                )
+            )
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-frequencies",
+        "sliding",
+        "Frequency of the strongest oscillation",
+        "Where the distance from drop to drop is fixed, the frequency rises in proportion to "
+        "the speed; where a resonance is excited, it stays.",
+        "Dominant frequency over sliding speed.",
+        (Panel(SPEED, Axis("frequency", "Hz", log=True)),),
+        tuple(series),
+    )
+
+
+class _Open(NamedTuple):
+    """What is opened of one condition: its traces at the slowest speeds, and its stick-slip."""
+
+    name: str
+    labels: dict[str, Any]
+    colour: int
+    run: str
+    traces: tuple[tuple[float, np.ndarray, np.ndarray], ...]
+    slip: xr.Dataset
+    segment: int
+
+
+def _opened(one: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
+    from tribolab.io.netcdf import read_groups
+
+    assert one.slow is not None
+    groups = read_groups(folder / one.slow.file, ("run", "segments", "friction", "stick_slip"))
+    run, segments, friction, slip = groups.values()
+    traces = tuple(
+        (speed, *_trace(run, segments, friction, number)) for number, speed in one.slow.segments
+    )
+    labels = _labels(one.curve) | {"runs": (one.slow.run,)}
+    colour = colours[one.curve.surface]
+    first = one.slow.segments[0][0]
+    return _Open(_name(one.curve), labels, colour, one.slow.run, traces, slip, first)
+
+
+def _trace(
+    run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, number: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return friction over sliding distance [um] of the middle of a segment."""
+    from tribolab.plot.reduce import envelope_index
+    from tribolab.plot.signals import main_signal
+
+    time = np.asarray(run["time"], float)
+    start, stop = (float(segments[f"trimmed_{end}"][number]) for end in ("start", "stop"))
+    inside = np.flatnonzero((time >= start) & (time <= stop))
+    values = np.asarray(main_signal(run, friction).values, float)[inside]
+    sign = int(segments["direction"][number]) or 1
+    kept = envelope_index(time[inside], values, _EXCERPT // 2)
+    distance = 1e6 * float(segments["sliding_speed"][number]) * (time[inside] - start)
+    return distance[kept], sign * values[kept]
+
+
+def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
+    series = []
+    for one in opened:
+        for number_, (speed, distance, values) in enumerate(one.traces):
+            style: Style = "line" if number_ == 0 else "dotted"
+            told = (f"{one.name}, {plain_speed(speed)}",)
+            more: dict[str, Any] = one.labels | {"colour": one.colour, "goes_to": (one.run,)}
+            series.append(Series(one.name, distance, values, style=style, told=told, **more))
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-traces",
+        "sliding",
+        "Friction over sliding distance at the slowest speeds",
+        "At the lowest load of each surface and medium; full: the slowest speed, dotted: the next.",
+        "Friction over sliding distance, a line for each condition and speed.",
+        (Panel(Axis("sliding distance", "µm"), Axis("friction coefficient µ")),),
+        tuple(series),
+    )
+
+
+def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
+    series = []
+    for one in opened:
+        if not one.slip.sizes.get("frequency", 0):
+            continue
+        found = one.slip.isel(segment=one.segment)
+        more: dict[str, Any] = one.labels | {"colour": one.colour}
+        f = found["frequency"].values
+        kept = np.isfinite(found["psd"].values)
+        series.append(Series(one.name, f[kept], found["psd"].values[kept], **more))
+        limit = found["psd_significant"].values
+        style: Style = "dotted"
+        more["told"] = (f"{one.name}: limit of noise",)
+        series.append(Series(one.name, f[kept], limit[kept], style, **more))
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-spectra",
+        "sliding",
+        "Spectra of friction at the slowest speed",
+        "Dotted: the power that noise exceeds anywhere in one spectrum of a thousand. What rises "
+        "above it is an oscillation.",
+        "Power spectrum of the friction coefficient over frequency.",
+        (Panel(Axis("frequency", "Hz", log=True), Axis("power spectrum of µ", "1/Hz", log=True)),),
+        tuple(series),
+    )
+
+
+def _events(opened: Sequence[_Open]) -> LiveFigure | None:
+    series = []
+    for one in opened:
+        if not one.slip.sizes.get("event", 0):
+            continue
+        drops = np.sort(one.slip["event_drop"].values.astype(float))
+        drops = drops[np.isfinite(drops)]
+        kept = thinned(drops.size, _MOST_EVENTS)
+        share = (np.arange(drops.size) + 1) / max(drops.size, 1)
+        more: dict[str, Any] = one.labels | {"colour": one.colour}
+        series.append(Series(f"{one.name}: {drops.size} drops", drops[kept], share[kept], **more))
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-events",
+        "sliding",
+        "How far friction drops",
+        "Share of the drops, at all speeds of a run, that are smaller than a value.",
+        "Cumulative distribution of the drops of friction.",
+        (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
+        tuple(series),
+    )
+
+
+def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
+    """Return power over that of noise, for every speed and frequency."""
+    series = []
+    for one in opened:
+        slip = one.slip
+        if not slip.sizes.get("frequency", 0):
+            continue
+        forward = np.flatnonzero(slip["direction"].values >= 0)
+        order = forward[np.argsort(slip["sliding_speed"].values[forward], kind="stable")]
+        ratio = (slip["psd"] / slip["psd_background"]).values[order]
+        speed = np.repeat(slip["sliding_speed"].values[order, None], ratio.shape[1], axis=1)
+        f = np.broadcast_to(slip["frequency"].values, ratio.shape)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            level = np.log10(ratio)
+        # below the noise there is nothing to see
+        kept = np.isfinite(level) & (level > 0.3)
+        values = [float(f"{v:.3g}") for v in level[kept]]
+        label = one.name
+        series.append(Series(label, speed[kept], f[kept], style="heat", high=values, **one.labels))
+    series = [one for one in series if len(one.x)]
+    if not series:
+        return None
+    return LiveFigure(
+        "sliding-spectrogram",
+        "sliding",
+        "Power over that of noise, at every speed and frequency",
+        "Only what is at least twice the noise is drawn. Switch conditions on and off in the "
+        "legend.",
+        "Ratio of the power spectrum to its noise over speed and frequency.",
+        (Panel(SPEED, Axis("frequency", "Hz", log=True)),),
+        tuple(series),
+    )

@@ -1,0 +1,267 @@
+"""Surfaces and their contact: spectra, areas, gaps, pressures, and the rubber."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
+from tribolab.report.live.record import LiveRecord
+from tribolab.words import is_dry
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.records.parts import SurfaceOutcome
+
+_AREA = Axis("relative contact area A/A₀", log=True)
+_Y = "_low", "_high"
+
+
+class _Surface(NamedTuple):
+    """A surface, its colour, and its data file."""
+
+    name: str
+    colour: int
+    file: Path
+    parts: tuple[str, ...]
+    label: str
+
+    def read(self, group: str) -> xr.Dataset | None:
+        from tribolab.io.netcdf import read_netcdf
+
+        return read_netcdf(self.file, group=group) if group in self.parts else None
+
+    def series(self, what: str, x: Any, y: Any, **more: Any) -> Series:
+        told = (f"{self.label}: {what}",) if what else ()
+        labels: dict[str, Any] = {"colour": self.colour, "surface": self.name, "told": told}
+        return Series(self.label, x, y, **(labels | more))
+
+
+def record_of_surfaces(
+    surfaces: Sequence[SurfaceOutcome], order: Sequence[str], folder: Path
+) -> LiveRecord:
+    """Return the figures of the sections on surfaces and contact for which there are data.
+
+    Parameters
+    ----------
+    surfaces
+        What they came to.
+    order
+        Names in the order of the campaign, which colours follow.
+    folder
+        The results folder with their data files.
+    """
+    colours = places([*order, *(surface.name for surface in surfaces)])
+    opened = [
+        _Surface(
+            one.name,
+            colours[one.name],
+            folder / one.data_file,
+            one.parts,
+            one.name + (" (bad scans)" if one.quality in ("fail", "error") else ""),
+        )
+        for one in surfaces
+        if one.done
+    ]
+    figures = []
+    for kind in _KINDS:
+        series = [one for surface in opened for one in kind.draw(surface)]
+        if kind.once:
+            series = [one for one in series if one.surface == series[0].surface]
+        if series:
+            loads = len({one.load for one in series if one.load is not None}) > 1
+            alt = f"{kind.title}: {', '.join(dict.fromkeys(one.surface for one in series))}."
+            panels = (Panel(kind.x, kind.y),)
+            figures.append(
+                LiveFigure(
+                    f"{kind.section}-{kind.name}",
+                    kind.section,
+                    kind.title,
+                    kind.note,
+                    alt,
+                    panels,
+                    tuple(series),
+                    one_load=loads,
+                )
+            )
+    return LiveRecord(tuple(figure.shown() for figure in figures))
+
+
+class _Kind(NamedTuple):
+    name: str
+    section: str
+    title: str
+    note: str
+    x: Axis
+    y: Axis
+    draw: Callable[[_Surface], list[Series]]
+    once: bool = False
+
+
+def _spectra(surface: _Surface) -> list[Series]:
+    found = surface.read("psd")
+    if found is None:
+        return []
+    q = found["wavenumber"].values
+    low, high = (found[f"psd_2d{end}"].values for end in _Y)
+    measured = found["origin"].values == 0
+    if not measured.any():
+        measured = np.ones(q.size, bool)
+    first, last = np.flatnonzero(measured)[[0, -1]]
+    value = found["psd_2d"].values
+    return [
+        surface.series("", q, low, style="band", high=high),
+        surface.series("", q[first : last + 1], value[first : last + 1]),
+        *(
+            surface.series("extrapolated", q[part], value[part], style="dashed")
+            for part in (slice(0, first + 1), slice(last, None))
+            if q[part].size > 1
+        ),
+    ]
+
+
+def _banded(surface: _Surface, label: str, found: xr.Dataset, style: str) -> list[Series]:
+    x = found["pressure"].values / 1e6
+    edges = [found[f"contact_area_ratio{end}"] for end in _Y if f"contact_area_ratio{end}" in found]
+    value = found["contact_area_ratio"].values
+    more = {"medium": str(found["medium"].values)} if "medium" in found.coords else {}
+    line = surface.series(label, x, value, style=style, **more)
+    if len(edges) < 2:
+        return [line]
+    low, high = (edge.values for edge in edges)
+    return [surface.series(label, x, low, style="band", high=high, **more), line]
+
+
+def _areas(surface: _Surface) -> list[Series]:
+    series = []
+    contact, adhesion = surface.read("contact"), surface.read("adhesion")
+    if contact is not None:
+        series += _banded(surface, "without adhesion", contact, "dotted")
+    for medium in [] if adhesion is None else adhesion["medium"].values.tolist():
+        style = "dashed" if is_dry(medium) else "line"
+        assert adhesion is not None
+        series += _banded(surface, f"with adhesion, {medium}", adhesion.sel(medium=medium), style)
+    return series
+
+
+def _work(surface: _Surface) -> list[Series]:
+    found = surface.read("adhesion_loads")
+    if found is None or "effective_work_of_adhesion" not in found:
+        return []
+    kept = thinned(found.sizes["wavenumber"])
+    series = []
+    for medium in found["medium"].values.tolist():
+        work = 1e3 * found["effective_work_of_adhesion"].sel(medium=medium).values[kept]
+        style = "dashed" if is_dry(medium) else "line"
+        x = found["magnification"].values[kept]
+        series.append(surface.series(medium, x, work, style=style, medium=medium))
+    return series
+
+
+def _at_loads(
+    group: str, name: str, along: str, factors: tuple[float, float]
+) -> Callable[[_Surface], list[Series]]:
+    """Return what draws one variable of a group, a line for each load."""
+
+    def draw(surface: _Surface) -> list[Series]:
+        found = surface.read(group)
+        if found is None:
+            return []
+        dim = next(str(d) for d in found[name].dims if d != "load")
+        kept = thinned(found.sizes[dim], 200)
+        series = []
+        for number in range(found.sizes["load"]):
+            one = found.isel({"load": number, dim: kept})
+            force = float(one["normal_force"].values.flat[0])
+            x, y = factors[0] * one[along].values, factors[1] * one[name].values
+            series.append(surface.series("", x, y, load=round(force, 6)))
+        return series
+
+    return draw
+
+
+def _modulus(surface: _Surface) -> list[Series]:
+    found = surface.read("modulus")
+    if found is None:
+        return []
+    x = found["angular_frequency"].values
+    storage, loss = (found[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss"))
+    # one rubber: the lines are told apart by what they are
+    return [
+        Series("storage modulus", x, storage, surface=surface.name),
+        Series("loss modulus", x, loss, "dashed", 1, surface=surface.name),
+    ]
+
+
+_KINDS = (
+    _Kind(
+        "spectra",
+        "surfaces",
+        "Power spectra of the roughness",
+        "Full: measured; dashed: extrapolated; shaded: 95 % band.",
+        Axis("wavenumber q", "1/m", log=True),
+        Axis("power spectrum C(q)", "m⁴", log=True),
+        _spectra,
+    ),
+    _Kind(
+        "modulus",
+        "surfaces",
+        "Modulus of the rubber",
+        "",
+        Axis("angular frequency", "rad/s", log=True),
+        Axis("modulus", "MPa", log=True),
+        _modulus,
+        once=True,
+    ),
+    _Kind(
+        "area",
+        "contact",
+        "Real contact area",
+        "Dotted: without adhesion; full: with adhesion in a liquid; dashed: with adhesion, dry. "
+        "Shaded: what the bands of spectrum and work of adhesion allow.",
+        Axis("pressure", "MPa", log=True),
+        _AREA,
+        _areas,
+    ),
+    _Kind(
+        "work",
+        "contact",
+        "Effective work of adhesion",
+        "Full: in a liquid; dashed: dry. Over the magnification at which the roughness is looked "
+        "at; zero at magnification 1 means that no force is needed to pull the bodies apart.",
+        Axis("magnification", log=True),
+        Axis("effective work of adhesion", "mJ/m²"),
+        _work,
+    ),
+    _Kind(
+        "gaps",
+        "contact",
+        "Gap between the surfaces",
+        "How often each gap occurs where they do not touch, at the mean pressure of the load.",
+        Axis("gap", "µm", log=True, decades=4),
+        Axis("probability density", "1/µm", log=True, decades=6),
+        _at_loads("gap", "gap_density", "gap", (1e6, 1e-6)),
+    ),
+    _Kind(
+        "pressure",
+        "contact",
+        "Pressure across the dry contact at rest",
+        "Without adhesion.",
+        Axis("across the contact", "mm"),
+        Axis("pressure", "MPa"),
+        _at_loads("line", "pressure", "x", (1e3, 1e-6)),
+    ),
+    _Kind(
+        "viscoelastic",
+        "contact",
+        "Friction by losses in the rubber",
+        "Without flash heating and adhesion.",
+        Axis("sliding speed v", "m/s", log=True),
+        Axis("viscoelastic part of µ"),
+        _at_loads("rubber", "friction_coefficient", "sliding_speed", (1.0, 1.0)),
+    ),
+)
