@@ -223,8 +223,12 @@ def _why(runs: Sequence[Mapping[str, Any]]) -> str:
     rejected = [run for run in runs if run["status"] == "done" and is_bad(run)]
     which = {1: "its only run", 2: "both runs"}.get(len(runs), f"all {len(runs)} runs")
     verb = "was" if len(runs) == 1 else "were"
+    by_hand = [run for run in rejected if run["quality"] == "rejected"]
+    if len(by_hand) == len(runs):
+        return f"{which} {verb} rejected by hand"
     if len(rejected) == len(runs):
-        return f"{which} {verb} rejected by {'its' if len(runs) == 1 else 'their'} checks"
+        by = "" if by_hand else f" by {'its' if len(runs) == 1 else 'their'} checks"
+        return f"{which} {verb} rejected{by}"
     if len(failed) == len(runs):
         return f"{which} could not be read"
     if len(failed) + len(rejected) == len(runs):
