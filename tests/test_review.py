@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from campaigns import RUNS, copied, simulated
+from report_pages import details_of
 from typer.testing import CliRunner
 
 import tribolab
@@ -180,7 +181,7 @@ def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
     said = [f["message"] for f in report["findings"] if f["run"] == FROZEN]
     assert any(text.startswith("accepted by A. Person in spite of: fail: ") for text in said)
     assert not [f for f in report["findings"] if f["severity"] == "fail"]
-    page = (folder / "report.html").read_text("utf-8")
+    page = "".join(details_of(folder))
     assert page.count('<tr class="rejected">') == 1
     assert "rejected by A. Person: slipped off" in page
 
