@@ -64,7 +64,7 @@ def test_a_cluster_does_every_run_though_one_worker_is_killed(cluster, tmp_path)
 def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(
     tmp_path, victims, monkeypatch
 ):
-    monkeypatch.setattr("tribolab.campaign.executor._PATIENCE", 3.0)
+    monkeypatch.setattr("tribolab.campaign.cluster.PATIENCE", 3.0)
     campaign = simulated(tmp_path, repeats=1)
     levels = _levels()
     heard: set[str] = set()
@@ -118,7 +118,7 @@ def _processes(folder):
 
 @pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_is_one_clear_error(monkeypatch):
-    monkeypatch.setattr("tribolab.campaign.executor.DASK_TIMEOUT", "1s")
+    monkeypatch.setattr("tribolab.campaign.cluster.DASK_TIMEOUT", "1s")
     with (
         pytest.raises(ConfigError, match=r"no Dask scheduler answers at tcp://127.0.0.1:1;"),
         workers(scheduler="tcp://127.0.0.1:1"),

@@ -17,7 +17,7 @@ DASK_TIMEOUT = "20s"
 LOOK = 1.0  # s between two looks at a cluster that does not answer
 
 
-_PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
+PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
 
 
 class ClusterGone(OutputError):
@@ -104,4 +104,4 @@ class Cluster(Executor):
             self._missed = None
             return ""
         self._missed = self._missed or time.monotonic()
-        return why if time.monotonic() - self._missed > _PATIENCE else ""
+        return why if time.monotonic() - self._missed > PATIENCE else ""
