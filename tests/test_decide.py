@@ -102,6 +102,26 @@ def test_new_bounds_are_those_of_a_segment_found_there(run, segments):
         assert decided[name].values[others].tolist() == segments[name].values[others].tolist()
 
 
+@pytest.mark.parametrize("known", ["recorded", "position", "step"])
+def test_bounds_that_are_the_old_ones_change_nothing_whatever_tells_the_speed(run, known):
+    time, velocity = run["time"].values, run["sliding_velocity"].values
+    moved = np.r_[0.0, np.cumsum(velocity[1:] * np.diff(time))]
+    bare = run.drop_vars("sliding_velocity").assign(position=("time", moved))
+    if known == "recorded":
+        bare = run.assign(position=("time", moved))
+    elif known == "step":
+        bare = bare.assign(step=("time", np.repeat([1.0, 2.0], [1600, time.size - 1600])))
+        bare = bare.drop_vars("position")
+    track = None if known == "step" else (0.1e-3, 0.5e-3)
+    found = find_segments(bare, position_range=track)
+    start, stop = (float(found[name].values[1]) for name in ("start", "stop"))
+    same = Decision("bounds", **SAID, start=start, stop=stop, new_start=start, new_stop=stop)
+    decided = decide(found, same, bare)
+    assert found.attrs["velocity_source"] == known
+    for name in found.variables:
+        np.testing.assert_array_equal(decided[name].values, found[name].values, err_msg=name)
+
+
 def test_a_decision_holds_when_its_segment_moves_or_gets_another_number(run, segments):
     decision = Decision("reject", **SAID, **within(segments, BAD, -0.3, 0.9))
     later = find_segments(run.isel(time=run["time"].values > segments["stop"].values[0]))

@@ -239,6 +239,23 @@ def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_
     assert again.exit_code == 3 and again.stderr == told.stderr
 
 
+def test_a_rejection_holds_for_an_earlier_result_whose_file_cannot_be_read(reviewed, tmp_path):
+    file = copied(reviewed[0], tmp_path)
+    path = file.parent / REVIEW_FILE
+    path.write_text(path.read_text("utf-8") + entry(SOUND, "reject", "wrong sample"), "utf-8")
+    (file.parent / f"raw/friction/{SOUND}_force.csv").write_bytes(b"")
+    outcome = run_campaign(file, jobs=1, figures="none")
+    assert (outcome.runs[3].quality, outcome.runs[3].in_curves) == ("rejected", False)
+    assert "what was decided since" in outcome.runs[3].kept
+    dry = next(curve for curve in outcome.curves if curve.name == DRY)
+    assert dry.run_names == (LATE,)
+    report = json.loads((outcome.folder / "report.json").read_text("utf-8"))
+    run = report["runs"][3]
+    assert (run["quality"], run["quality_as_found"]) == ("rejected", "pass")
+    assert run["decisions"][0]["reason"] == "wrong sample" and run["segments"]
+    assert "1 rejected by hand" in report["verdict"]["text"]
+
+
 WRONG = {
     "action": ('"reject"', '"rejct"', 3, "did you mean 'reject'"),
     "key": ("from =", "form =", 4, "did you mean 'from'"),

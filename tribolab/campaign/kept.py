@@ -13,19 +13,23 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.plan import label_of, safe_name
+from tribolab.campaign.review import review_beside
 from tribolab.campaign.runs import RunCame, keep_earlier
+from tribolab.friction.decisions.decision import REJECT, Decision
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding, RunOutcome
-from tribolab.records.run_record import RunRecord
+from tribolab.records.run_record import DecisionRow, RunRecord
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign, RunEntry
-    from tribolab.campaign.store import Store
+    from tribolab.campaign.store import Entry, Store
     from tribolab.campaign.surface_plan import PlannedSurface
 
 # The files were read, and the answer is about what is in them: it stands.
 _VERDICTS = ("AnalysisError",)
 _GONE = "it is not there"
+REJECTED = "rejected"  # quality of a run, by a person
+_LATER = "what was decided since reaches no segment of it, only the run as a whole"
 
 
 def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list[RunCame]:
@@ -54,6 +58,7 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
     }
     there = {label for came in runs for label in came.outcome.files}
     content = {checksum for came in runs for _, checksum, _ in came.sources}
+    decisions = review_beside(campaign.file)
     for before in store.before.outcomes("run", RunOutcome):
         gone = [label for label in before.files if label not in there]
         why = [bad[label] for label in before.files if label in bad]
@@ -67,6 +72,8 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
             continue  # it was renamed
         path = store.previous / before.data_file
         outcome = _kept_run(before, entry, path, why[0])
+        decided = decisions.get(before.name, ())
+        outcome, known = _with_decisions(outcome, known, decided)
         mine = [came for came in kept if set(came.outcome.files) <= set(before.files)]
         names = {came.outcome.name for came in kept if came not in mine}
         if outcome.name in names:  # another run has its name now
@@ -173,6 +180,30 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
         reused=False,
         kept=_text(path, f"the raw file cannot be read now ({why})"),
     )
+
+
+def _with_decisions(
+    outcome: RunOutcome, known: Entry[RunRecord], decided: tuple[Decision, ...]
+) -> tuple[RunOutcome, Entry[RunRecord]]:
+    """Return an earlier run with what was decided on it since, as far as that needs no file."""
+    record = known.record
+    if [one.plain() for one in decided] == [_plain(row) for row in record.facts.decisions]:
+        return outcome, known
+    out = any(one.action == REJECT and one.interval is None for one in decided)
+    rows = tuple(DecisionRow(**one.plain(), effect=_LATER) for one in decided)
+    facts = replace(record.facts, decisions=rows)
+    outcome = replace(outcome, kept=f"{outcome.kept}; {_LATER}")
+    if out and outcome.quality != REJECTED:
+        found = outcome.quality_as_found or outcome.quality
+        outcome = replace(outcome, quality=REJECTED, quality_as_found=found)
+        facts = replace(facts, quality=REJECTED)
+    return outcome, known._replace(record=replace(record, facts=facts))
+
+
+def _plain(row: DecisionRow) -> dict[str, object]:
+    """Return a decision as `Decision.plain` does."""
+    names = ("action", "start_s", "stop_s", "new_start_s", "new_stop_s", "reason", "author", "date")
+    return {name: getattr(row, name) for name in names}
 
 
 def _text(path: Path, why: str) -> str:

@@ -94,8 +94,9 @@ class Results(Mapping[str, "pd.DataFrame"]):
             Over (run, segment), with the coordinates ``surface``, ``medium``, ``quality`` and
             ``nominal_normal_force`` [N] over (run), e.g. ``runs.groupby("surface").mean("run")`` or
             ``runs.where(runs.medium == "dry", drop=True)``. Where a run has fewer segments there
-            is NaN. Runs that failed are not in it. Signals over time have no segments in common:
-            `data` has those of one run.
+            is NaN. Runs that failed are not in it; segments that a person rejected are, and
+            ``runs.where(runs.rejected != 1)`` leaves them out. Signals over time have no segments
+            in common: `data` has those of one run.
 
         Raises
         ------
