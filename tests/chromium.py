@@ -124,11 +124,15 @@ class Page:
             time.sleep(0.02)
 
     def click(self, selector, shift=False):
-        """Bring an element into view and click on its middle, as a mouse does."""
+        """Bring an element into view, wait until it stands still, and click on its middle."""
         x, y = self.run(
-            f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
-            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
-            "const b = e.getClientRects()[0]; return [b.x + b.width / 2, b.y + b.height / 2] })()"
+            f"(async () => {{ const e = document.querySelector({json.dumps(selector)});"
+            "const middle = () => { e.scrollIntoView({block: 'center', behavior: 'instant'});"
+            "const b = e.getClientRects()[0]; return [b.x + b.width / 2, b.y + b.height / 2] };"
+            "let before, now = middle(), still = 0;"
+            "while (still < 3) { before = now; await new Promise(requestAnimationFrame);"
+            "now = middle(); still = now.join() === before.join() ? still + 1 : 0 }"
+            "return now })()"
         )
         self.mouse([(x, y)], shift)
 

@@ -97,8 +97,7 @@ def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, result
     with browser.page(results / "report.html") as page:
         drawn(page, "card-1")
         page.click("#card-1 .points .point")
-        page.wait("document.querySelector('#run-1').open")
-        assert page.run("location.hash") == "#run-1"
+        page.wait("document.querySelector('#run-1').open && location.hash === '#run-1'")
 
 
 @pytest.mark.slow
@@ -125,7 +124,7 @@ def test_what_is_looked_at_stands_in_the_address_and_rules_tables_and_figures(br
         assert drawn(page, "curves-compared") == ["Sb-S, dry"]
         # a link to a section keeps it
         page.click("nav a[href='#runs']")
-        assert page.run("location.hash") == "#runs&surface=Sb-S&medium=dry"
+        page.wait("location.hash === '#runs&surface=Sb-S&medium=dry'")
         page.click(".filters [type=reset]")
         page.wait("document.querySelectorAll('.answer:not([hidden])').length === 3")
         assert names(page, "curves-compared") == ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]

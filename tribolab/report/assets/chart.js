@@ -22,6 +22,14 @@ report.drawing = (() => {
   const force = (load) => `${Number(load.toPrecision(3))} N`;
   const axis = (kind, panel) => kind + (panel ? panel + 1 : "");
 
+  // Known before a figure is drawn: what is below does not move when it comes.
+  function heightOf(place, width, panels, labels) {
+    const columns = Math.max(1, Math.floor(width / 210));
+    const legend = labels > 1 ? Math.min(Math.ceil(labels / columns) * 20, 160) : 0;
+    const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
+    return (state.printing && panels === 1 ? Math.min(250, heights[0]) : heights[Math.min(panels, heights.length) - 1]) + legend;
+  }
+
   // The page's policy forbids style attributes as text; the library means what a script may set.
   const asText = Element.prototype.setAttribute;
   Element.prototype.setAttribute = function (name, value) {
@@ -203,11 +211,7 @@ report.drawing = (() => {
 
     get height() {
       if (this.full) return innerHeight - 110;
-      const count = this.data.panels.length;
-      const columns = Math.max(1, Math.floor(this.width / 210));
-      const legend = this.legend().length > 1 ? Math.ceil(this.legend().length / columns) * 20 : 0;
-      const heights = this.place.dataset.height ? [Number(this.place.dataset.height)] : [320, 460, 620];
-      return (state.printing && count === 1 ? Math.min(250, heights[0]) : heights[Math.min(count, heights.length) - 1]) + Math.min(legend, 160);
+      return heightOf(this.place, this.width, this.data.panels.length, this.legend().length);
     }
 
     async draw() {
@@ -348,5 +352,5 @@ report.drawing = (() => {
     }
   }
 
-  return { Chart, plotly, isDark, state };
+  return { Chart, plotly, isDark, heightOf, state };
 })();

@@ -2,7 +2,7 @@
 // All figures: drawn when the reader comes near them, again when the light or the view changes, and on paper.
 report.charts = (() => {
   const charts = new Map(); // by figure element
-  const { Chart, plotly, state } = report.drawing;
+  const { Chart, plotly, heightOf, state } = report.drawing;
 
   // Figures are made when the reader comes near; on a browser that cannot unpack, a word says so.
   const near = new IntersectionObserver((entries) => {
@@ -33,7 +33,13 @@ report.charts = (() => {
     }
   }
 
-  const watch = (place) => { for (const figure of place.querySelectorAll("figure.live")) near.observe(figure); };
+  function watch(place) {
+    for (const figure of place.querySelectorAll("figure.live")) {
+      const plot = figure.querySelector(".plot"), { panels, labels } = plot.dataset;
+      if (panels && plot.clientWidth) plot.style.minHeight = `${heightOf(plot, plot.clientWidth, Number(panels), Number(labels))}px`;
+      near.observe(figure);
+    }
+  }
   const repaint = () => { for (const chart of charts.values()) if (chart.drawn) chart.paint(); };
   addEventListener("appearance", repaint);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);

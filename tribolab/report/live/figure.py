@@ -141,6 +141,7 @@ class LiveFigure:
             self.surface,
             self.medium,
             len(self.panels),
+            len({one.label for one in self.series if one.style != "band"}),
             deflated(as_text(_plain(self)).encode()),
         )
 
@@ -155,8 +156,8 @@ class ShownFigure:
         As of `LiveFigure`.
     surface, medium
         What all of it is of; "" where there are several.
-    panels
-        How many there are.
+    panels, labels
+        How many there are, which tell how much room it takes before it is drawn.
     packed
         What it shows, compressed, as text that may stand in a script element.
     """
@@ -169,6 +170,7 @@ class ShownFigure:
     surface: str
     medium: str
     panels: int
+    labels: int
     packed: str
 
 
