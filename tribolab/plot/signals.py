@@ -32,6 +32,11 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
     return float(np.median(values)) if values.size else 0.0
 
 
+def _without(data: xr.DataArray, offset: float) -> np.ndarray:
+    values = np.asarray(data, float)
+    return values - offset if offset else values  # a long record is not copied for nothing
+
+
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     """Return the friction coefficient over time, or the force where no load was recorded.
 
@@ -54,10 +59,13 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     """
     if "friction_force" in run and "normal_force" in run:
         zero = offset_of(friction, "friction_force_offset")
-        load = np.asarray(run["normal_force"], float) - offset_of(friction, "normal_force_offset")
-        force = np.asarray(run["friction_force"], float) - zero
+        load = _without(run["normal_force"], offset_of(friction, "normal_force_offset"))
+        force = _without(run["friction_force"], zero)
         finite = load[np.isfinite(load)]
-        pressed = load > _LOADED * (np.percentile(finite, 95) if finite.size else np.inf)
+        # of what is a copy already
+        usual = np.percentile(finite, 95, overwrite_input=True) if finite.size else np.inf
+        del finite
+        pressed = load > _LOADED * usual
         pressed &= load > 0
         ratio = np.divide(force, load, out=np.full(load.size, np.nan), where=pressed)
         return Signal("friction_coefficient", ratio, "offset removed" if zero else "")

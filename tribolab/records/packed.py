@@ -12,6 +12,7 @@ import numpy as np
 _TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept
 _MOST_KNOTS = 1000
+_PIECE = 1 << 18  # samples that are worked on at a time
 _FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of a clock without any order
 
 
@@ -33,17 +34,21 @@ class Clock:
 
     Parameters
     ----------
-    place
-        Of every sample (time): whole numbers that rise.
+    ticks
+        Of every sample (time): whole numbers that rise; None if they are the samples' own numbers.
     knots
         Some places, the first and the last among them.
     at_s
         When these are [s] since the first sample; in between the clock goes evenly.
     """
 
-    place: np.ndarray
+    ticks: np.ndarray | None
     knots: list[int]
     at_s: list[float]
+
+    def places(self, chosen: np.ndarray) -> np.ndarray:
+        """Return the places of some samples, given by their numbers."""
+        return chosen if self.ticks is None else self.ticks[chosen]
 
 
 def clock_of(time: np.ndarray) -> Clock:
@@ -64,24 +69,26 @@ def clock_of(time: np.ndarray) -> Clock:
     --------
     >>> clock_of(np.r_[np.arange(100) * 1e-3, 0.1 + np.arange(11)]).knots
     [0, 100, 110]
-    >>> clock_of(np.array([0.0, 0.0, 1.0, 5.0])).place.tolist()
+    >>> clock_of(np.array([0.0, 0.0, 1.0, 5.0])).ticks.tolist()
     [0, 0, 16, 80]
     """
     since = time - time[0] if time.size else time
     length = float(since[-1]) if time.size else 0.0
-    steps = np.diff(since)
-    if length > 0 and not (steps > 0).all():
-        knots = None
-    else:
-        knots = _knots(since, np.minimum(np.r_[steps, np.inf], np.r_[np.inf, steps]) * _WITHIN)
+    knots = None if length > 0 and not _rises(since) else _knots(since)
     if knots is not None:
-        return Clock(np.arange(time.size), knots, [float(f"{since[k]:.9g}") for k in knots])
+        return Clock(None, knots, [float(f"{since[k]:.9g}") for k in knots])
+    steps = np.diff(since)
     short = np.percentile(steps[steps > 0], 1, method="lower")
     ticks = int(min(np.ceil(_FINER * length / short), _MOST_TICKS))
     return Clock(np.round(since / length * ticks).astype(np.int64), [0, ticks], [0.0, length])
 
 
-def _knots(since: np.ndarray, within: np.ndarray) -> list[int] | None:
+def _rises(since: np.ndarray) -> bool:
+    pieces = range(0, max(since.size - 1, 1), _PIECE)
+    return all((np.diff(since[k : k + _PIECE + 1]) > 0).all() for k in pieces)
+
+
+def _knots(since: np.ndarray) -> list[int] | None:
     """Return samples between which all others are even, by halving where they are least so.
 
     After D. H. Douglas and T. K. Peucker, Cartographica 10, 112 (1973).
@@ -92,16 +99,28 @@ def _knots(since: np.ndarray, within: np.ndarray) -> list[int] | None:
         a, b = parts.pop()
         if b - a < 2:
             continue
-        even = since[a] + (since[b] - since[a]) / (b - a) * np.arange(b - a + 1)
-        off = np.abs(since[a : b + 1] - even)[1:-1] / within[a + 1 : b]
-        if off.max() <= 1:
+        worst, off = _least_even(since, a, b)
+        if off <= 1:
             continue
-        worst = a + 1 + int(off.argmax())
         found.add(worst)
         if len(found) > _MOST_KNOTS:
             return None
         parts += [(a, worst), (worst, b)]
     return sorted(found)
+
+
+def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
+    """Sample between two that is least where even steps would put it, and how far, of its share."""
+    worst, most = first + 1, -np.inf
+    rate = (since[last] - since[first]) / (last - first)
+    for a in range(first + 1, last, _PIECE):  # a long record is not copied as a whole
+        b = min(a + _PIECE, last)
+        steps = np.diff(since[a - 1 : b + 1])
+        even = since[first] + rate * np.arange(a - first, b - first)
+        off = np.abs(since[a:b] - even) / (_WITHIN * np.minimum(steps[:-1], steps[1:]))
+        if off.max() > most:
+            worst, most = a + int(off.argmax()), float(off.max())
+    return worst, most
 
 
 def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> dict[str, Any]:

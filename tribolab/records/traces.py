@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribolab.plot.reduce import envelope_index
-from tribolab.plot.signals import main_signal
+from tribolab.plot.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points
@@ -36,10 +36,29 @@ def page_trace(
     fine_size: int,
 ) -> PageTrace:
     """Return what the page draws of a run; parameters as of `trace` and `finer_trace`."""
+    shared = shared_parts(run, friction)
     return PageTrace(
-        as_text(trace(run, segments, friction, points)),
-        finer_trace(run, segments, friction, points, fine_size),
+        as_text(trace(run, segments, friction, points, shared)),
+        finer_trace(run, segments, friction, points, fine_size, shared),
     )
+
+
+class Shared(NamedTuple):
+    """What a trace and its finer one share, as long as the run: clock and main signal."""
+
+    clock: Clock
+    main: Signal
+
+
+def shared_parts(run: xr.Dataset, friction: xr.Dataset | None) -> Shared:
+    """Return what all traces of a run share.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has neither a friction force nor a friction coefficient.
+    """
+    return Shared(clock_of(np.asarray(run["time"], float)), main_signal(run, friction))
 
 
 def trace_size(runs: int) -> tuple[int, int]:
@@ -72,7 +91,11 @@ def trace_size(runs: int) -> tuple[int, int]:
 
 
 def trace(
-    run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset | None, points: int
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    shared: Shared | None = None,
 ) -> dict[str, Any]:
     """Return a run's trace for the page: signals over time, segments and flagged spans.
 
@@ -84,6 +107,8 @@ def trace(
         About so many points of each signal are kept. Half of them are the extremes of equal
         parts of the record, half those of equal parts of each segment, so that a fast stroke
         can be zoomed into as a slow one can.
+    shared
+        What is known of the run already.
 
     Returns
     -------
@@ -96,13 +121,13 @@ def trace(
         If the run has neither a friction force nor a friction coefficient.
     """
     time = np.asarray(run["time"], float)
-    clock = clock_of(time)
+    shared = shared or shared_parts(run, friction)
     return {
         "length_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
-        "clock": [clock.knots, clock.at_s],
-        **_signals(run, segments, friction, clock, points),
-        "segments": _segments(segments, friction, main_signal(run, friction).name),
+        "clock": [shared.clock.knots, shared.clock.at_s],
+        **_signals(run, segments, shared, points),
+        "segments": _segments(segments, friction, shared.main.name),
         "flags": [asdict(span) for span in flagged_spans(run)],
     }
 
@@ -113,6 +138,7 @@ def finer_trace(
     friction: xr.Dataset | None,
     points: int,
     size: int,
+    shared: Shared | None = None,
 ) -> str:
     """Return the signals of a run with as many points as fit, for the page to zoom into.
 
@@ -124,6 +150,8 @@ def finer_trace(
         What the trace has that the page shows at once: with no more there is nothing to zoom into.
     size
         Length of the text [characters]; there are fewer points until it is met.
+    shared
+        What is known of the run already.
 
     Returns
     -------
@@ -131,26 +159,20 @@ def finer_trace(
         ``complete`` and ``signals`` as of `trace`, compressed, as JSON that may stand in a script
         element; "" if that trace is complete or no finer one fits.
     """
-    clock = clock_of(np.asarray(run["time"], float))
+    shared = shared or shared_parts(run, friction)
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
-        text = as_text(_signals(run, segments, friction, clock, finer))
+        text = as_text(_signals(run, segments, shared, finer))
         if len(text) <= size:
             return text
         finer = int(0.95 * finer * size / len(text))
     return ""
 
 
-def _signals(
-    run: xr.Dataset,
-    segments: xr.Dataset,
-    friction: xr.Dataset | None,
-    clock: Clock,
-    points: int,
-) -> dict[str, Any]:
+def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int) -> dict[str, Any]:
     time = np.asarray(run["time"], float)
     bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
-    main = main_signal(run, friction)
+    clock, main = shared
     signals = [(main.name, main.values)]
     for name in _MOTION:
         if name in run and np.ptp(np.asarray(run[name], float)) > 0:
@@ -169,7 +191,7 @@ def _signals(
                 "label": _MOTION.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
-                **packed_points(clock.place[chosen], levels, deflate=True),
+                **packed_points(clock.places(chosen), levels, deflate=True),
             }
         )
     return {
