@@ -71,6 +71,36 @@ def test_a_figure_is_shown_at_full_resolution_whatever_pyplot_does(monkeypatch):
     assert raw and width == pytest.approx(86 / 25.4 * 200, abs=1)
 
 
+def test_a_figure_with_knobs_is_an_output_of_the_cell_and_follows_them(monkeypatch):
+    import IPython.display
+    import ipywidgets
+    from matplotlib import pyplot
+
+    shown, updated = [], []
+    keep = {"display": shown, "update_display": updated}
+    for name, calls in keep.items():
+        monkeypatch.setattr(
+            IPython.display, name, lambda data, calls=calls, **how: calls.append((data, how))
+        )
+
+    level = ipywidgets.FloatSlider(value=0.5, max=1.0)
+
+    @tl.plot.knobs(level=level, where=["left", "right"])
+    def draw(level=0.5, where="right"):
+        figure, axes = pyplot.subplots()
+        axes.axhline(level)
+        axes.set_title(where)
+        return figure
+
+    (box, _), (first, how) = shown
+    assert box["text/plain"].endswith("notebook: level = 0.5, where = right")
+    assert first["image/png"].startswith(b"\x89PNG") and how["raw"]
+    level.value = 0.9
+    [(later, again)] = updated
+    assert later != first and again["display_id"] == how["display_id"]
+    assert pyplot.get_fignums() == []
+
+
 def test_films_are_drawn_alike_from_a_list_and_from_one_dataset():
     contact = tl.LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     films = [

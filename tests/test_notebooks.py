@@ -1,9 +1,12 @@
 """The notebooks run from top to bottom, without a warning, and are kept without outputs."""
 
+import ast
 import os
+import re
 from pathlib import Path
 
 import nbclient
+import nbconvert
 import nbformat
 import pytest
 
@@ -20,11 +23,21 @@ STRICT = (
 named = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 
-def of_widgets(notebook):
-    """What widgets have shown: errors in them do not stop the execution."""
-    kept = notebook.metadata.get("widgets", {}).values()
-    models = [model["state"] for view in kept for model in view["state"].values()]
-    return [output for model in models for output in model.get("outputs", ())]
+ANSWER = re.compile(r"<details>.*?```python\n(.*?)```.*?</details>", re.DOTALL)
+
+
+def with_answers(notebook):
+    """Put the code of the folded answers into cells behind them."""
+    cells = []
+    for cell in notebook.cells:
+        cells.append(cell)
+        if cell.cell_type == "markdown":
+            cells += [nbformat.v4.new_code_cell(code) for code in ANSWER.findall(cell.source)]
+    notebook.cells = cells
+
+
+def pictures(cell):
+    return [o for o in cell.get("outputs", ()) if "image/png" in o.get("data", ())]
 
 
 @pytest.mark.slow
@@ -34,11 +47,13 @@ def test_a_notebook_runs_without_error_or_warning(path, tmp_path, monkeypatch):
     before = os.environ.get("PYTHONPATH")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(PROJECT), before])))
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
+    monkeypatch.delenv("MPLBACKEND", raising=False)  # pyplot shows its figures in the notebook
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     monkeypatch.setenv("TMPDIR", str(tmp_path))  # what a notebook writes goes with the test
     place = tmp_path / "work"
     place.mkdir()
     notebook = nbformat.read(path, as_version=4)
+    with_answers(notebook)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(STRICT))
     client = nbclient.NotebookClient(
         notebook,
@@ -47,11 +62,18 @@ def test_a_notebook_runs_without_error_or_warning(path, tmp_path, monkeypatch):
         resources={"metadata": {"path": str(place)}},
     )
     client.execute()
-    shown = [o for cell in notebook.cells for o in cell.get("outputs", ())] + of_widgets(notebook)
+    shown = [o for cell in notebook.cells for o in cell.get("outputs", ())]
     said = [o.get("text", o.get("evalue")) for o in shown if o.output_type == "error"]
     said += [o.text for o in shown if o.output_type == "stream" and o.name == "stderr"]
     assert said == []
     assert any(o.output_type in ("display_data", "execute_result") for o in shown)
+    turned = [cell for cell in notebook.cells if "@plot.knobs" in cell.source]
+    assert all(len(pictures(cell)) == 1 for cell in turned)
+    notebook.metadata.pop("widgets", None)  # what a page without their state shows
+    page, _ = nbconvert.HTMLExporter().from_notebook_node(notebook)
+    assert (
+        page.count('src="data:image/png') == sum(len(pictures(cell)) for cell in notebook.cells) > 0
+    )
 
 
 @named
@@ -64,6 +86,19 @@ def test_a_notebook_is_kept_without_outputs(path):
     assert {cell.execution_count for cell in code} == {None}
     assert "widgets" not in notebook.metadata
     assert notebook.metadata.kernelspec.name == "python3"
+
+
+@named
+def test_a_notebook_uses_what_is_public_and_ends_with_an_exercise(path):
+    notebook = nbformat.read(path, as_version=4)
+    code = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
+    texts = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    for node in ast.walk(ast.parse(code)):
+        homes = [node.module] if isinstance(node, ast.ImportFrom) else []
+        homes += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        assert {home for home in homes if home.startswith("tribolab.")} <= {"tribolab.studies"}
+    assert ANSWER.search(texts), "an exercise whose folded answer runs"
+    assert texts.count("<details>") == texts.count("</details>") == texts.count("<summary>")
 
 
 @named

@@ -151,6 +151,11 @@ def _along(function: Callable[..., Any], given: dict[str, Any], dim: Hashable) -
     return joined
 
 
+def one(value: str | float | xr.DataArray) -> str | float:
+    """Return what was stated, or of an array without dims its number."""
+    return value if isinstance(value, str | float | int) else float(value.item())
+
+
 def _cut(value: Any) -> Any:
     """Leave out the wavenumbers at which this part of several spectra has no value."""
     if "wavenumber" not in value.dims or not hasattr(value, "data_vars"):

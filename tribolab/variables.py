@@ -45,6 +45,8 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     names = [*whole.coords, *whole.data_vars]
     rows = {str(name): _row(whole[name]) for name in names}
     table = pd.DataFrame.from_dict(rows, orient="index")
+    # each number in digits of its own: a column of them would be shown in those of the largest
+    table = table.astype({"lowest": object, "highest": object})
     called = whole.attrs.get("columns_used")
     if isinstance(called, dict):
         table["column"] = [str(called.get(name, "")) for name in table.index]

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
 from tribolab.errors import AnalysisError
-from tribolab.several import over_dims
+from tribolab.several import one, over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
@@ -100,7 +100,7 @@ def adhesion(
     0.122 1.76
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
-    work = work_value(_one(work_of_adhesion))
+    work = work_value(one(work_of_adhesion))
     over: xr.DataArray = finite_pressures(pressure)
     flat = over.values.ravel()
     least = surface.small_pressure
@@ -216,13 +216,6 @@ def macroscopic_work_of_adhesion(
         work_of_adhesion_J_m2=work,
         **parameters(surface),
     )
-
-
-def _one(work_of_adhesion: str | float | xr.DataArray) -> str | float:
-    """Return the work of adhesion as it was stated, or of an array without dims its number."""
-    if isinstance(work_of_adhesion, xr.DataArray):
-        return float(work_of_adhesion.item())
-    return work_of_adhesion
 
 
 def finite_pressures(pressure: str | Pressure) -> xr.DataArray:

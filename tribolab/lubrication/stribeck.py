@@ -24,7 +24,7 @@ from tribolab.lubrication.factors import (
 )
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.speeds import Point, System, solve_speeds
-from tribolab.several import over_dims
+from tribolab.several import one, over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
 from tribolab.validity import together
@@ -37,13 +37,13 @@ REFERENCE = (
 )
 
 
-@over_dims(psd=("wavenumber",))
+@over_dims(psd=("wavenumber",), viscosity=(), shear_stress=())
 def stribeck_curve(
     contact: LineContact,
     psd: xr.Dataset | None,
-    viscosity: str | float,
+    viscosity: str | float | xr.DataArray,
     load: str | ArrayLike,
-    shear_stress: str | float,
+    shear_stress: str | float | xr.DataArray,
     speed: str | ArrayLike,
     friction_factors: bool = True,
     rough_body: RoughBody | None = None,
@@ -63,11 +63,11 @@ def stribeck_curve(
         Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
         which the result has, too; None for smooth surfaces.
     viscosity
-        eta [Pa s], above zero.
+        eta [Pa s], above zero; a DataArray over (medium), or any dims that the result will have.
     load
         F_N/L [N/m], above zero; several make a dim.
     shear_stress
-        sigma_f [Pa] in the real contact area, not negative.
+        sigma_f [Pa] in the real contact area, not negative; a DataArray as for `viscosity`.
     speed
         Sliding speeds v [m/s] (sliding_speed). 0 is the dry contact; a negative speed is the
         mirror image of the positive one.
@@ -126,9 +126,9 @@ def stribeck_curve(
     """
     with threadpool_limits(1, user_api="blas"):
         system = _system(
-            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length
+            contact, psd, one(viscosity), rough_body, factors, gamma, cells, domain, inlet_length
         )
-    stress = to_si(shear_stress, "Pa", name="shear_stress")
+    stress = to_si(one(shear_stress), "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
     loads, speeds = _loads(load), _speeds(speed, psd)

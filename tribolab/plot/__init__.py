@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     )
     from tribolab.plot.curves import half_loop, stribeck
     from tribolab.plot.film import film_profiles, lubrication_factors
+    from tribolab.plot.knobs import knobs
     from tribolab.plot.mixed import (
         friction_factor_effect,
         mixed_curve,
@@ -45,6 +46,7 @@ _HOMES = {
     "friction_factor_effect": "tribolab.plot.mixed",
     "gaps": "tribolab.plot.contact",
     "half_loop": "tribolab.plot.curves",
+    "knobs": "tribolab.plot.knobs",
     "line_pressure": "tribolab.plot.contact",
     "lubrication_factors": "tribolab.plot.film",
     "mixed_curve": "tribolab.plot.mixed",
@@ -79,6 +81,7 @@ __all__ = [
     "friction_factor_effect",
     "gaps",
     "half_loop",
+    "knobs",
     "line_pressure",
     "lubrication_factors",
     "mixed_curve",

@@ -108,7 +108,7 @@ def stribeck(
         drawn = 0
         for curve in curves:
             look = _look(curve, styles, loads, len(set(every)))
-            text = _label(curve, curves + models) or ("" if ax is None else "measured")
+            text = _label(curve, curves + models) or ("" if ax is None else _whole_label(curve))
             drawn += _points(figure, axes, curve, name, numbered, look, text, bool(models))
         for curve in models:
             look = _look(curve, styles, loads, len(set(every)))
@@ -186,6 +186,13 @@ def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
     if len({str(_load(c)) for c in curves}) > 1:
         words.append(force_text(_load(curve)))
     return ", ".join(words)
+
+
+def _whole_label(curve: xr.Dataset) -> str:
+    """Name a curve that stands beside others, of which only the user knows."""
+    return (
+        ", ".join(filter(None, (_attribute(curve, n) for n in ("surface", "medium")))) or "measured"
+    )
 
 
 def _points(
