@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
 
 import numpy as np
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, Cure
 from tribolab.validity import together
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _array(result: Any, who: str) -> Any:
 
     if np.ndim(result):
         raise AnalysisError(
-            f"{who}: with further dims, arrays must be DataArrays that name theirs, e.g. "
-            'xr.DataArray(pressure, dims="pressure")'
+            f"{who}: where further dims come in, arrays must name theirs",
+            cure=Cure(notebook='give e.g. xr.DataArray(pressure, dims="pressure")'),
         )
     return xr.DataArray(result)
