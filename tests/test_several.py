@@ -75,7 +75,9 @@ def test_spectra_on_wavenumbers_of_their_own_stand_in_one_dataset():
 
 
 def test_arrays_that_do_not_name_their_dim_are_refused_where_there_are_further_ones():
-    with pytest.raises(AnalysisError, match="mean_separation: .* arrays must name theirs; give .*DataArray"):
+    with pytest.raises(
+        AnalysisError, match="mean_separation: .* arrays must name theirs; give .*DataArray"
+    ):
         tl.mean_separation(np.array([1e4, 1e5]), PSDS, MODULUS)
 
 
