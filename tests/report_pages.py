@@ -96,9 +96,15 @@ DRAW_ALL = (
 PACKED = r'<script type="application/octet-stream"%s>([^<]*)</script>'
 
 
+def folded_of(folder):
+    """All that is folded away, as HTML."""
+    return [_unpacked(one) for one in re.findall(PACKED % ' class="packed"', page_of(folder))]
+
+
 def details_of(folder):
     """What stands under each run, as HTML."""
-    return [_unpacked(one) for one in re.findall(PACKED % ' class="packed"', page_of(folder))]
+    folded = r'<details class="run.*?' + PACKED % ' class="packed"'
+    return [_unpacked(one) for one in re.findall(folded, page_of(folder), re.DOTALL)]
 
 
 def figures_of(folder):

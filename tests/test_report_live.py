@@ -14,6 +14,9 @@ from chromium import BROWSER, chromium
 from report_pages import DRAW_ALL, FLAGGED, LONG, OPEN_ALL, RUNS, figures_of, made, page_of
 from reporting import made_run
 
+from tribolab.campaign.store import Catalogue
+from tribolab.report import page as page_module
+
 FAILED = "the page could not be opened: no chromium was found"
 SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
 
@@ -360,6 +363,28 @@ def test_every_figure_is_drawn_again_when_the_light_changes(browser, results):
             page.click("#theme")
         assert page.run("document.documentElement.dataset.theme") == "dark"
         assert page.run(ink) != light
+
+
+@pytest.mark.slow
+def test_rows_of_very_many_runs_are_packed_and_all_of_them_sorted(
+    browser, results, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(page_module, "_MOST_ROWS", 2)
+    document = json.loads((results / "report.json").read_text("utf-8"))
+    store = Catalogue.of(results)
+    file = page_module.write_page(document, tmp_path, lambda: iter(document["runs"]), store)
+    store.close()
+    assert file.read_text("utf-8").count("<tr data-run=") == 2
+    with browser.page(file) as page:
+        page.wait("document.querySelectorAll('#runs-table tr[data-run]').length === 4")
+        assert rows(page) == [name for name, *_ in RUNS] + ["broken"]
+        for _ in range(2):
+            page.click("#runs-table th[data-name=slowest] button")
+        assert rows(page) == ["sb-s_1", "sb-s_long", "sb-r_1", "broken"]
+        page.click("#runs input[type=search]")
+        page.type("no unit")
+        assert rows(page) == ["broken"]
+        assert page.console == page.stopped == []
 
 
 def test_the_library_comes_with_its_licence(results):

@@ -10,7 +10,16 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from chromium import BROWSER, chromium
-from report_pages import DRAW_ALL, OPEN_ALL, Reader, details_of, figures_of, made, page_of
+from report_pages import (
+    DRAW_ALL,
+    OPEN_ALL,
+    Reader,
+    details_of,
+    figures_of,
+    folded_of,
+    made,
+    page_of,
+)
 from reporting import made_outcome, made_run, with_run
 
 from tribolab.qc.flags import attach
@@ -255,7 +264,7 @@ def test_no_script_is_taken_from_beside_the_page(browser, alone):
 
 
 def test_campaign_file_and_checksums_stand_on_the_page(results):
-    text = "".join(Reader(page_of(results)).text)
+    text = "".join(Reader(page_of(results)).text) + "".join(folded_of(results))
     assert 'name = "Glycerol & PMMA"' in text
     assert "ab" * 32 in text and "could not be read" in text
 

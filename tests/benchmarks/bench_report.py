@@ -73,10 +73,10 @@ def measure(page_file, profile):
         with browser.page(page_file) as page:
             acts = {
                 "sort": "document.querySelector('#runs-table [data-name=fastest] button').click()",
-                "search": "const f = document.querySelector('input[type=search]');"
+                "search": "const f = document.querySelector('#runs input[type=search]');"
                 "f.value = '_0007'; f.dispatchEvent(new Event('input'))",
                 "open a run": "location.hash = '#run-7'; while (!document.querySelector("
-                "'#run-7 canvas')) await new Promise(r => setTimeout(r, 5))",
+                "'#run-7 .main-svg')) await new Promise(r => setTimeout(r, 5))",
             }
             for name, act in acts.items():
                 script = f"{act}; return (await {_PAINTED}) - t"
@@ -108,7 +108,7 @@ def main(counts):
             acts = ", ".join(f"{name} {took:.2f} s" for name, took in spent.items())
             print(
                 f"{count} runs: page {size:.1f} MB, {fine:.1f} MB of it finer traces before the "
-                f"details of very many are packed; shown after {load:.2f} s; {acts}",
+                f"details are packed; shown after {load:.2f} s; {acts}",
                 flush=True,
             )
 

@@ -19,6 +19,7 @@ from tribolab.report.sections import shown_sections
 from tribolab.report.templating import environment, framing
 from tribolab.words import force_text
 
+_MOST_ROWS = 100  # of the table of runs; more are packed, and laid out when they are asked for
 Runs = Callable[[], Iterable[dict[str, Any]]]
 
 
@@ -80,6 +81,7 @@ def _context(
 ) -> dict[str, Any]:
     surfaces = document.get("surfaces", [])
     every = document["runs"]
+    first, rest = parted(grouped_runs(every), _MOST_ROWS)
     context = dict(document) | {
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
         "left_out": left_out(every),
@@ -87,7 +89,8 @@ def _context(
         "cards": cards(document),
         "unnamed": of_nothing(document),
         "live": live,
-        "groups": grouped_runs(every),
+        "groups": first,
+        "more_groups": rest,
         "said": grouped_findings(document["findings"]),
         "points_of": {name: c["points"] for c in document["curves"] for name in c["runs"]},
     }
@@ -106,15 +109,22 @@ def _context(
     return context | {"details": details}
 
 
-def grouped_runs(
-    runs: Sequence[Mapping[str, Any]],
-) -> list[tuple[str, list[tuple[int, Mapping[str, Any]]]]]:
-    """Return the runs of each condition with their places on the page, under its name.
+class Group(NamedTuple):
+    """Runs of one condition with their places on the page; with `head` its name stands above."""
+
+    title: str
+    total: int
+    runs: list[tuple[int, Mapping[str, Any]]]
+    head: bool
+
+
+def grouped_runs(runs: Sequence[Mapping[str, Any]]) -> list[Group]:
+    """Return the runs of each condition, under its name.
 
     Examples
     --------
     >>> run = {"surface": "Sb-R", "medium": "dry", "nominal_normal_force_N": 31.0}
-    >>> [(title, [place for place, _ in of]) for title, of in grouped_runs([run, run])]
+    >>> [(one.title, [place for place, _ in one.runs]) for one in grouped_runs([run, run])]
     [('Sb-R, dry, 31 N', [1, 2])]
     """
     groups: dict[tuple[Any, ...], list[tuple[int, Mapping[str, Any]]]] = {}
@@ -124,8 +134,29 @@ def grouped_runs(
     named = []
     for (surface, medium, load), members in groups.items():
         words = [surface, medium, "" if load is None else force_text(load)]
-        named.append((", ".join(filter(None, words)) or "condition not named", members))
+        title = ", ".join(filter(None, words)) or "condition not named"
+        named.append(Group(title, len(members), members, True))
     return named
+
+
+def parted(groups: Sequence[Group], most: int) -> tuple[list[Group], list[Group]]:
+    """Return groups up to so many runs, and what is left of them.
+
+    Examples
+    --------
+    >>> first, rest = parted([Group("dry", 3, [(1, {}), (2, {}), (3, {})], True)], 2)
+    >>> [len(one.runs) for one in first + rest], rest[0].head
+    ([2, 1], False)
+    """
+    first: list[Group] = []
+    rest: list[Group] = []
+    for group in groups:
+        room = max(most - sum(len(one.runs) for one in first), 0)
+        if room:
+            first.append(group._replace(runs=group.runs[:room]))
+        if group.runs[room:]:
+            rest.append(group._replace(runs=group.runs[room:], head=not room))
+    return first, rest
 
 
 def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

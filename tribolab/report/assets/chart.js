@@ -7,7 +7,7 @@ report.drawing = (() => {
   const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
   const DASHES = { line: "solid", dashed: "dash", dotted: "dot" };
   const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
-  const PAPER = 680;
+  const PAPER = 680, HALF = 325; // widths that fit between the margins of A4, of one and of two beside each other
   const still = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
   let library = null;
   const state = { printing: false };
@@ -27,7 +27,8 @@ report.drawing = (() => {
     const columns = Math.max(1, Math.floor(width / 210));
     const legend = labels > 1 ? Math.min(Math.ceil(labels / columns) * 20, 160) : 0;
     const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
-    return (state.printing && panels === 1 ? Math.min(250, heights[0]) : heights[Math.min(panels, heights.length) - 1]) + legend;
+    const low = place.closest(".cards") ? 175 : 240;
+    return (state.printing && panels === 1 ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1]) + legend;
   }
 
   // The page's policy forbids style attributes as text; the library means what a script may set.
@@ -205,7 +206,7 @@ report.drawing = (() => {
 
     get width() {
       if (this.full) return innerWidth - 24;
-      if (state.printing) return Math.min(PAPER, this.place.dataset.paper ? Number(this.place.dataset.paper) : PAPER);
+      if (state.printing) return this.place.closest(".grid, .cards") ? HALF : PAPER;
       return Math.max(260, this.place.clientWidth);
     }
 

@@ -11,23 +11,50 @@
   const compare = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : words.compare(String(a), String(b)));
   const orders = new WeakMap(); // of a table: columns with their direction, the most important first
 
+  // All rows of a table; of very many the first are laid out, and more when they are asked for.
+  const MOST = 100;
+  const holders = new Map(); // by table: its rows in their order, and how many are shown
+  function held(table) {
+    if (!holders.has(table)) {
+      const rows = Array.from(table.tBodies[0].rows);
+      rows.forEach((row, place) => { row.dataset.place = place; });
+      holders.set(table, { rows, most: MOST });
+    }
+    return holders.get(table);
+  }
+
+  function lay(table) {
+    const { rows, most } = held(table), sorted = table.classList.contains("sorted"), shown = [];
+    let group = null, left = 0;
+    for (const row of rows) {
+      if (row.classList.contains("group")) group = sorted ? null : row;
+      else if (!row.hidden && shown.length >= most) left++;
+      else if (!row.hidden) {
+        if (group) shown.push(group);
+        group = null;
+        shown.push(row);
+      }
+    }
+    table.tBodies[0].replaceChildren(...shown);
+    const more = table.closest(".tabled")?.querySelector("[data-more]");
+    if (!more) return;
+    more.hidden = left === 0;
+    more.textContent = `Show ${left} more`;
+  }
+
   function sort(table) {
-    const order = orders.get(table) ?? [], body = table.tBodies[0];
-    const heads = table.tHead.rows[0].cells;
-    Array.from(heads, (head, column) => {
+    const order = orders.get(table) ?? [], holder = held(table);
+    Array.from(table.tHead.rows[0].cells, (head, column) => {
       const place = order.findIndex(([other]) => other === column);
       if (place < 0) head.removeAttribute("aria-sort");
       else head.setAttribute("aria-sort", order[place][1] > 0 ? "ascending" : "descending");
       head.dataset.place = place < 0 || order.length < 2 ? "" : place + 1;
     });
     table.classList.toggle("sorted", order.length > 0);
-    const entries = Array.from(body.rows).filter((row) => !row.classList.contains("group")).map((row) => {
-      row.dataset.place ??= row.rowIndex;
-      return { row, place: Number(row.dataset.place), keys: order.map(([column]) => key(row, column)) };
-    });
+    const entries = holder.rows.map((row) => ({ row, place: Number(row.dataset.place), keys: row.classList.contains("group") ? [] : order.map(([column]) => key(row, column)) }));
     entries.sort((a, b) => {
       for (let k = 0; k < order.length; k++) {
-        const [x, y] = [a.keys[k], b.keys[k]];
+        const x = a.keys[k] ?? null, y = b.keys[k] ?? null;
         // what has no value stands last either way
         if ((x === null) !== (y === null)) return (x === null) - (y === null);
         const sign = x === null ? 0 : order[k][1] * compare(x, y);
@@ -35,10 +62,24 @@
       }
       return a.place - b.place;
     });
-    const fragment = document.createDocumentFragment();
-    if (order.length) fragment.append(...entries.map((entry) => entry.row));
-    else fragment.append(...Array.from(body.rows).sort((a, b) => a.dataset.place - b.dataset.place));
-    body.append(fragment);
+    holder.rows = entries.map((entry) => entry.row);
+    lay(table);
+  }
+
+  // Of very many runs most rows are packed: they come as soon as the page is there.
+  async function complete(table) {
+    const packed = table.parentNode.querySelector("script.rows");
+    if (!packed) return;
+    packed.remove();
+    const body = document.createElement("tbody");
+    body.innerHTML = new TextDecoder().decode(await report.unpacked(packed.textContent));
+    const holder = held(table);
+    for (const row of Array.from(body.rows)) {
+      row.dataset.place = holder.rows.length;
+      holder.rows.push(row);
+    }
+    sort(table);
+    apply();
   }
 
   function chosen(table, column, more) {
@@ -78,10 +119,11 @@
   }, true);
   document.addEventListener("keydown", (event) => { if (event.key === "Escape") silent(); });
 
-  const tidy = (cell) => cell.innerText.replace(/[✓▲✕·]\s*/g, "").replace(/\s*\n\s*/g, "; ").replace(/\s+/g, " ").trim();
+  const words_of = (node) => (node.nodeName === "BR" ? "; " : node.nodeType === Node.TEXT_NODE ? node.data : Array.from(node.childNodes, words_of).join(""));
+  const tidy = (cell) => words_of(cell).replace(/[✓▲✕·]\s*/g, "").replace(/\s+/g, " ").replace(/^[\s;]+|[\s;]+$/g, "");
   const number = (text) => { const value = Number(text.replace("−", "-")); return text !== "" && Number.isFinite(value) ? value : text; };
   // What is seen of a table: hidden rows and columns are left out.
-  report.cells = (table) => Array.from(table.rows)
+  report.cells = (table) => [table.tHead.rows[0], ...held(table).rows]
     .filter((row) => !row.hidden && !row.classList.contains("group"))
     .map((row) => Array.from(row.cells).filter((cell) => !cell.hidden).map(tidy));
 
@@ -112,6 +154,7 @@
   }
 
   function sortable(table) {
+    held(table);
     Array.from(table.tHead.rows[0].cells).forEach((head, column) => {
       const button = document.createElement("button");
       button.type = "button";
@@ -123,32 +166,43 @@
   }
 
   document.addEventListener("click", (event) => {
-    const button = event.target.closest?.("button[data-out]");
-    if (button) handOut(button.closest(".tabled").querySelector("table"), button);
+    const button = event.target.closest?.("button[data-out], button[data-more]");
+    const table = button?.closest(".tabled").querySelector("table");
+    if (button?.dataset.out) handOut(table, button);
+    else if (button) {
+      held(table).most *= 5;
+      lay(table);
+    }
   });
+
+  const texts = new WeakMap(); // of rows, by which they are found
+  function text_of(piece) {
+    if (!texts.has(piece)) texts.set(piece, piece.dataset.text ?? piece.textContent);
+    return texts.get(piece);
+  }
+
+  function fits(piece, view, hidden) {
+    const { surface, medium, load, run, status } = piece.dataset;
+    if (run === undefined) return view.shows({ surface, medium, load: piece.matches("tr") ? load : undefined });
+    const wanted = !hidden.has(run) && (!view.get("status") || status === view.get("status"));
+    return wanted && view.holds({ surface, medium, load }) && (!view.get("find") || view.finds(text_of(piece)));
+  }
 
   // What is looked at: rows, cards and headings of anything else go.
   function apply() {
-    const view = report.view, hidden = view.hidden;
-    for (const piece of document.querySelectorAll("[data-surface], [data-medium]")) {
-      const { surface, medium, load, run, text } = piece.dataset;
-      let fits = run === undefined
-        ? view.shows({ surface, medium, load: piece.matches("tr") ? load : undefined })
-        : view.holds({ surface, medium, load });
-      if (fits && run !== undefined) {
-        fits = !hidden.has(run) && (!view.get("find") || view.finds(text ?? piece.textContent)) && (!view.get("status") || piece.dataset.status === view.get("status"));
-        const marked = view.marks([run, surface, medium, load].join(" "));
-        if (piece.classList.contains("marked") !== marked) piece.classList.toggle("marked", marked);
-      }
-      if (piece.hidden === fits) piece.hidden = !fits;
+    const view = report.view, hidden = view.hidden, marking = view.get("mark");
+    const pieces = [...document.querySelectorAll("[data-surface]:not(tr), [data-medium]:not(tr)")];
+    for (const { rows } of holders.values()) for (const row of rows) if ("surface" in row.dataset) pieces.push(row);
+    for (const piece of pieces) {
+      const gone = !fits(piece, view, hidden);
+      if (piece.hidden !== gone) piece.hidden = gone;
+      const { run, surface, medium, load } = piece.dataset;
+      if (run !== undefined) piece.classList.toggle("marked", Boolean(marking) && view.marks([run, surface, medium, load].join(" ")));
     }
-    for (const group of document.querySelectorAll("tr.group")) {
-      let row = group.nextElementSibling, any = false;
-      for (; row && !row.classList.contains("group") && !any; row = row.nextElementSibling) any = !row.hidden;
-      group.hidden = !any && !group.closest(".sorted");
-    }
-    const rows = document.querySelectorAll("#runs-table tbody tr[data-run]");
-    const shown = Array.from(rows).filter((row) => !row.hidden).length;
+    for (const [table, { rows }] of holders) if (rows.some((row) => "surface" in row.dataset)) lay(table);
+    const runs = document.getElementById("runs-table");
+    const rows = runs ? held(runs).rows.filter((row) => row.dataset.run !== undefined) : [];
+    const shown = rows.filter((row) => !row.hidden).length;
     for (const said of document.querySelectorAll(".filters output")) {
       const gone = hidden.size ? `, ${hidden.size} hidden` : "";
       said.textContent = shown === rows.length ? `${rows.length} ${rows.length === 1 ? "run" : "runs"}` : `${shown} of ${rows.length} runs${gone}`;
@@ -161,6 +215,16 @@
       piece.classList.toggle("other", piece.dataset.atLoad !== wanted);
     }
   }
+
+  // A button in a head is not repeated on the next sheet of paper; text is.
+  addEventListener("beforeprint", () => {
+    for (const button of document.querySelectorAll("thead button")) button.before(...button.childNodes);
+  });
+  addEventListener("afterprint", () => {
+    for (const button of document.querySelectorAll("thead button")) {
+      while (button.previousSibling) button.prepend(button.previousSibling);
+    }
+  });
 
   function filters(form) {
     for (const field of form.querySelectorAll("[data-view]")) field.addEventListener("input", () => report.view.set(field.dataset.view, field.value));
@@ -175,7 +239,7 @@
     const names = Array.from(table.tHead.rows[0].cells, (cell) => cell.dataset.name);
     menu.addEventListener("change", (event) => {
       const place = names.indexOf(event.target.dataset.hides);
-      for (const row of table.rows) if (!row.classList.contains("group")) row.cells[place].hidden = !event.target.checked;
+      for (const row of [table.tHead.rows[0], ...held(table).rows]) if (!row.classList.contains("group")) row.cells[place].hidden = !event.target.checked;
     });
     document.addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });
     menu.addEventListener("keydown", (event) => {
@@ -190,6 +254,10 @@
   });
   report.dress = (place) => place.querySelectorAll("table.sortable").forEach(sortable);
   report.dress(document);
+  for (const table of holders.keys()) {
+    lay(table);
+    complete(table).catch(() => {}); // a browser that cannot unpack shows the first rows
+  }
   document.querySelectorAll("form.filters").forEach(filters);
   report.view.changed(apply);
   apply();
