@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab.cli import app
 from tribolab.errors import ReadError
-from tribolab.io.clocks.joint import play as play_of_the_fit
+from tribolab.io.clocks.basis import play as play_of_the_fit
 from tribolab.io.clocks.merge import merge
 from tribolab.io.clocks.motion import clean_motion
 from tribolab.qc.run_checks import check_run

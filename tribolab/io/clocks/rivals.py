@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.io.clocks.joint import Basis, joint_fit, sampling
+from tribolab.io.clocks.basis import Basis
+from tribolab.io.clocks.joint import joint_fit, sampling
 
 Array = NDArray[np.float64]
 

@@ -23,8 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from tribolab.io.clocks.basis import Basis
 from tribolab.io.clocks.classes import Classes, coarse_shift, motion_classes
-from tribolab.io.clocks.joint import Basis, told_by_motion
+from tribolab.io.clocks.joint import told_by_motion
 from tribolab.io.clocks.motion import Motion, clean_motion
 from tribolab.io.clocks.onset import refine_by_onsets
 from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
