@@ -18,6 +18,11 @@ from tribolab.campaign.store import Catalogue
 from tribolab.report import page as page_module
 
 FAILED = "the page could not be opened: no chromium was found"
+PANEL = (
+    "(() => { const e = document.querySelector('#run-1 .nsewdrag');"
+    "e.scrollIntoView({block: 'center', behavior: 'instant'});"
+    "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()"
+)
 SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
 
 
@@ -118,7 +123,7 @@ def test_axes_switch_between_logarithmic_and_linear_by_key(browser, results):
 @pytest.mark.slow
 def test_what_is_looked_at_stands_in_the_address_and_rules_tables_and_figures(browser, results):
     address = (results / "report.html").as_uri()
-    with browser.page(f"{address}#surface=Sb-S&medium=dry") as page:
+    with browser.page(f"{address}#surface=Sb-S&medium=dry&load=31N") as page:
         assert rows(page) == ["sb-s_1"]
         shown = (
             "Array.from(document.querySelectorAll('.answer:not([hidden]) h3'), h => h.textContent)"
@@ -127,7 +132,7 @@ def test_what_is_looked_at_stands_in_the_address_and_rules_tables_and_figures(br
         assert drawn(page, "curves-compared") == ["Sb-S, dry"]
         # a link to a section keeps it
         page.click("nav a[href='#runs']")
-        page.wait("location.hash === '#runs&surface=Sb-S&medium=dry'")
+        page.wait("location.hash === '#runs&surface=Sb-S&medium=dry&load=31N'")
         page.click(".filters [type=reset]")
         page.wait("document.querySelectorAll('.answer:not([hidden])').length === 3")
         assert names(page, "curves-compared") == ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]
@@ -255,11 +260,7 @@ def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
     with browser.page(f"{(results / 'report.html').as_uri()}#run-1") as page:
         page.wait("document.querySelector('#run-1 .nsewdrag') !== null")
         whole = span_of(page, 1)
-        box = page.run(
-            "(() => { const e = document.querySelector('#run-1 .nsewdrag');"
-            "e.scrollIntoView({block: 'center', behavior: 'instant'});"
-            "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })()"
-        )
+        box = page.run(PANEL)
         x, y = box[0], box[1] + box[3] / 2
         page.mouse([(x + box[2] * share, y) for share in (0.25, 0.4, 0.5)])
         page.wait(f"!{state}.startsWith('0 s')")
@@ -276,6 +277,13 @@ def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
         assert span_of(page, 1) == pytest.approx(later, rel=1e-3)
         page.run("document.querySelector('#run-1 .plot').focus()")
         page.key("Home")
+        assert span_of(page, 1) == whole
+        page.key("+", "+")
+        assert span_of(page, 1) != whole
+        box = page.run(PANEL)
+        for _ in range(2):
+            page.mouse([(box[0] + box[2] / 2, box[1] + box[3] / 2)])
+        page.wait(f"{state}.startsWith('0 s')")
         assert span_of(page, 1) == whole
         assert page.console == []
 

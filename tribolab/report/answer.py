@@ -12,7 +12,7 @@ from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed, plain_speed, plain_speeds
-from tribolab.words import aligned, force_text, many, number
+from tribolab.words import aligned, force_text, many
 
 _FLAT = 0.75  # lowest over highest friction of a curve that hardly depends on speed
 _NEAR = 0.9  # of the highest friction: still on the plateau
@@ -232,7 +232,9 @@ def _why(runs: Sequence[Mapping[str, Any]]) -> str:
     if len(failed) == len(runs):
         return f"{which} could not be read"
     if len(failed) + len(rejected) == len(runs):
-        return f"{number(len(failed))} could not be read and {number(len(rejected))} were rejected"
+        count = len(rejected)
+        were = "was" if count == 1 else "were"
+        return f"{len(failed)} could not be read and {count} {were} rejected"
     return "no run has both a speed and a load"
 
 

@@ -222,7 +222,7 @@ report.drawing = (() => {
 
     paint(Plotly = globalThis.Plotly) {
       if (!Plotly || !this.data || !(state.printing || this.place.clientWidth)) return;
-      const config = { displayModeBar: false, scrollZoom: false, doubleClick: "reset", showTips: false, locale: "en" };
+      const config = { displayModeBar: false, scrollZoom: false, doubleClick: false, showTips: false, locale: "en" };
       Plotly.react(this.place, this.traces(), this.layout(), config);
       if (!this.drawn) this.attach(Plotly);
       this.drawn = true;
@@ -249,6 +249,7 @@ report.drawing = (() => {
         this.paint(Plotly);
         return false;
       });
+      this.place.on("plotly_doubleclick", () => { this.whole(); });
       this.place.on("plotly_relayout", () => this.follow?.());
     }
 

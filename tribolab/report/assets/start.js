@@ -4,6 +4,7 @@
   report.goTo = async (target) => {
     const place = target && document.getElementById(target);
     if (!place) return;
+    if (place.hidden) report.view.clear(); // what a link leads to is shown
     if (place.tagName === "DETAILS") {
       place.open = true;
       await report.unfold(place);

@@ -13,12 +13,13 @@ report.view = (() => {
       const [key, value] = part.split("=", 2);
       if (value === undefined) anchor = anchor || decodeURIComponent(key);
       else if (KEYS.includes(key) && value) state[key] = decodeURIComponent(value);
+      if (key === "load") state.load = state.load?.replace(/\s*N$/, " N");
     }
   }
 
   function address(target = anchor) {
     const parts = target ? [encodeURIComponent(target)] : [];
-    for (const key of KEYS) if (state[key]) parts.push(`${key}=${encodeURIComponent(state[key])}`);
+    for (const key of KEYS) if (state[key]) parts.push(`${key}=${encodeURIComponent(key === "load" ? state.load.replace(" ", "") : state[key])}`);
     return parts.length ? `#${parts.join("&")}` : location.pathname + location.search;
   }
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tribolab.records.part_records import CurveRecord
+from tribolab.records.wording import with_error
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, safe
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told
 from tribolab.report.live.record import Band, Missed
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
 SPEED = Axis("sliding speed v", "m/s", log=True)
+_UNDECIDED = 6  # a grey that no load has
 FRICTION = Axis("friction coefficient µ", log=True)
 
 
@@ -79,6 +81,7 @@ def _card(
         if model is not None and _has_stress(model):
             series += _modelled(known, model, curve, number_, "model")
         series.append(_measured(known, curve, number_, "measured"))
+        series += _as_found(curve)
     name = system_name(surface, medium, curves[0].outcome.run_names)
     values = [row["friction_coefficient"] for curve in curves for row in curve.points]
     every = [row["sliding_speed_m_s"] for curve in curves for row in curve.points]
@@ -130,6 +133,33 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
         goes_to=targets,
         **_labels(curve),
     )
+
+
+def _as_found(curve: CurveRecord) -> list[Series]:
+    """Return the curve without a person's decisions, where there are any: they must be seen."""
+    rows = [row for row in curve.points_as_found if row["friction_coefficient"] is not None]
+    if not rows:
+        return []
+    return [
+        Series(
+            "without decisions by hand",
+            [row["sliding_speed_m_s"] for row in rows],
+            [row["friction_coefficient"] for row in rows],
+            style="points",
+            colour=_UNDECIDED,
+            error=[row["friction_coefficient_sem"] for row in rows],
+            told=[
+                f"without decisions by hand\nv = {plain_speed(_float(row['sliding_speed_m_s']))}\n"
+                f"µ = {with_error(_float(row['friction_coefficient']), _sem(row))}"
+                for row in rows
+            ],
+            **(_labels(curve) | {"open": True}),
+        )
+    ]
+
+
+def _sem(row: Row) -> float | None:
+    return _float(row["friction_coefficient_sem"])
 
 
 def _singly(known: Friction, curve: CurveRecord, colour: int, label: str) -> list[Series]:

@@ -11,6 +11,7 @@ from tribolab.records.wording import with_error
 from tribolab.report.plain import plain_speed
 from tribolab.words import many, number
 
+_WIDENED = 1.2  # an error so much larger than the scatter alone holds what few runs do not tell
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
 
@@ -130,6 +131,8 @@ def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) 
     runs = int(row.get("runs") or 1)
     if error.between is not None:
         lines.append(f"between {runs} runs: ± {number(error.between, 2)}")
+        if error.size is not None and error.size > _WIDENED * error.between:
+            lines.append(f"widened: {runs} runs tell little of the spread")
     elif runs == 1:
         lines.append("between runs: not known, one run")
     if points:

@@ -1,0 +1,73 @@
+"""The answer that the page begins with: what was found, and what is missing and why."""
+
+import pytest
+
+from tribolab.report.answer import cards
+
+SEM = {"friction_coefficient_sem": 0.01, "runs": 2}
+
+
+def run(name, load, status="done", quality="pass"):
+    labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": load}
+    return labels | {"name": name, "status": status, "quality": quality}
+
+
+def report(runs, findings=(), **fit):
+    """A report with a curve at 31 N, a plateau of 1.1 that falls to 0.2."""
+    points = [
+        {"sliding_speed_m_s": v, "friction_coefficient": mu} | SEM
+        for v, mu in ((0.999e-6, 1.1), (1e-4, 1.05), (1e-2, 0.2))
+    ]
+    labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": 31.0}
+    curve = labels | {"name": "c", "runs": ["a"], "points": points}
+    model = {"curve": "c", "status": "done", "reason": "", "fit": fit or None}
+    mode = {"curve": "c", "text": "steady sliding, no stick-slip at any speed"}
+    return {
+        "curves": [curve],
+        "models": [model] if fit else [],
+        "sliding_mode": [mode],
+        "runs": [run("a", 31.0), *runs],
+        "findings": list(findings),
+    }
+
+
+def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
+    stress = {"shear_stress_Pa": 0.88e6, "shear_stress_low_Pa": 0.8e6}
+    words = "the model describes the curve within the errors; largest at 1 mm/s"
+    (card,) = cards(report([], **stress, shear_stress_high_Pa=0.95e6, judgement=words))
+    (found,) = card.found
+    # half of 1.1 lies between the last two points: 100 um/s * 100^((1.05 - 0.55) / 0.85)
+    assert found.sentences == (
+        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.5 mm/s; lowest "
+        "0.200 ± 0.010 at 10 mm/s, the fastest speed.",
+        "Steady sliding, no stick-slip at any speed.",
+        "Shear stress 0.880 MPa (95 %: 0.800 to 0.950 MPa).",
+        "The model describes the curve within the errors.",
+    )
+    assert card.missing == ()
+
+
+@pytest.mark.parametrize(
+    ("runs", "why"),
+    [
+        (
+            [("b", "done", "fail"), ("c", "done", "error")],
+            "both runs were rejected by their checks",
+        ),
+        ([("b", "done", "rejected")], "its only run was rejected by hand"),
+        ([("b", "done", "fail"), ("c", "done", "rejected")], "both runs were rejected"),
+        ([("b", "failed", "")] * 3, "all 3 runs could not be read"),
+        ([("b", "failed", ""), ("c", "done", "fail")], "1 could not be read and 1 was rejected"),
+    ],
+)
+def test_a_curve_that_is_missing_is_named_with_the_reason(runs, why):
+    (card,) = cards(report([run(name, 91.0, *more) for name, *more in runs]))
+    assert card.missing == (f"Sb-R, glycerol, 91 N: no curve, {why}.",)
+
+
+def test_findings_that_are_alike_are_said_once_and_those_of_others_not_at_all():
+    one = {"severity": "suspect", "where": "spikes friction_force", "message": "3 stand out. Look"}
+    alike = [one | {"run": "a"}, one | {"run": "a"}]
+    notes = [one | {"severity": "note", "run": "a"}, one | {"run": "elsewhere"}]
+    (card,) = cards(report([], alike + notes))
+    assert card.findings == (("suspect", "spikes friction_force: 3 stand out (and 1 alike)"),)
