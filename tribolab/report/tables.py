@@ -15,7 +15,7 @@ from pyarrow import parquet
 from tribolab.errors import ReadError, brief
 from tribolab.records.parts import Notice, Row
 
-_CHUNK = 20_000  # rows that are in memory at once
+_CHUNK = 4_000  # rows that are in memory at once
 _ARROW = {
     "float64": pa.float64(),
     "int64": pa.int64(),
