@@ -103,7 +103,7 @@ def _share(value: Any) -> Any:
     try:
         return to_si(value, "1", name="")
     except UnitError as error:
-        raise ValueError(f"{value!r} is no share; write e.g. 0.1 or '10 %'") from error
+        raise ValueError(f"{shown(repr(value))} is no share; write e.g. 0.1 or '10 %'") from error
 
 
 # a part of something, below one half: its two ends may be cut off
@@ -129,7 +129,9 @@ def _spread(value: Any) -> str:
             with contextlib.suppress(UnitError):
                 if to_si(value, unit, name="") >= 0:
                     return value
-    raise ValueError(f"{value!r} is no force and no pure number; write e.g. '0.2 N' or '2 %'")
+    raise ValueError(
+        f"{shown(repr(value))} is no force and no pure number; write e.g. '0.2 N' or '2 %'"
+    )
 
 
 # text until the signal that it is for says its unit
