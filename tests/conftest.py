@@ -29,3 +29,19 @@ def shared() -> Path:
 def shared_data(shared: Path) -> Path:
     """Real measured files."""
     return shared / "data"
+
+
+@pytest.fixture(scope="session")
+def original(tmp_path_factory):
+    """A campaign with results, in which two runs went wrong; tests copy it."""
+    from reviews import faulted
+
+    return faulted(tmp_path_factory.mktemp("review"))
+
+
+@pytest.fixture(scope="session")
+def reviewed(original, tmp_path_factory):
+    """The same with decisions on three of four runs; and what the campaign came to."""
+    from reviews import decided_on
+
+    return decided_on(original, tmp_path_factory.mktemp("reviewed"))

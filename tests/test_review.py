@@ -1,16 +1,15 @@
 """A review file does in a campaign what `tl.decide` does in a notebook, and all of it is told."""
 
 import json
-import os
-import time
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
-from campaigns import RUNS, copied, simulated
+from campaigns import RUNS, copied
 from report_pages import details_of
+from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, entry, rows_of
 from typer.testing import CliRunner
 
 import tribolab
@@ -33,72 +32,7 @@ from tribolab.records.decision_rows import decision_rows
 from tribolab.report.read_results import read_results
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
-FROZEN, SLIPPED, LATE, SOUND = RUNS  # what happened to the runs; the checks fail the first
-SLIP = 2  # place of the stroke that slipped off
 GLYCEROL, DRY = "curve_Sb-R_glycerol_31N", "curve_Sb-R_dry_31N"
-
-ENTRY = """[[decision]]
-run = "{run}"
-action = "{action}"
-{times}reason = "{reason}"
-author = "A. Person"
-date = 2026-11-20
-
-"""
-
-
-def entry(run, action, reason="seen by eye", **times):
-    """A decision as it stands in a review file; times in s, `start` and `stop` are from and to."""
-    names = {"start": "from", "stop": "to", "new_start": "new_from", "new_stop": "new_to"}
-    lines = "".join(f'{names[name]} = "{value:.4f} s"\n' for name, value in times.items())
-    return ENTRY.format(run=run, action=action, reason=reason, times=lines)
-
-
-def inside(rows, place):
-    """The middle of a segment, as an interval."""
-    start, stop = (float(rows[f"{end}_s"].iloc[place]) for end in ("start", "stop"))
-    return {"start": start + 0.3 * (stop - start), "stop": stop - 0.3 * (stop - start)}
-
-
-def rows_of(results, run):
-    table = read_results(results)["friction"]
-    return table[table.run == run]
-
-
-@pytest.fixture(scope="module")
-def original(tmp_path_factory):
-    """A campaign with results, in which one force signal froze and one stroke slipped off."""
-    file = simulated(tmp_path_factory.mktemp("review"), faults=("frozen",))
-    log = file.parent / f"raw/friction/{SLIPPED}_force.csv"
-    lines = log.read_text("utf-8").splitlines()
-    head = next(n for n, line in enumerate(lines) if line.startswith("Time"))
-    table = pd.read_csv(log, skiprows=head)
-    slid = table["Time [s]"].between(*SLID)
-    table.loc[slid, "Fx [N]"] *= 0.5
-    body = table.to_csv(index=False, lineterminator="\n")
-    log.write_text("\n".join(lines[:head]) + "\n" + body, "utf-8")
-    for path in (file.parent / "raw").rglob("*.csv"):
-        os.utime(path, (time.time() - 60,) * 2)
-    run_campaign(file, jobs=1, figures="none")
-    return file
-
-
-SLID = (340.0, 367.2)  # s on the force log's clock: about the third stroke
-
-
-@pytest.fixture(scope="module")
-def reviewed(original, tmp_path_factory):
-    """The same with decisions on three of four runs; and what the campaign came to."""
-    file = copied(original, tmp_path_factory.mktemp("reviewed"))
-    results = file.parent / "results"
-    late = rows_of(results, LATE)
-    begin = float(late.start_s.iloc[1]) + 20
-    text = entry(SLIPPED, "reject", "slipped off", **inside(rows_of(results, SLIPPED), SLIP))
-    text += entry(FROZEN, "accept", "the logger's buffer, at rest")
-    text += entry(LATE, "bounds", "began late", **inside(late, 1), new_start=begin)
-    text += entry(LATE, "note", "humid day")
-    (file.parent / REVIEW_FILE).write_text(text, "utf-8")
-    return file, run_campaign(file, jobs=1, figures="none")
 
 
 @pytest.mark.slow

@@ -109,6 +109,11 @@ def load_review(path: str | Path) -> dict[str, tuple[Decision, ...]]:
     return _read(path, text).by_run
 
 
+def load_entries(path: Path) -> tuple[DecisionEntry, ...]:
+    """Return the decisions of a review file in their order."""
+    return _read(path, text_of(path, "")).decision
+
+
 def review_beside(campaign_file: Path) -> dict[str, tuple[Decision, ...]]:
     """Return the decisions that lie beside a campaign file, by run; none without such a file."""
     path = campaign_file.parent / REVIEW_FILE

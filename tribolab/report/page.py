@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from tribolab.records.packed import deflated
 from tribolab.records.parts import PageTrace
+from tribolab.records.traces import as_text
 from tribolab.report.answer import cards, of_nothing
 from tribolab.report.live.figure import ShownFigure
 from tribolab.report.sections import shown_sections
@@ -46,7 +47,8 @@ def write_page(
     Parameters
     ----------
     document
-        From `tribolab.report.document.report_document`, with what is brief of the runs.
+        From `tribolab.report.document.report_document`, with what is brief of the runs, and with
+        ``review`` from `tribolab.report.reviewing.review_data` if the reader may decide on them.
     folder
         Results folder.
     runs
@@ -89,6 +91,7 @@ def _context(
         "cards": cards(document),
         "unnamed": of_nothing(document),
         "live": live,
+        "review": as_text(document["review"]) if "review" in document else "",
         "groups": first,
         "more_groups": rest,
         "said": grouped_findings(document["findings"]),

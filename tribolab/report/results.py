@@ -26,6 +26,7 @@ from tribolab.report.live.gather import live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.page import write_page
+from tribolab.report.reviewing import review_data
 from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import surface_record, table
@@ -129,7 +130,8 @@ def write_report(
         **drawn,
     }
     write_json(document, _documents(outcome), folder / "report.json")
-    write_page(document | {"runs": briefs}, folder, lambda: _documents(outcome), store, live)
+    on_page = document | {"runs": briefs, "review": review_data(outcome.campaign, briefs)}
+    write_page(on_page, folder, lambda: _documents(outcome), store, live)
     store.save()
     tell("page", 1, 1)
 

@@ -94,5 +94,6 @@
     details.append(place);
     report.dress?.(place);
     report.charts?.watch(place);
+    report.reviewing?.join(details);
   };
 }

@@ -84,7 +84,7 @@ report.Trace = (() => {
 
     where(t) {
       const place = this.trace.segments.findIndex(([start, stop]) => t >= start && t <= stop);
-      return place < 0 ? "" : `<br>segment ${place + 1}, ${this.trace.segments[place][6]}`;
+      return place < 0 ? "" : `<br>segment ${place + 1}, ${this.trace.segments[place][6]}${this.review?.hover(place) ?? ""}`;
     }
 
     get shapes() {
@@ -102,9 +102,10 @@ report.Trace = (() => {
             box(row, start, stop, colour, 0.07);
             box(row, inner, outer, colour, 0.12);
           }
-          for (const flag of this.trace.flags) if (concerns(flag, row)) box(row, flag.start_s, flag.stop_s, tone[flag.severity], 0.35);
+          // what a person rejected is hatched
+          for (const flag of this.trace.flags) if (concerns(flag, row) && flag.checks.join() !== "manual") box(row, flag.start_s, flag.stop_s, tone[flag.severity], 0.35);
         }
-        return shapes;
+        return [...shapes, ...(this.review?.marks() ?? [])];
       };
     }
 
@@ -171,6 +172,7 @@ report.Trace = (() => {
       const [low, high] = this.span, points = this.level.signals[0].points;
       const part = this.level.complete ? `all ${this.trace.samples} samples` : `${points} of ${this.trace.samples} samples, extremes kept`;
       this.figure.querySelector(".state").textContent = `${plain(low)} s to ${plain(high)} s of ${plain(this.trace.length_s)} s; ${part}`;
+      this.review?.follow();
     }
 
     table() {

@@ -1,0 +1,100 @@
+"""What the page needs so that a reader can decide on it: the review file as it stands, as data."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.campaign.review import REVIEW_FILE, load_entries
+from tribolab.campaign.toml_file import text_of
+
+if TYPE_CHECKING:
+    from tribolab.campaign.config import Campaign
+
+_HEADER = re.compile(r"^[ \t]*\[\[[ \t]*decision[ \t]*\]\]", re.MULTILINE)
+_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines that end a text
+
+
+def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the decisions beside a campaign file, as the page carries them.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    runs
+        As in report.json: they know which segments a decision touched.
+
+    Returns
+    -------
+    dict
+        ``key`` tells this campaign from others, ``files`` names the campaign and the review file,
+        ``head`` is what stands before the first decision, and ``entries`` has the decisions in
+        their order: times [s], the numbers of their ``segments``, from 1, whether they were
+        ``applied``, and their ``text`` as a person wrote it, "" where it is no table of its own.
+    """
+    file = Path(campaign.file)
+    name = f"{file.parent.absolute()}\n{file.name}\n{campaign.name}"
+    data: dict[str, Any] = {
+        "key": hashlib.sha256(name.encode()).hexdigest()[:24],
+        "files": [file.name, REVIEW_FILE],
+        "head": "",
+        "entries": [],
+    }
+    path = file.parent / REVIEW_FILE
+    if not path.exists():
+        return data
+    head, texts = pieces(text_of(path, ""))
+    entries = load_entries(path)
+    touched = {run["name"]: list(run["decisions"]) for run in runs}
+    rows = []
+    for place, entry in enumerate(entries):
+        plain = {"run": entry.run} | entry.decision.plain()
+        known = next((row for row in touched.get(entry.run, ()) if _same(row, plain)), None)
+        rows.append(
+            plain
+            | {
+                "segments": [] if known is None else list(known["segments"]),
+                "applied": known is not None and not known["effect"].startswith("not applied"),
+                "text": texts[place] if texts else "",
+            }
+        )
+    return data | {"head": head, "entries": rows}
+
+
+def _same(row: Mapping[str, Any], plain: Mapping[str, Any]) -> bool:
+    return all(row[key] == value for key, value in plain.items() if key != "run")
+
+
+def pieces(text: str) -> tuple[str, list[str]]:
+    r"""Return what stands before the first decision of a review file, and each decision's text.
+
+    A decision has the comment lines right above it. If decisions are not written as tables of
+    their own, both are empty: then only what they say can be kept.
+
+    Examples
+    --------
+    >>> pieces('# Mine\n\n# late\n[[decision]]\nrun = "a"\n\n[[decision]]\nrun = "b"\n')
+    ('# Mine\n\n', ['# late\n[[decision]]\nrun = "a"\n\n', '[[decision]]\nrun = "b"\n'])
+    >>> pieces('decision = [{run = "a"}]')
+    ('', [])
+    """
+    cuts = []
+    for header in _HEADER.finditer(text):
+        comment = _ABOVE.search(text, 0, header.start())
+        cuts.append(comment.start() if comment else header.start())
+    head = text[: cuts[0]] if cuts else text
+    texts = [text[low:high] for low, high in pairwise([*cuts, len(text)])] if cuts else []
+    try:
+        told = [tomllib.loads(one)["decision"] for one in texts]
+        whole = tomllib.loads(text).get("decision", [])
+        if [entry for one in told for entry in one] == whole and not tomllib.loads(head):
+            return head, texts
+    except tomllib.TOMLDecodeError:  # a header inside a text
+        pass
+    return "", []
