@@ -293,6 +293,7 @@ def described(residual, **attrs):
     data = {
         "friction_coefficient": 1 + residual,
         "friction_coefficient_residual": residual,
+        "friction_coefficient_sem": np.full(residual.size, 0.003),
         "used": np.ones(residual.size),
     }
     data = {name: ("sliding_speed", values) for name, values in data.items()}
@@ -318,6 +319,14 @@ def test_the_words_follow_the_residuals():
     assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
     far = judgement(described([0.9, 0.8, -0.01, -0.02], chi_square_p_value=0.0))
     assert far.startswith("the model does not describe this curve: off by up to 47 %")
+    # a miss of a few hundredths of the height, where friction is lowest, is a factor of thirty
+    low = described([0.001, -0.001, 0.0, -0.3], chi_square_p_value=0.0)
+    low["friction_coefficient"][-1] = 0.01
+    assert judgement(low).startswith(
+        "the model does not describe this curve: off by up to a factor of 31"
+    )
+    low["friction_coefficient_sem"][-1] = 0.2
+    assert is_described(judgement(low))
     none = judgement(described([0.5] * 4, shear_stress_Pa=-1.0))
     assert none.startswith("no shear stress describes this curve")
     assert "the model's" not in none and "see stick-slip and sliding mode" in none
@@ -384,7 +393,9 @@ def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):
     (tmp_path / "tables").mkdir()
     words = ["no shear stress describes this curve: …", "the model describes the curve: …"]
     fits = pd.DataFrame({"surface": ["Smooth", "Smooth", "Sb-S"], "judgement": [*words, words[1]]})
-    fits.loc[1, "judgement"] = "the model does not describe this curve: off by up to 85 % of it"
+    fits.loc[1, "judgement"] = (
+        "the model does not describe this curve: off by up to 85 % of its height"
+    )
     fits.to_csv(tmp_path / "tables/shear_stress.csv")
     paper = pd.DataFrame({"status": ["reproduced"]})
     fitted = pd.DataFrame({"relative_difference": [0.01], "within_interval": [1]})

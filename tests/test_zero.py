@@ -366,6 +366,19 @@ def test_another_sign_is_proposed_only_where_the_loop_is_centred(turned, offset,
     assert row["status"] == "fail" and cure in row["cure"]
 
 
+def test_strokes_of_hardly_any_friction_do_not_speak_against_a_turned_sign():
+    def mu(speed):
+        return np.where(np.abs(speed) > 1.5 * SPEED, 0.004, MU)
+
+    speeds = [*(BOTH * 2), 2 * SPEED, -2 * SPEED]
+    run = programme(speeds, mu=mu, zero=lambda u: 0 * u, loaded_rests=True)
+    run = run.assign(sliding_velocity=-run["sliding_velocity"])
+    rows = check_run(run, find_segments(run), analysed(run)).rows
+    (row,) = [row for row in rows if row["check"] == "friction_sign"]
+    assert "in 2 more it is too small to tell" in row["message"]
+    assert row["cure"].startswith("Set `sign = -1`")
+
+
 # segments that are taken out
 
 

@@ -96,7 +96,8 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not np.isfinite(values).any():
         raise Skip("no segment has a friction coefficient")
     least = limits["share"] * float(np.nanmean(np.abs(values)))
-    wrong = values < -np.maximum(limits["errors"] * error, least)
+    clear = np.maximum(limits["errors"] * error, least)
+    wrong, right = values < -clear, values > clear
     samples = np.full(subject.time.size, NOT_EVALUATED, np.int8)
     for part, bad in zip(subject.slices, wrong, strict=True):
         samples[part] = FAIL if bad else GOOD
@@ -107,27 +108,29 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = f"friction drives the motion in {Count(wrong.sum()):segment|segments}, first in {where}"
     unit = "1" if name == "friction_coefficient" else "N"
     value, count = float(values[first]), int(wrong.sum())
-    cure = _cure_of_sign(subject, values, wrong)
+    cure = _cure_of_sign(subject, right, wrong)
+    if small := int((np.isfinite(values) & ~wrong & ~right).sum()):
+        text += f"; in {small} more it is too small to tell"
     return [Result("fail", signal, text, value, unit, where, count, samples, cure=cure)]
 
 
-def _cure_of_sign(subject: RunSubject, values: np.ndarray, wrong: np.ndarray) -> str:
+def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> str:
     """Propose another sign only where nothing but the sign can be wrong.
 
-    That is where all strokes are turned, both ways, and their loop lies about zero: an offset that
-    is larger than friction, or none that is known, turns strokes as well.
+    That is where all strokes that tell are turned, both ways, and their loop lies about zero: an
+    offset that is larger than friction, or none that is known, turns strokes as well.
     """
     friction = subject.friction
     direction = friction["direction"].values
     method = str(friction.attrs.get("offset", ""))
     both = all((direction[wrong] == d).any() for d in (1, -1))
-    if _speed_without_sign(subject) and not wrong[np.isfinite(values)].all():
+    if _speed_without_sign(subject) and right.any():
         return (
             "The velocity is nowhere negative, the friction force is: the speed was recorded "
             "without its sign. Name its column `set_speed` in the dialect, so that the force tells "
             "the direction, or record the position."
         )
-    if not wrong[np.isfinite(values)].all():
+    if right.any():
         return (
             "Only some strokes are turned, so it is not the sign of a column: look at the zero "
             "(`zero_from` of these segments), at the direction of sliding, and at the clocks."

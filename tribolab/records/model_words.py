@@ -16,6 +16,8 @@ _UNLIKELY = 0.05  # probability under which the order of the residuals' signs is
 _LARGE = 0.10  # of the measured friction: a miss that any reader sees
 _CLOSE = 0.02  # of the curve's height
 _FAR = 0.3
+_APART = 2.0  # as a factor: what is off by more no reader calls described
+_BEYOND = 3.0  # standard errors
 _NOT_DESCRIBED = "the model does not describe this curve"
 _NO_STRESS = "no shear stress describes this curve"
 
@@ -45,7 +47,7 @@ def is_described(words: str) -> bool:
 
     Examples
     --------
-    >>> is_described("the model does not describe this curve: off by up to 85 % of it")
+    >>> is_described("the model does not describe this curve: off by up to 85 % of its height")
     False
     """
     return not words.startswith((_NOT_DESCRIBED, _NO_STRESS))
@@ -75,7 +77,10 @@ def judgement(fit: xr.Dataset) -> str:
     )
     share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
     worst = int(np.argmax(np.abs(off)))
-    parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max())]
+    error = fit["friction_coefficient_sem"].values[used]
+    told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _BEYOND * error)
+    factor = float(np.exp(np.abs(np.log(mu[told] / (mu - off)[told])).max(initial=0.0)))
+    parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max(), factor)]
     low, high = fit.attrs["valid_speed_low_m_s"], fit.attrs["valid_speed_high_m_s"]
     if np.isfinite(low) and (low > 1.01 * speed[0] or high < 0.99 * speed[-1]):
         parts.append(
@@ -97,15 +102,20 @@ def judgement(fit: xr.Dataset) -> str:
     return "; ".join(parts)
 
 
-def _verdict(attrs: Mapping[str, Any], largest: float) -> str:
-    """Say first whether the two agree, then whether what is left has an order."""
+def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
+    """Say first whether the two agree, then whether what is left has an order.
+
+    The largest miss is a share of the curve's height, or, where friction is low, a factor.
+    """
     ordered = attrs["runs_p_value"] < _UNLIKELY
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
         return "the model describes the curve within the errors"
     if attrs["chi_square_p_value"] >= _UNLIKELY:
         return "within the errors, but the residuals follow one another: the shape differs slightly"
     if largest > _FAR:
-        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of it"
+        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of its height"
+    if factor > _APART:
+        return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
     chance = ", and not by chance: neighbouring points err alike" if ordered else ""
     if largest < _CLOSE:
         return (

@@ -190,8 +190,8 @@ def model_in_words(fit: Mapping[str, Any]) -> list[str]:
     --------
     >>> model_in_words({"shear_stress_Pa": 0.84e6, "shear_stress_low_Pa": 0.8e6,
     ...     "shear_stress_high_Pa": 0.88e6, "judgement":
-    ...     "the model does not describe this curve: off by up to 85 % of it; no range"})
-    ['The model does not describe this curve: off by up to 85 % of it.']
+    ...     "the model does not describe this curve: off by up to 85 % of its height; no range"})
+    ['The model does not describe this curve: off by up to 85 % of its height.']
     """
     verdict = str(fit["judgement"]).split(";")[0]
     if not is_described(str(fit["judgement"])):
