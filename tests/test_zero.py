@@ -368,7 +368,7 @@ def test_another_sign_is_proposed_only_where_the_loop_is_centred(turned, offset,
 
 def test_strokes_of_hardly_any_friction_do_not_speak_against_a_turned_sign():
     def mu(speed):
-        return np.where(np.abs(speed) > 1.5 * SPEED, 0.004, MU)
+        return np.where(np.abs(speed) > 1.5 * SPEED, 0.001, MU)
 
     speeds = [*(BOTH * 2), 2 * SPEED, -2 * SPEED]
     run = programme(speeds, mu=mu, zero=lambda u: 0 * u, loaded_rests=True)
