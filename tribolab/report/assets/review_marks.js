@@ -5,6 +5,7 @@ report.Marks = (() => {
   const DARK = { applied: "#ff9d94", pending: "#79b8f5", accepted: "#82d8a3" };
   const APART = 9; // px between the lines of a hatch
   const NEAR = 12; // px beside a segment that still choose it
+  const MOST = 400; // shapes at once
   const STILL = 5; // px that a click may move
   const escaped = (words) => words.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`);
 
@@ -84,22 +85,23 @@ report.Marks = (() => {
     marks() {
       const dark = report.drawing.isDark(), tone = dark ? DARK : LIGHT, shapes = [];
       const [low, high] = this.chart.span, rows = this.chart.trace.signals.length;
-      this.panel.segments.forEach((bounds, place) => {
-        for (const one of this.panel.decided(place)) {
-          if (one.action === "note" || one.state === "withdrawn") continue;
-          const pending = one.state !== "applied";
-          const colour = pending ? tone.pending : one.action === "accept" ? tone.accepted : tone.applied;
-          const moved = one.action === "bounds" && pending;
-          const [start, stop] = moved ? [one.new_start_s ?? bounds[0], one.new_stop_s ?? bounds[1]] : bounds;
-          if (stop < low || start > high) continue;
-          const line = { color: colour, width: 1.5, dash: pending ? "dash" : "solid" };
-          for (let row = 0; row < rows; row++) {
-            const at = { xref: row ? `x${row + 1}` : "x", yref: `y${row ? row + 1 : ""} domain`, line };
-            shapes.push({ ...at, type: "rect", x0: start, x1: stop, y0: 0, y1: 1 });
-            if (one.action === "reject") shapes.push({ ...at, type: "path", path: this.hatch(Math.max(start, low), Math.min(stop, high), row, pending), line: { ...line, width: 1, dash: "solid" } });
-          }
+      const paper = report.drawing.state.printing; // has what the numbers have
+      for (const one of this.panel.known) {
+        const whole = one.segment === null && one.action === "reject";
+        if (one.action === "note" || !(whole || Number.isInteger(one.segment)) || (one.state === "withdrawn" && !(paper && one.applied))) continue;
+        const pending = ["pending", "waiting"].includes(one.state);
+        if ((pending && paper) || shapes.length > MOST) continue;
+        const colour = pending ? tone.pending : one.action === "accept" ? tone.accepted : tone.applied;
+        const moved = one.action === "bounds" && pending, bounds = whole ? this.panel.ends : this.panel.segments[one.segment];
+        const [start, stop] = moved ? [one.new_start_s ?? bounds[0], one.new_stop_s ?? bounds[1]] : bounds;
+        if (stop < low || start > high) continue;
+        const line = { color: colour, width: 1.5, dash: pending ? "dash" : "solid" };
+        for (let row = 0; row < rows; row++) {
+          const at = { xref: row ? `x${row + 1}` : "x", yref: `y${row ? row + 1 : ""} domain`, line };
+          shapes.push({ ...at, type: "rect", x0: start, x1: stop, y0: 0, y1: 1 });
+          if (one.action === "reject") shapes.push({ ...at, type: "path", path: this.hatch(Math.max(start, low), Math.min(stop, high), row, pending), line: { ...line, width: 1, dash: "solid" } });
         }
-      });
+      }
       return shapes;
     }
 

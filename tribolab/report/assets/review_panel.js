@@ -41,10 +41,9 @@ report.ReviewPanel = (() => {
 
     // The segments as they were found, which decisions look for: what is bounded anew was elsewhere.
     get found() {
-      return this.segments.map(([start, stop], place) => {
-        const moved = report.book.of(this.run, []).find((one) => one.action === "bounds" && one.applied && one.segment === place);
-        return moved ? [moved.start_s, moved.stop_s] : [start, stop];
-      });
+      const moved = report.book.of(this.run, []).filter((one) => one.action === "bounds" && one.applied);
+      const places = new Map(moved.map((one) => [one.segment, [one.start_s, one.stop_s]]));
+      return this.segments.map(([start, stop], place) => places.get(place) ?? [start, stop]);
     }
     get every() { return report.book.of(this.run, this.found); }
     get on() { return this.every.filter((one) => one.segment === this.chosen); }
@@ -185,6 +184,7 @@ report.ReviewPanel = (() => {
       this.root.querySelector("[data-review=bounds]").disabled = this.chosen === null;
       this.root.querySelector("[data-review=undo]").disabled = !report.book.canUndo;
       this.fill();
+      this.root.querySelector(".signs").hidden = !this.known.length || !this.marks;
       this.root.querySelector(".decided").replaceChildren(...this.known.map((one) => this.item(one)));
       this.marks?.follow();
     }
