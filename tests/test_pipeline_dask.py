@@ -29,7 +29,7 @@ def cluster(tmp_path):
         n_workers=2,
         threads_per_worker=1,
         processes=True,
-        dashboard_address=None,
+        dashboard_address=":0",  # another cluster may have the usual port
         local_directory=str(tmp_path),
         silence_logs=logging.CRITICAL,
     ) as cluster:

@@ -101,7 +101,7 @@ import os, resource, signal, sys, threading, time
 from distributed import LocalCluster
 import tribolab as tl
 if __name__ == "__main__":
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
         pids = [worker.pid for worker in cluster.workers.values()]
         if int(sys.argv[2]):
             threading.Timer(10, lambda: os.kill(pids[0], signal.SIGKILL)).start()

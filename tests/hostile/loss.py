@@ -131,7 +131,7 @@ def start(kind, *options):
     command = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--scheduler-file", str(file)]
     return subprocess.Popen([*command, "--no-dashboard", *options], **quiet)
 
-started = [start("scheduler", "--host", "127.0.0.1", "--port", "0")]
+started = [start("scheduler", "--host", "127.0.0.1", "--port", "0", "--dashboard-address", ":0")]
 try:
     started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
     while not file.is_file():
