@@ -317,6 +317,10 @@ def test_the_words_follow_the_residuals():
     assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
     assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad
     assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
+    both = judgement(
+        described([0.2, 0.3, 0.01, 0.15, 0.2], valid_speed_low_m_s=1e-4, valid_speed_high_m_s=1e-4)
+    )
+    assert "friction at 1 µm/s to 10 µm/s and at 1 mm/s to 10 mm/s" in both
     far = judgement(described([0.9, 0.8, -0.01, -0.02], chi_square_p_value=0.0))
     assert far.startswith("the model does not describe this curve: off by up to 47 %")
     # a miss of a few hundredths of the height, where friction is lowest, is a factor of thirty

@@ -14,6 +14,9 @@ from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.io.logs import group_files
 from tribolab.io.read import read
+from tribolab.records.frames import friction_table
+from tribolab.records.run_facts import friction_facts
+from tribolab.report.live.points import run_points
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.truth import read_truth
 
@@ -166,3 +169,22 @@ def test_virtual_rig_is_found_again_within_the_error(tmp_path):
     errors = np.abs(np.concatenate(errors))
     assert np.mean(errors < 2) >= 0.75
     assert errors.max() < 6
+
+
+@pytest.mark.parametrize("offset", ["half loop", "unloaded stroke"])
+def test_the_table_of_runs_the_card_and_the_curve_have_one_error(offset):
+    data = {
+        "sliding_speed": [1e-3, 1.01e-3],
+        "friction_coefficient": [0.30, 0.30],
+        "friction_coefficient_std": [0.01, 0.01],
+        "friction_coefficient_sem": [0.002, 0.002],
+        "effective_samples": [25.0, 25.0],
+        "pair": [0, 0],
+    }
+    run = xr.Dataset({k: ("segment", v) for k, v in data.items()}, attrs={"offset": offset})
+    [curve] = measured_stribeck_curve([run]).friction_coefficient_sem.values
+    [mark] = friction_facts(run)["highlights"]
+    rows = friction_table(run).to_dict("records")
+    [point] = run_points("r", rows, offset)
+    assert curve == pytest.approx(0.002 / (1 if offset == "half loop" else np.sqrt(2)))
+    assert (mark.sem, point.within) == pytest.approx((curve, curve))

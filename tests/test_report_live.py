@@ -100,7 +100,11 @@ def test_the_first_screen_is_the_answer(browser, results):
 @pytest.mark.slow
 def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, results):
     series = figures_of(results)["card-1"]["series"][0]
-    assert "(between runs)" in series["told"][0] and "within the run: ± " in series["told"][0]
+    words = series["told"][0]
+    assert "(between runs)" in words and "within the run: ± " in words
+    # ± is of the mean of the runs, and what is no error of a mean has no ±
+    assert "standard error of the mean of 3 runs, widened for few runs\n" in words
+    assert "scatter of the runs: 0.016 (standard deviation)" in words
     assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
     with browser.page(results / "report.html") as page:
         drawn(page, "card-1")

@@ -88,18 +88,30 @@ def judgement(fit: xr.Dataset) -> str:
         )
     elif not np.isfinite(low):
         parts.append("no range of speeds is described within the errors")
-    if np.any(share > _LARGE):
-        away = speed[share > _LARGE]
-        where = speed_text(away[0])
-        if away.size > 1:
-            where += f" to {speed_text(away[-1])}"
-        parts.append(f"the two differ by more than {percent(_LARGE)} of the friction at {where}")
+    far = (share > _LARGE) & ~((speed >= 0.99 * low) & (speed <= 1.01 * high))
+    if far.any():
+        beyond = "beyond these " if np.isfinite(low) else ""
+        parts.append(
+            f"{beyond}the two differ by more than {percent(_LARGE)} of the friction at "
+            f"{_stretches(speed, far)}"
+        )
     side = "above" if off[worst] > 0 else "below"
     parts.append(
         f"largest at {speed_text(speed[worst])}, where the measurement lies "
         f"{number(abs(off[worst]), 2)} {side} the model's {number(mu[worst] - off[worst])}"
     )
     return "; ".join(parts)
+
+
+def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
+    """Say at which speeds [m/s] something holds, without those between at which it does not."""
+    ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int)))
+    words = []
+    for first, beyond in ends.reshape(-1, 2):
+        last = beyond - 1
+        one = speed_text(speed[first])
+        words.append(one if first == last else f"{one} to {speed_text(speed[last])}")
+    return " and at ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:

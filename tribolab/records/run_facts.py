@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_table
 from tribolab.records.judgement import SURE, not_decided
@@ -126,7 +127,8 @@ def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
         "unsteady_segments": int((values_of(friction, "steady", value.size) == 0).sum()),
     }
     sem = values_of(friction, f"{of}_sem", value.size)
-    return plain_value(facts) | {"highlights": tuple(_highlights(speed, value, std, sem))}
+    alone = independent(friction)
+    return plain_value(facts) | {"highlights": tuple(_highlights(speed, value, std, sem, alone))}
 
 
 def stick_slip_of(slip: xr.Dataset) -> Waveform:
@@ -198,10 +200,22 @@ def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
+def independent(friction: xr.Dataset) -> np.ndarray:
+    """Return which observation each segment belongs to: two strokes of one half loop are one."""
+    own = -1 - np.arange(friction.sizes["segment"])
+    if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
+        return own
+    pair = friction["pair"].values
+    return np.where(pair >= 0, pair, own)
+
+
 def _highlights(
-    speed: np.ndarray, value: np.ndarray, std: np.ndarray, sem: np.ndarray
+    speed: np.ndarray, value: np.ndarray, std: np.ndarray, sem: np.ndarray, alone: np.ndarray
 ) -> list[Highlight]:
-    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
+    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed.
+
+    `alone` tells which strokes are one observation.
+    """
     fine = np.flatnonzero(np.isfinite(value))
     known = fine[np.isfinite(speed[fine]) & (speed[fine] > 0)]
     groups = [("all", fine)] if fine.size and not known.size else []
@@ -220,8 +234,10 @@ def _highlights(
             sliding_speed_m_s=plain_value(float(np.mean(speed[index]))),
             value=plain_value(float(np.mean(value[index]))),
             std=plain_value(float(np.sqrt(np.mean(std[index] ** 2)))),
-            # independent strokes: the error of their mean
-            sem=plain_value(float(np.sqrt(np.sum(sem[index] ** 2)) / index.size)),
+            # of independent observations the error of the mean is smaller than that of each
+            sem=plain_value(
+                float(np.sqrt(np.mean(sem[index] ** 2) / np.unique(alone[index]).size))
+            ),
             segments=int(index.size),
         )
         for word, index in groups

@@ -6,10 +6,14 @@ GLOSSARY: dict[str, str] = {
     "µ": "Friction coefficient: friction force divided by normal force, both at the same moment, "
     "averaged over a stroke. The number behind ± says what it holds.",
     "± within the run": "Standard error of the mean from the scatter inside one run, with "
-    "neighbouring samples counted as far as they are independent. It knows nothing of how well a "
-    "run can be repeated.",
-    "± between runs": "Spread of repeated runs of the same surface, medium and load. It is shown "
-    "wherever there are repeats and it is the larger one.",
+    "neighbouring samples counted as far as they are independent; two strokes of one half loop "
+    "count once. It knows nothing of how well a run can be repeated.",
+    "± between runs": "Standard error of the mean of repeated runs of the same surface, medium and "
+    "load, widened by Student's t for few runs. The curves and the cards show it wherever there "
+    "are repeats.",
+    "± scatter of the runs": "Standard deviation of repeated runs about their mean: how far a "
+    "single run lies from the others. It stands behind the friction of one run where it is larger "
+    "than the error within the run.",
     "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
     "the solids touch and the liquid carries nothing.",
     "Segment": "A stretch of a run at constant speed in one direction: one stroke.",
@@ -81,7 +85,8 @@ HEADS: dict[str, str] = {
     "Standard error": GLOSSARY["± within the run"],
     "Standard deviation": "How far friction varies about its mean while sliding.",
     "Trend": "Change of friction along the segment, and whether chance alone explains it.",
-    "± between runs": GLOSSARY["± between runs"],
+    "It holds": "Between runs: " + GLOSSARY["± between runs"] + " Within the run: the scatter "
+    "inside the only run.",
     "± within the run": GLOSSARY["± within the run"],
     "Macroscopic (mJ/m²)": "Effective work of adhesion seen without a magnifier, as the load "
     "vanishes; above zero there is a pull-off force.",

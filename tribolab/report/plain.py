@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from decimal import ROUND_HALF_UP, Decimal
 
 from tribolab.words import number
 
@@ -18,16 +19,31 @@ def plain_speed(speed: float | None) -> str:
     --------
     >>> plain_speed(0.999e-6), plain_speed(9.994e-5), plain_speed(4.64e-6), plain_speed(9.996e-4)
     ('1 µm/s', '100 µm/s', '4.6 µm/s', '1 mm/s')
+
+    Strokes that were meant to have one speed are told by one:
+
+    >>> plain_speed(2.14998e-3), plain_speed(2.15e-3), plain_speed(2.15104e-3)
+    ('2.2 mm/s', '2.2 mm/s', '2.2 mm/s')
     """
     if speed is None or not math.isfinite(speed):
         return "speed unknown"
     if speed == 0:
         return "0 m/s"
-    rounded = float(f"{speed:.2g}")
+    rounded = _two_digits(speed)
     factor, prefix = next(
         (pair for pair in _PREFIXES if abs(rounded) < 999.5 * pair[0]), _PREFIXES[-1]
     )
     return f"{number(rounded / factor, 3)} {prefix}"
+
+
+def _two_digits(speed: float) -> float:
+    """Return a speed to two digits, of which the third is rounded first: 2.1499 is meant as 2.15.
+
+    Speeds are often set in steps of a third of a decade (1, 2.15, 4.64), and 2.15 lies on the
+    edge of two digits.
+    """
+    three = Decimal(f"{speed:.3g}")
+    return float(three.quantize(Decimal((0, (1,), three.adjusted() - 1)), ROUND_HALF_UP))
 
 
 _SPEED = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?) (nm/s|µm/s|mm/s|m/s)\b")

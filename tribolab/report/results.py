@@ -153,7 +153,8 @@ def _runs(
         briefs.append(brief_run(run_document(entry.record)))
         said += entry.record.notices
         name = entry.record.outcome.name
-        points[name] = run_points(name, entry.record.facts.segments)
+        facts = entry.record.facts
+        points[name] = run_points(name, facts.segments, facts.offset)
     return briefs, said, points
 
 

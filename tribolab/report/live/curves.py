@@ -252,8 +252,8 @@ def comparison(known: Friction) -> list[LiveFigure]:
             section="curves",
             title="All surfaces and media at a load",
             note="Filled: in a liquid; open: dry. Bars: standard error of the mean, between runs "
-            "where there are repeats, else within the run. Single runs are switched on in the "
-            "legend.",
+            "where there are repeats (widened for few), else within the run. Single runs are "
+            "switched on in the legend.",
             alt=f"Friction coefficient over sliding speed of {many(len(known.curves), 'curve')}, "
             f"µ {span(map(_float, every))}.",
             panels=(Panel(SPEED, FRICTION),),

@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.plain import plain_speed
 from tribolab.words import many, number
 
-_WIDENED = 1.2  # an error so much larger than the scatter alone holds what few runs do not tell
+_FEW = 14  # runs: up to here the curve widens its error by Student's t
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
 
@@ -27,15 +28,15 @@ class RunPoint(NamedTuple):
 
 
 class PointError(NamedTuple):
-    """The error of a point of a curve: the larger one that is known, and what it holds."""
+    """The standard error of a point of a curve, what it holds, and what it is made of."""
 
     size: float | None
     holds: str
     within: float | None
-    between: float | None
+    scatter: float | None
 
 
-def run_points(name: str, segments: Sequence[Row]) -> list[RunPoint]:
+def run_points(name: str, segments: Sequence[Row], offset: str = "") -> list[RunPoint]:
     """Return mean friction over speed of one run.
 
     Parameters
@@ -44,14 +45,18 @@ def run_points(name: str, segments: Sequence[Row]) -> list[RunPoint]:
         Of the run.
     segments
         Rows of its segments, as in report.json.
+    offset
+        How the offset of the force was removed: by the half loop, two strokes are one observation.
 
     Examples
     --------
-    >>> rows = [{"sliding_speed_m_s": v, "friction_coefficient": mu,
+    >>> rows = [{"sliding_speed_m_s": v, "friction_coefficient": mu, "pair": 0,
     ...          "friction_coefficient_sem": .01, "effective_samples": 50.}
-    ...         for v, mu in ((1e-3, .8), (1.01e-3, .9), (1e-2, .5))]
+    ...         for v, mu in ((1e-3, .8), (1.01e-3, .9))]
     >>> [(round(p.mu, 3), round(p.within, 4), p.effective_samples) for p in run_points("r", rows)]
-    [(0.85, 0.0071, 100.0), (0.5, 0.01, 50.0)]
+    [(0.85, 0.0071, 100.0)]
+    >>> [round(p.within, 4) for p in run_points("r", rows, "half loop")]
+    [0.01]
     """
     known = []
     for row in segments:
@@ -66,13 +71,15 @@ def run_points(name: str, segments: Sequence[Row]) -> list[RunPoint]:
             groups[-1].append(entry)
         else:
             groups.append([entry])
-    return [_point(name, group) for group in groups]
+    return [_point(name, group, offset in PAIRED) for group in groups]
 
 
-def _point(name: str, group: list[tuple[float, float, Row]]) -> RunPoint:
+def _point(name: str, group: list[tuple[float, float, Row]], paired: bool) -> RunPoint:
     errors = [number_of(row, "friction_coefficient_sem") for _, _, row in group]
     known = [error for error in errors if error is not None]
-    within = math.sqrt(sum(e * e for e in known)) / len(known) if known else None
+    pairs = [int(number_of(row, "pair") or 0) if paired else -1 for _, _, row in group]
+    apart = len({pair for pair in pairs if pair >= 0}) + sum(pair < 0 for pair in pairs)
+    within = math.sqrt(sum(e * e for e in known) / len(known) / apart) if known else None
     samples = sum(float(number_of(row, "effective_samples") or 0) for _, _, row in group)
     speed = sum(v for v, _, _ in group) / len(group)
     mu = sum(value for _, value, _ in group) / len(group)
@@ -97,43 +104,39 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     Returns
     -------
     PointError
-        ``within``, of the mean, from the samples of each run; ``between``, of the mean, from the
-        scatter of the runs; ``size`` is the larger of what is known, with repeats at least the
-        curve's own standard error.
+        ``size``, the curve's own standard error of the mean, with repeats widened for few runs;
+        ``within``, the usual error within one run; ``scatter``, the standard deviation of the
+        runs.
 
     Examples
     --------
     >>> row = {"friction_coefficient_sem": 0.03, "friction_coefficient_between": 0.04, "runs": 4}
     >>> point_error(row, [RunPoint("a", 1e-3, 0.8, 0.01, 50.0, 2)])
-    PointError(size=0.03, holds='between runs', within=0.01, between=0.02)
+    PointError(size=0.03, holds='between runs', within=0.01, scatter=0.04)
     >>> point_error({"friction_coefficient_sem": 0.01, "runs": 1}, []).holds
     'within the run'
     """
     runs = int(row.get("runs") or 1)
     sem, scatter = row.get("friction_coefficient_sem"), row.get("friction_coefficient_between")
     own = [point.within for point in points if point.within is not None]
-    within = math.sqrt(sum(e * e for e in own)) / len(own) if own else None
-    between = None if runs < 2 or scatter is None else scatter / math.sqrt(runs)
-    known = [error for error in (sem, within, between) if error is not None]
-    size = max(known, default=None)
+    within = math.sqrt(sum(e * e for e in own) / len(own)) if own else None
+    size = within if sem is None else sem
     holds = "between runs" if runs > 1 else "within the run"
-    if runs > 1 and within is not None and within == size:
-        holds = "within the runs"
-    return PointError(size, holds, within, between)
+    return PointError(size, holds, within, scatter if runs > 1 else None)
 
 
 def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) -> str:
     """Return what the pointer reads at a point of a curve, a line for each thing."""
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
     lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} ({error.holds})"]
-    if error.within is not None:
-        lines.append(f"within the run: ± {number(error.within, 2)}")
     runs = int(row.get("runs") or 1)
-    if error.between is not None:
-        lines.append(f"between {runs} runs: ± {number(error.between, 2)}")
-        if error.size is not None and error.size > _WIDENED * error.between:
-            lines.append(f"widened: {runs} runs tell little of the spread")
-    elif runs == 1:
+    if runs > 1:
+        lines.append(f"standard error of the mean of {runs} runs{widened(runs)}")
+        if error.scatter is not None:
+            lines.append(f"scatter of the runs: {number(error.scatter, 2)} (standard deviation)")
+        if error.within is not None:
+            lines.append(f"within the run: ± {number(error.within, 2)}, usually")
+    else:
         lines.append("between runs: not known, one run")
     if points:
         samples = sum(point.effective_samples for point in points)
@@ -145,10 +148,15 @@ def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) 
     return "\n".join(lines)
 
 
+def widened(runs: int) -> str:
+    """Return what is said of the error between so many runs."""
+    return ", widened for few runs" if runs <= _FEW else ""
+
+
 def run_error(
     points: Sequence[Mapping[str, Any]], speed: float | None, within: float | None
 ) -> tuple[float | None, str]:
-    """Return the error of one run's friction: the larger one that is known, and what it holds.
+    """Return how far one run's friction may be off: the larger of what is known, and what it is.
 
     Parameters
     ----------
@@ -163,11 +171,11 @@ def run_error(
     --------
     >>> row = {"sliding_speed_m_s": 1e-3, "friction_coefficient_between": 0.04, "runs": 2}
     >>> run_error([row], 1.01e-3, 0.01), run_error([], 1e-3, 0.01)
-    ((0.04, 'between runs'), (0.01, 'within the run'))
+    ((0.04, 'scatter of the runs'), (0.01, 'within the run'))
     """
     for row in points:
         at, scatter = row["sliding_speed_m_s"], row.get("friction_coefficient_between")
         near = speed is not None and bool(at) and at / _SAME <= speed <= at * _SAME
         if near and scatter is not None and scatter > (within or 0.0):
-            return scatter, "between runs"
+            return scatter, "scatter of the runs"
     return within, "within the run"
