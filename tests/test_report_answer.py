@@ -4,12 +4,16 @@ import pytest
 
 from tribolab.report.answer import cards
 
+CHECK = {"check": "friction_sign", "status": "fail", "decision": "", "message": "it drives. Look"}
 SEM = {"friction_coefficient_sem": 0.01, "runs": 2}
 
 
 def run(name, load, status="done", quality="pass"):
     labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": load}
-    return labels | {"name": name, "status": status, "quality": quality}
+    said = {"checks": [], "reason": "x.csv: no unit", "error": ""}
+    if quality == "fail":
+        said["checks"] = [CHECK]
+    return labels | said | {"name": name, "status": status, "quality": quality}
 
 
 def report(runs, findings=(), **fit):
@@ -65,9 +69,18 @@ def test_a_curve_that_is_missing_is_named_with_the_reason(runs, why):
     assert card.missing == (f"Sb-R, glycerol, 91 N: no curve, {why}.",)
 
 
+def test_a_curve_says_which_runs_it_had_to_do_without_and_why():
+    (card,) = cards(report([run("b", 31.0, quality="fail"), run("c", 31.0, status="failed")]))
+    assert card.thin == (
+        ("b", "31 N rests on 1 of 3 runs; rejected: friction sign: it drives"),
+        ("c", "31 N rests on 1 of 3 runs; failed: x.csv: no unit"),
+    )
+    assert card.missing == ()
+
+
 def test_findings_that_are_alike_are_said_once_and_those_of_others_not_at_all():
     one = {"severity": "suspect", "where": "spikes friction_force", "message": "3 stand out. Look"}
     alike = [one | {"run": "a"}, one | {"run": "a"}]
     notes = [one | {"severity": "note", "run": "a"}, one | {"run": "elsewhere"}]
     (card,) = cards(report([], alike + notes))
-    assert card.findings == (("suspect", "spikes friction_force: 3 stand out (and 1 alike)"),)
+    assert card.findings == (("suspect", "spikes (friction force): 3 stand out (and 1 alike)"),)

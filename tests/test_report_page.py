@@ -87,7 +87,7 @@ def test_page_opens_without_a_word_and_asks_nothing_of_the_network(browser, resu
         assert page.run(DRAW_ALL) == len(figures_of(results)) + 3
         assert page.console == page.stopped == []
         assert page.requests == [address]
-        assert "3 of 4 runs done; 1 failed" in page.run("document.body.textContent")
+        assert "3 of 4 runs done (1 suspect); 1 failed" in page.run("document.body.textContent")
 
 
 @pytest.mark.slow

@@ -240,7 +240,8 @@ def friction_factors(base: Base) -> Variation:
     """Switch the friction factors of Eq. (4) off, or on."""
     return Variation(
         "friction factors",
-        "phi_f, phi_fs and phi_fp of Eq. (4) are often left out",
+        "how roughness changes the shear of the liquid (φ_f, φ_fs and φ_fp in Eq. (4) of Xu et "
+        "al., 2026) is often left out",
         ("off", "") if base.friction_factors else ("", "on"),
         ({"friction_factors": False}, None)
         if base.friction_factors

@@ -132,8 +132,8 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
         )
     if right.any():
         return (
-            "Only some strokes are turned, so it is not the sign of a column: look at the zero "
-            "(`zero_from` of these segments), at the direction of sliding, and at the clocks."
+            "Only some strokes are turned, so it is not the sign of a column: look at what the "
+            "zero of these segments was taken from, at the direction of sliding, and at the clocks."
         )
     if not both:
         if method == "zero load":

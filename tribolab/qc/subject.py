@@ -14,6 +14,8 @@ from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.qc.register import Skip
+from tribolab.words import number as number_text
+from tribolab.words import speed_text
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
 _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperature")
@@ -212,8 +214,8 @@ class RunSubject:
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
         own = int(self.segments["segment"].values[number])  # of all, rejected ones among them
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
-        how = f"{speed:.3g} m/s {arrow}".strip() if np.isfinite(speed) else "speed unknown"
-        return f"segment {own + 1} ({how}, from t = {start:.6g} s)"
+        how = f"{speed_text(speed)} {arrow}".strip()
+        return f"segment {own + 1} ({how}, from t = {number_text(start, 4)} s)"
 
     @cached_property
     def _found_slip(self) -> xr.Dataset | Skip:

@@ -94,18 +94,38 @@ def is_bad(run: Mapping[str, Any]) -> bool:
 
 
 def status_word(run: Mapping[str, Any]) -> str:
-    """Return one word: failed, error, fail, rejected, kept, accepted, suspect or done.
+    """Return failed, rejected, rejected by hand, kept, accepted, suspect or done.
+
+    One that failed could not be read; one that its checks rejected has numbers that count nowhere.
 
     Examples
     --------
-    >>> status_word({"status": "done", "quality": "pass"})
-    'done'
+    >>> [status_word({"status": "done", "quality": word}) for word in ("pass", "fail", "rejected")]
+    ['done', 'rejected', 'rejected by hand']
     """
     if run["status"] != "done":
         return "failed"
-    if run.get("kept") and not is_bad(run):
+    if run["quality"] == "rejected":
+        return "rejected by hand"
+    if is_bad(run):
+        return "rejected"
+    if run.get("kept"):
         return "kept"
     return run["quality"] if run["quality"] in (*_GRAVE, *_BY_HAND) else "done"
+
+
+def check_words(name: str) -> str:
+    """Return a check, and what it looked at, as they are called in words.
+
+    Examples
+    --------
+    >>> check_words("friction_sign friction_force"), check_words("hum"), check_words("surface S_1")
+    ('friction sign (friction force)', 'hum', 'surface S_1')
+    """
+    check, _, of = name.partition(" ")
+    if check not in RUN_CHECKS:
+        return name
+    return check.replace("_", " ") + (f" ({of.replace('_', ' ')})" if of else "")
 
 
 def why(run: Mapping[str, Any]) -> str:
@@ -128,7 +148,7 @@ def why(run: Mapping[str, Any]) -> str:
         return ""
     first = min(grave, key=lambda row: _GRAVE.index(row["status"]))
     more = f" (and {len(grave) - 1} more)" if len(grave) > 1 else ""
-    return f"{first['check']}: {first['message']}{more}"
+    return f"{check_words(first['check'])}: {first['message']}{more}"
 
 
 def _decided(run: Mapping[str, Any], action: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tribolab.records.judgement import is_bad
+from tribolab.records.judgement import check_words, is_bad, status_word, why
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import system_name
@@ -34,7 +34,8 @@ class AtLoad:
 class Card:
     """One surface in one medium: what was found at each load, what is missing, what to look at.
 
-    `figure` is the address of its figure, "" where no curve is known.
+    `figure` is the address of its figure, "" where no curve is known; `thin` are the runs that its
+    curves had to do without, each with what is said of it.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Card:
     medium: str
     figure: str
     found: tuple[AtLoad, ...]
+    thin: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
     findings: tuple[tuple[str, str], ...]
 
@@ -79,13 +81,15 @@ def _card(
 ) -> Card:
     surface, medium = key
     runs = [run for run in document["runs"] if (run["surface"], run["medium"]) == key]
-    names = {run["name"] for run in runs}
+    thin = tuple(_thin(curves, runs))
+    names = {run["name"] for run in runs} - {name for name, _ in thin}
     return Card(
         name=system_name(surface, medium, curves[0]["runs"] if curves else ()),
         surface=surface,
         medium=medium,
         figure=figure,
         found=tuple(_at_load(document, curve) for curve in curves),
+        thin=thin,
         missing=tuple(_missing(system_name(surface, medium), curves, runs)),
         findings=tuple(_findings(document["findings"], names)),
     )
@@ -205,6 +209,24 @@ def model_in_words(fit: Mapping[str, Any]) -> list[str]:
     return [f"{text}.", _sentence(verdict)]
 
 
+def _thin(
+    curves: Sequence[Mapping[str, Any]], runs: Sequence[Mapping[str, Any]]
+) -> Iterable[tuple[str, str]]:
+    """Name the runs that a curve does without, at loads at which there is one, and say why."""
+    for curve in curves:
+        load = curve["nominal_normal_force_N"]
+        mine = [run for run in runs if run["nominal_normal_force_N"] == load]
+        bad = [run for run in mine if is_bad(run)]
+        rests = f"{force_text(load)} rests on {len(mine) - len(bad)} of {many(len(mine), 'run')}"
+        for run in bad[:_MOST_FINDINGS]:
+            yield run["name"], f"{rests}; {status_word(run)}: {_short(why(run))}"
+
+
+def _short(text: str) -> str:
+    first = text.split(". ")[0].rstrip(".")
+    return first if len(first) <= _LONGEST else first[:_LONGEST].rsplit(" ", 1)[0] + " …"
+
+
 def _missing(
     name: str, curves: Sequence[Mapping[str, Any]], runs: Sequence[Mapping[str, Any]]
 ) -> Iterable[str]:
@@ -248,10 +270,8 @@ def _findings(findings: Sequence[Mapping[str, Any]], names: set[str]) -> Iterabl
                 finding["message"]
             )
     for (severity, where), messages in list(grouped.items())[:_MOST_FINDINGS]:
-        first = messages[0].split(". ")[0].rstrip(".")
-        short = first if len(first) <= _LONGEST else first[:_LONGEST].rsplit(" ", 1)[0] + " …"
         more = f" (and {len(messages) - 1} alike)" if len(messages) > 1 else ""
-        yield severity, f"{where}: {short}{more}"
+        yield severity, f"{check_words(where)}: {_short(messages[0])}{more}"
     if len(grouped) > _MOST_FINDINGS:
         rest = sum(len(messages) for messages in list(grouped.values())[_MOST_FINDINGS:])
         yield "note", f"{many(rest, 'more finding')}"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import TypeAdapter
 
 from tribolab.provenance import sha256_of_file
-from tribolab.records.judgement import THRESHOLDS, is_bad
+from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
 from tribolab.records.run_record import RunFacts
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.words import many, span
@@ -101,7 +101,10 @@ def verdict(
     status = "incomplete" if done else "nothing"
     if done and not (failed or rejected or rejected_scans or kept or lost_decisions):
         status = "complete"
-    parts = [f"{len(done)} of {many(len(runs), 'run')} done"]
+    doubtful = sum(status_word(run) == "suspect" for run in runs)
+    parts = [
+        f"{len(sound)} of {many(len(runs), 'run')} done" + f" ({doubtful} suspect)" * bool(doubtful)
+    ]
     if failed:
         parts.append(f"{failed} failed")
     if kept:

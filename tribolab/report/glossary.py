@@ -44,10 +44,16 @@ GLOSSARY: dict[str, str] = {
     "spectrum is −2(1 + H).",
     "Roll-off": "Wavenumber below which the power spectrum no longer rises.",
     "Stick-slip": "Friction rises and falls at constant speed: sticking and slipping by turns.",
+    "Macroscopic instability, controlled by adhesion": "The rubber surface as a whole buckles and "
+    "detaches in folds that run across the contact, because adhesion holds it back; roughness does "
+    "not undo it. Friction then swings although no spring of the rig takes part.",
+    "Forced wetting": "Speed above which the motion drags liquid between the surfaces faster than "
+    "it is squeezed out: adhesion no longer closes the contact.",
     "Sliding mode": "Whether a contact slides steadily, slips because of the rig's spring, or "
     "because adhesion folds the surface.",
-    "Rejected": "A run whose checks failed: its numbers are shown, struck through, and no curve "
-    "rests on them.",
+    "Rejected": "A run whose checks failed, or that a person rejected (by hand): its numbers are "
+    "shown, struck through, and no curve rests on them.",
+    "Failed": "A run that could not be read or computed: there are no numbers of it.",
     "Suspect": "A check found something that may spoil the numbers; they are used.",
 }
 
@@ -55,8 +61,8 @@ GLOSSARY: dict[str, str] = {
 HEADS: dict[str, str] = {
     "Run": "Number of the run on this page; leads to its trace and segments.",
     "File": "Name of the run, from its raw file.",
-    "Status": "done; suspect: look at it; fail: its checks failed, no curve rests on it; failed: "
-    "it could not be read.",
+    "Status": "done; suspect: look at it; rejected: its checks failed, or a person said so (by "
+    "hand), and no curve rests on it; failed: it could not be read.",
     "Why": "Why a run stands as it does: the gravest objection of its checks, or the error.",
     "Noise": GLOSSARY["Noise"],
     "Drift": GLOSSARY["Drift"],

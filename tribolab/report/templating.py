@@ -123,11 +123,13 @@ def environment(folder: Path) -> jinja2.Environment:
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
         "why": judgement.why,
+        "check": judgement.check_words,
         "stem": lambda file: Path(file).stem,
         "deflated": lambda text: deflated(str(text).encode()),
         "numbers": lambda file: deflated((folder / file).read_bytes()),
         "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
     }
+    jinja.tests["is_bad"] = judgement.is_bad
     jinja.globals |= {
         "with_error": wording.with_error,
         "span": words.span,

@@ -3,7 +3,7 @@
 report.reviewing = (() => {
   const { book } = report;
   if (!book) return null;
-  const DOUBT = ["failed", "error", "fail", "suspect"], KEYS = "tribolab-keys";
+  const DOUBT = ["failed", "rejected", "suspect"], KEYS = "tribolab-keys";
   const bar = document.getElementById("review-bar"), help = document.getElementById("review-help");
   const box = help.querySelector("[name=keys]"), author = help.querySelector("[name=author]");
   const list = bar.querySelector(".decided"), panels = new Map();
