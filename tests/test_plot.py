@@ -315,6 +315,41 @@ def test_a_notebook_gets_a_picture(made):
     assert plot.trace(*made)._repr_png_().startswith(b"\x89PNG")
 
 
+def test_traces_are_shifted_by_round_numbers_that_leave_them_apart():
+    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
+    segments = tl.find_segments(run)
+    higher = run.assign(friction_coefficient=run.friction_coefficient + 3.21)
+    stack = [plot.Trace(name, one, segments, None, 0) for name, one in
+             (("higher", higher), ("lower", run), ("again", run))]  # fmt: skip
+    figure = plot.slip_traces(stack)
+    drawn = dict(list(plot.figure_data(figure).groupby("series")))
+    assert drawn["higher"]["shift"].eq(0).all()
+    words = " ".join(text.get_text() for text in figure.axes[0].texts)
+    top = -np.inf
+    for name, shape in (("higher", 3.21), ("lower", 0.0), ("again", 0.0)):
+        curve, shift = drawn[name], drawn[name]["shift"].iloc[0]
+        mean = (curve.shifted - shift).mean() - shape
+        assert mean == pytest.approx((drawn["higher"].shifted - 3.21).mean(), abs=0.01)
+        assert curve.shifted.min() > top
+        top = curve.shifted.max()
+        assert not shift or f"shifted up by {shift:g}" in words
+
+
+def test_error_bars_by_themselves_are_drawn_as_they_are(made):
+    curve = made_curve(surface="Sb-R")
+    figure = plot.friction_spread(curve)
+    kept = plot.figure_data(figure)
+    assert kept.friction_coefficient_std.tolist() == curve.friction_coefficient_std.values.tolist()
+    [bars] = [lines for box in figure.axes[0].containers for lines in box[2]]
+    heights = [np.ptp(bar[:, 1]) for bar in bars.get_segments()]
+    assert heights == pytest.approx((2 * curve.friction_coefficient_std).values)
+    lower = figure.axes[1].get_lines()[0].get_ydata()
+    assert lower == pytest.approx(curve.friction_coefficient_std.values)
+    bare = curve.drop_vars("friction_coefficient_std")
+    with pytest.raises(AnalysisError, match="no curve has a standard deviation"):
+        plot.friction_spread(bare)
+
+
 def test_long_names_beside_stick_slip_stay_on_the_paper():
     run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     segments, name = tl.find_segments(run), "10 µm/s, velstep4_BRAVA_expb819_basalt"

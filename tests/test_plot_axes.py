@@ -102,6 +102,10 @@ def drawings():
         "friction_factor_effect": (
             lambda **k: plot.friction_factor_effect({"Sb-S": model}, **k), 1, "without",
         ),
+        "friction_spread": (
+            lambda **k: plot.friction_spread(curve.assign_attrs(surface="Sb-S"), **k), 2,
+            "measured",
+        ),
         "shear_stress_over_speed": (
             lambda **k: plot.shear_stress_over_speed({"Sb-S": stresses}, **k), 1, "Sb-S",
         ),

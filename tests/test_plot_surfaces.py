@@ -107,6 +107,9 @@ FIGURES = {
     "contact_area": lambda: plot.contact_area(each(contact), loads()),
     "adhesive_area": lambda: plot.adhesive_area(each(contact), each(adhesive), loads()),
     "effective_work": lambda: plot.effective_work(each(work, (0.05, 0.06, 0.07))),
+    "effective_work_relative": lambda: plot.effective_work(
+        each(work, (0.05, 0.06, 0.07)), relative_to={"dry": 0.064, "glycerol": 0.051}
+    ),
     "gaps": lambda: plot.gaps(each(gap, (1e-6, 3e-6, 1e-5))),
     "line_pressure": lambda: plot.line_pressure(
         each(line, (2e-3, 3e-3, 4e-3)), (np.array([-4e-3, 0, 4e-3]), np.array([0, 5.3e4, 0]))

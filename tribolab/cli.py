@@ -84,9 +84,9 @@ def demo(
 ) -> None:
     """Simulate a campaign, analyse it and compare the result with the truth.
 
-    The virtual rig measures the reference system: a PMMA cylinder on smooth and sandblasted
-    PDMS, dry and in glycerol, at 13 speeds in repeats. Called again, it analyses the same raw
-    files and redoes only what changed.
+    The virtual rig measures the reference system: smooth and sandblasted PMMA cylinders on
+    PDMS rubber, dry and in glycerol, at 13 speeds in repeats. Called again, it analyses the same
+    raw files and redoes only what changed.
 
         tribolab demo
 
@@ -118,7 +118,8 @@ def reproduce(
 
     `paper.html` goes through it section by section and says what was measured by the authors, what
     is computed here and what is simulated by the virtual rig; `paper.csv` has a row for each of
-    the 58 published numbers, with status and reason. It takes about a minute.
+    the 58 published numbers, with status and reason: what was put in agrees by construction and is
+    not counted as reproduced. It takes about a minute.
 
         tribolab reproduce --output /tmp/paper
     """

@@ -196,6 +196,8 @@ def failure_lines(outcome: Outcome) -> list[str]:
 
 def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
     """Say how well truth and paper were found, where to look and what to do next."""
+    from tribolab.studies.tally import tell_statuses
+
     c, folder, results = compared.runs, compared.folder, outcome.folder
     rows = compared.surfaces
     lines = [
@@ -219,7 +221,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
             f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
-    lines.append(f"against the paper: {_counted(compared.paper)}")
+    lines.append(f"against the paper: {tell_statuses(compared.paper)}")
     tables = shown(results / "tables")
     return [
         *lines,
@@ -248,12 +250,6 @@ def _not_described(results: Path) -> str:
     return f" ({', '.join(said)} {verb} not described by the model)" if said else ""
 
 
-def _counted(table: pd.DataFrame) -> str:
-    count = table.status.value_counts()
-    said = ", ".join(f"{number} {status}" for status, number in count.items())
-    return f"{Count(len(table)):number|numbers}, {said}"
-
-
 def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     """Say how many of the paper's numbers hold, which differ, and where to look.
 
@@ -264,8 +260,11 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     table
         Published numbers beside computed ones.
     """
-    lines = [f"the paper: {_counted(table)}"]
-    for row in table[table.status == "differs"].itertuples():
+    from tribolab.studies.tally import tell_statuses
+    from tribolab.studies.verdict import DIFFERS
+
+    lines = [f"the paper: {tell_statuses(table)}"]
+    for row in table[table.status == DIFFERS].itertuples():
         what = f"{row.quantity}, {row.surface}, {row.condition}"
         lines.append(f"differs: {what}: published {row.published}, computed {row.computed}")
     return [

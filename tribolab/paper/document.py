@@ -5,12 +5,13 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 from tribolab.errors import AnalysisError
 from tribolab.paper.figures import BY_NAME, FIGURES
+from tribolab.paper.hurst import steep_spectra
 from tribolab.paper.laboratory import Laboratory
 from tribolab.records.frames import rows_of
 from tribolab.records.wording import plain_value
@@ -18,16 +19,56 @@ from tribolab.report.document import versions
 from tribolab.report.sections import Section
 from tribolab.studies import xu2026
 from tribolab.studies.published import Published
-from tribolab.studies.verdict import BOUNDS, DIFFERS, INCONSISTENT, MEASURED, REPRODUCED
-from tribolab.words import many
+from tribolab.studies.tally import STATUSES, count_statuses, tell_statuses
+from tribolab.studies.verdict import (
+    BOUNDS,
+    BY_CONSTRUCTION,
+    DIFFERS,
+    INCONSISTENT,
+    MEASURED,
+    REPRODUCED,
+    WIDE,
+    room_text,
+)
 
-SCHEMA_VERSION = "1.0"
-# A status in words that follow a number, and how the page marks it.
-STATUSES = {
-    REPRODUCED: ("reproduced", "good"),
-    DIFFERS: ("differ", "bad"),
-    INCONSISTENT: ("inconsistent as printed", "warn"),
-    MEASURED: ("measured by the authors and not computed", "none"),
+SCHEMA_VERSION = "1.1"
+
+
+class Mark(NamedTuple):
+    """How the page marks a status: colour, sign, the word on it, and what it means."""
+
+    look: str
+    sign: str
+    word: str
+    meaning: str
+
+
+_MARKS = {
+    REPRODUCED: Mark(
+        "good",
+        "✓",
+        "reproduced",
+        "computed from other numbers than itself, and it agrees within 1 % or its last digit",
+    ),
+    BY_CONSTRUCTION: Mark(
+        "none",
+        "=",
+        "by construction",
+        "it was put in, an input was chosen for it, or it follows from such numbers alone: its "
+        "agreement tests nothing",
+    ),
+    WIDE: Mark("none", "≈", "wide tolerance", "it agrees only with more room than that"),
+    DIFFERS: Mark("bad", "✕", "differs", "the computed number is another one"),
+    INCONSISTENT: Mark(
+        "warn",
+        "▲",
+        "inconsistent",
+        "the paper's own numbers exclude what is printed, or it is a power of ten or the "
+        "reciprocal of the computed one",
+    ),
+    MEASURED: Mark(
+        "none", "·", "measured", "from the authors' own measurements, quoted and not computed"
+    ),
 }
 _BODY = "paper/section.html.j2"
 # Key, heading, and which words of "where a number is printed" mean it.
@@ -53,7 +94,20 @@ _ABOUT = {
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",
 }
-_SOURCE = ("file", "sha256", "bytes")
+# A word beside names of quantities that say too little by themselves.
+_WORDS = {
+    "hertz_contact_width": "2a of a smooth cylinder",
+    "contact_area_ratio": "real over nominal area, A/A₀",
+    "macroscopic_work_of_adhesion": "at magnification 1; above 0 it takes a force to pull off",
+    "area_enhancement": "growth of the contact area by adhesion",
+    "viscoelastic_friction": "losses in the rubber",
+    "corrected_shear_stress": "in the contact area with adhesion",
+    "corrected_shear_stress_ratio": "in the contact areas with adhesion",
+    "boundary_onset_speed": "below it solids carry nearly all friction",
+    "percolation_separation": "below it no channel lets liquid through",
+    "separation_decay_alpha": "how fast contact pressure falls with separation",
+    "dry_over_glycerol_area": "less 1",
+}
 
 
 def shown_sections() -> list[Section]:
@@ -89,7 +143,7 @@ def paper_document(
         Raw files of the simulation with checksum and size.
     """
     rows = [_row(record, known) for record, known in _paired(table)]
-    counts = {status: sum(row["status"] == status for row in rows) for status in STATUSES}
+    counts = count_statuses(table)
     return plain_value(
         {
             "schema_version": SCHEMA_VERSION,
@@ -97,12 +151,13 @@ def paper_document(
             "paper": xu2026.CITATION,
             "verdict": {
                 "status": "complete" if not counts[DIFFERS] else "incomplete",
-                "text": _in_words(counts),
+                "text": tell_statuses(table),
                 "counts": counts,
             },
             "numbers": rows,
             "figures": list(figures),
             "shear_stress": rows_of(fits),
+            "steep_spectra": steep_spectra(),
             "laboratory": asdict(laboratory),
             "sources": [
                 dict(zip(("file", "sha256", "bytes"), source, strict=True)) for source in sources
@@ -124,14 +179,8 @@ def context_of(document: dict[str, Any]) -> dict[str, Any]:
             }
             for key, _, _ in PARTS
         },
-        "marks": {status: mark for status, (_, mark) in STATUSES.items()},
+        "marks": {status: _MARKS[status]._asdict() for status in STATUSES},
     }
-
-
-def _in_words(counts: dict[str, int]) -> str:
-    total = many(sum(counts.values()), "published number")
-    said = (f"{count} {STATUSES[status][0]}" for status, count in counts.items() if count)
-    return f"{total}: {', '.join(said)}".replace(" 1 differ,", " 1 differs,")
 
 
 def _paired(table: pd.DataFrame) -> list[tuple[dict[str, Any], Published]]:
@@ -149,6 +198,7 @@ def _row(record: dict[str, Any], known: Published) -> dict[str, Any]:
     note = str(record["note"])
     return record | {
         "note": note and note[0].upper() + note[1:].rstrip(".") + ".",
+        "words": _WORDS.get(known.quantity, ""),
         "difference": _difference(record, known),
         "where": known.where,
         "kind": known.kind,
@@ -160,8 +210,10 @@ def _row(record: dict[str, Any], known: Published) -> dict[str, Any]:
 def _difference(record: dict[str, Any], known: Published) -> str:
     """Say how a number differs that has no relative difference; "" if it has one or is unknown."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
-        if record["status"] == REPRODUCED:
+        if record["status"] in (REPRODUCED, BY_CONSTRUCTION):
             return "within the bound"
+        if record["status"] == WIDE:
+            return f"within the bound, or above it by {room_text(record['tolerance'])}"
         return "below the bound" if known.relation == ">" else "above the bound"
     if record["status"] == INCONSISTENT and not record["computed"]:
         return "inconsistent with other printed numbers"

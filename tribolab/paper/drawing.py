@@ -65,20 +65,25 @@ def contact_area(data: PaperData) -> Drawn:
 
 
 def effective_work(data: PaperData) -> Drawn:
-    """gamma_eff over magnification."""
+    """gamma_eff/gamma_0 over magnification."""
     from tribolab import plot
+    from tribolab.studies.tables import MEDIA
 
     works = data.dry("effective_work")
     said = _listed(
         f"{name}: "
         + ", ".join(
-            f"{medium} {1e3 * float(work.effective_work_of_adhesion.sel(medium=medium)[0]):.3g}"
+            f"{medium} {_ends(work.effective_work_of_adhesion.sel(medium=medium) / MEDIA[medium])}"
             for medium in work.medium.values.tolist()
         )
-        + " mJ/m² at magnification 1"
         for name, work in works.items()
     )
-    return plot.effective_work(works, surfaces=SURFACES), said
+    figure = plot.effective_work(works, relative_to=MEDIA, surfaces=SURFACES)
+    return figure, f"From magnification 1 to the highest: {said}"
+
+
+def _ends(line: xr.DataArray) -> str:
+    return f"{float(line[0]):.3g} to {float(line[-1]):.3g}"
 
 
 def adhesive_area(data: PaperData) -> Drawn:
@@ -158,6 +163,10 @@ def dry_shear_stress(data: PaperData) -> Drawn:
     means = {name: float(stress.shear_stress.mean()) for name, stress in stresses.items()}
     said = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
     said.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
+    largest = max(
+        float((one.shear_stress_std / one.shear_stress).max()) for one in stresses.values()
+    )
+    said.append(f"standard deviation at most {100 * largest:.2g} % of it")
     return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)
 
 
@@ -302,7 +311,7 @@ def friction_factor_effect(data: PaperData) -> Drawn:
         f"{name}, {force_text(force)}: they raise µ by at most {_largest_rise(curve)}"
         for name, curve in pairs.items()
     )
-    return plot.friction_factor_effect(pairs, surfaces=SURFACES), said
+    return plot.friction_factor_effect(pairs, scale="linear", surfaces=SURFACES), said
 
 
 def _largest_rise(curve: xr.Dataset) -> str:
@@ -345,9 +354,11 @@ def _bars(data: PaperData, name: str) -> Drawn:
     from tribolab import plot
 
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
-    largest = max(float(c.friction_coefficient_std.max()) for c in measured)
-    said = f" Standard deviation at most {largest:.2g}."
-    return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured) + said
+    smallest, largest = (
+        end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)
+    )
+    said = f" Standard deviation from {smallest:.2g} to {largest:.2g}."
+    return plot.friction_spread(measured, surfaces=SURFACES), _friction_of(measured) + said
 
 
 def bars_less_rough(data: PaperData) -> Drawn:

@@ -20,11 +20,18 @@ _STAND_IN = (
 )
 _POINTS = (
     "Points: simulated by the virtual rig and analysed like measured ones; wide pale bars: "
-    "standard deviation while sliding, narrow bars: standard error."
+    "standard deviation while sliding, narrow bars: standard error, both mostly smaller than the "
+    "markers (Appendix C shows them)."
+)
+_BARS = (
+    "Points: simulated by the virtual rig. (a) Bars: standard deviation while sliding, within one "
+    "run at each load; lines guide the eye. (b) The bars themselves: standard deviation (filled) "
+    "and standard error of the mean (open), which tell nothing of how well a run would repeat."
 )
 _RIG = "What the authors measured is published as a picture without numbers."
 _SLIP = (
-    "Traces of the virtual rig, shifted up to be told apart; that Smooth sticks and slips is the "
+    "Traces of the virtual rig. Beside each stands by how much it was shifted, up or down, to be "
+    "told apart; without a word it stands where it is. That Smooth sticks and slips is the "
     "authors' observation, how far and how often is an assumption of the rig."
 )
 
@@ -100,9 +107,10 @@ FIGURES = (
     ),
     PaperFigure(
         "effective_work", "adhesion", "Effective work of adhesion over magnification", (COMPUTED,),
-        "As the pressure vanishes, with 64 mJ/m² dry (dashed) and 51 mJ/m² in glycerol (full). "
-        "Zero at magnification 1 means no pull-off force; that only Smooth has one the authors "
-        "found by hand.",
+        "As the pressure vanishes, over the work γ₀ of smooth surfaces: 64 mJ/m² dry (dashed) and "
+        "51 mJ/m² in glycerol (full). Zero at magnification 1 means no pull-off force; that only "
+        "Smooth has one the authors found by hand. At the highest magnification it exceeds 1, as "
+        "a rough surface has more area than its projection.",
         drawing.effective_work,
         (("work_of_adhesion", "", ""), ("macroscopic_work_of_adhesion", "", "")),
     ),
@@ -207,13 +215,14 @@ FIGURES = (
     ),
     PaperFigure(
         "factors", "factors", "Flow factors and friction factors", (COMPUTED,),
-        "(a) Pressure and shear flow factor, the rough body at rest; (b) friction factors.",
+        "(a) Pressure and shear flow factor, the rough body at rest: over separation in units of "
+        "the roughness, the three surfaces nearly share one line. (b) Friction factors.",
         drawing.factors, (("percolation_separation", "", ""),), wide=True,
     ),
     PaperFigure(
         "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
         "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
-        "paper finds no visible effect on Sb-S and a small one on Sb-R. Here:",
+        "paper draws Sb-R alone, with a small effect, and finds none to be seen on Sb-S. Here:",
         drawing.friction_factor_effect, told=True,
     ),
     PaperFigure(
@@ -240,7 +249,7 @@ FIGURES = (
     *(
         PaperFigure(
             f"error_bars_{name.lower()}", "bars", f"{name} with error bars", (SIMULATED,),
-            _POINTS, draw,
+            _BARS, draw,
         )
         for name, draw in (
             ("Sb-S", drawing.bars_less_rough),

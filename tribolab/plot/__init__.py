@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tribolab.plot.sensitivity import model_sensitivity
     from tribolab.plot.slip_spectra import slip_spectra
     from tribolab.plot.spectrogram import slip_spectrogram
+    from tribolab.plot.spread import friction_spread
     from tribolab.plot.stick_slip import Trace, slip_events, slip_traces, waveform_map
     from tribolab.plot.style import figure_data, paper_style, save, svg
     from tribolab.plot.surfaces import modulus, spectra, viscoelastic
@@ -44,6 +45,7 @@ _HOMES = {
     "figure_data": "tribolab.plot.style",
     "film_profiles": "tribolab.plot.film",
     "friction_factor_effect": "tribolab.plot.mixed",
+    "friction_spread": "tribolab.plot.spread",
     "gaps": "tribolab.plot.contact",
     "half_loop": "tribolab.plot.curves",
     "knobs": "tribolab.plot.knobs",
@@ -79,6 +81,7 @@ __all__ = [
     "figure_data",
     "film_profiles",
     "friction_factor_effect",
+    "friction_spread",
     "gaps",
     "half_loop",
     "knobs",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -161,7 +161,12 @@ def adhesive_area(
 
 
 def effective_work(
-    adhesions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+    adhesions: Surfaces,
+    *,
+    relative_to: Mapping[str, float] | None = None,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the effective work of adhesion over the magnification.
 
@@ -170,6 +175,9 @@ def effective_work(
     adhesions
         ``effective_work_of_adhesion`` [J/m2] (medium, wavenumber) with the coordinate
         ``magnification``, by the surface's name, each at one pressure.
+    relative_to
+        Work of adhesion gamma_0 [J/m2] of smooth surfaces in each medium: with it
+        gamma_eff/gamma_0 is drawn.
     surfaces, title, ax
         As for `contact_area`.
 
@@ -193,11 +201,11 @@ def effective_work(
             for medium in contact.medium.values.tolist():
                 zeta = contact.magnification.values
                 work = contact.effective_work_of_adhesion.sel(medium=medium).values
-                axes.plot(zeta, work, color=chosen[name], linestyle=media[medium], linewidth=1.1)
-                columns = {
-                    "magnification": zeta,
-                    column("effective_work_of_adhesion"): work,
-                }
+                columns = {"magnification": zeta, column("effective_work_of_adhesion"): work}
+                drawn = work
+                if relative_to is not None:
+                    drawn = columns["relative_to_smooth"] = work / relative_to[medium]
+                axes.plot(zeta, drawn, color=chosen[name], linestyle=media[medium], linewidth=1.1)
                 keep(figure, "effective work of adhesion", f"{name}, {medium}", **columns)
         name_surfaces(axes, chosen)
         for medium, style in media.items():
@@ -206,7 +214,10 @@ def effective_work(
         axes.set_xlim(1, axes.dataLim.x1)
         axes.set_ylim(-0.02 * axes.dataLim.y1, 1.06 * axes.dataLim.y1)
         axes.set_xlabel(label("magnification"))
-        axes.set_ylabel("effective work of\n" + r"adhesion $\gamma_{\mathrm{eff}}$ (J/m$^2$)")
+        words = r"$\gamma_{\mathrm{eff}}$ (J/m$^2$)"
+        if relative_to is not None:
+            words = r"$\gamma_{\mathrm{eff}}/\gamma_0$"
+        axes.set_ylabel(f"effective work of\nadhesion {words}")
     return figure
 
 

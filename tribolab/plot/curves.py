@@ -177,6 +177,27 @@ def _look(
     return _Look(colour, marker, is_dry(_attribute(curve, "medium")))
 
 
+def curve_looks(
+    curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()
+) -> list[tuple[str, _Look]]:
+    """Return of each curve what sets it apart in words, and how it is drawn.
+
+    Parameters
+    ----------
+    curves
+        All curves of a figure, with the attributes that `stribeck` reads.
+    surfaces
+        All surfaces of the study in their order.
+    """
+    every = [_attribute(curve, "surface") for curve in curves]
+    styles = surface_styles([*surfaces, *every])
+    loads = sorted({_load(curve) for curve in curves if np.isfinite(_load(curve))})
+    return [
+        (_label(curve, list(curves)), _look(curve, styles, loads, len(set(every))))
+        for curve in curves
+    ]
+
+
 def _label(curve: xr.Dataset, curves: list[xr.Dataset]) -> str:
     """Say what sets this curve apart from the others in the figure."""
     words = []

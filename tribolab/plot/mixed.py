@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -304,6 +304,7 @@ def _above_zero(value: np.ndarray, bars: np.ndarray) -> np.ndarray:
 def friction_factor_effect(
     curves: Surfaces,
     *,
+    scale: Literal["log", "linear"] = "log",
     surfaces: Sequence[str] = (),
     title: str = "",
     ax: Axes | None = None,
@@ -315,6 +316,8 @@ def friction_factor_effect(
     curves
         ``friction_coefficient`` and ``friction_without_factors`` (sliding_speed) by the surface's
         name.
+    scale
+        Of the friction coefficient; the sliding speed is always on a logarithmic one.
     surfaces, title, ax
         As for `mixed_curve`.
 
@@ -340,10 +343,13 @@ def friction_factor_effect(
                 keep(figure, "friction", f"{name}, {key}", sliding_speed_m_s=v, friction=mu)
         axes.plot([], [], color=GREY, linestyle="-", label="with factors")
         axes.plot([], [], color=GREY, linestyle="--", label="without")
-        logarithmic(axes, "x", "y")
+        bottom, top = axes.dataLim.intervaly
+        logarithmic(axes, *(("x", "y") if scale == "log" else ("x",)))
         axes.set_xlim(v.min(), v.max())
-        top = axes.dataLim.y1
-        axes.set_ylim(max(axes.dataLim.y0 / 1.3, 1e-4 * top), 1.4 * top)
+        if scale == "log":
+            axes.set_ylim(max(bottom / 1.3, 1e-4 * top), 1.4 * top)
+        else:
+            axes.set_ylim(0, 1.08 * top)
         axes.set_xlabel(label("sliding_speed"))
         axes.set_ylabel(label("friction_coefficient"))
     return figure

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -31,6 +32,7 @@ from tribolab.plot.style import (
     new_figure,
     shade,
 )
+from tribolab.words import number
 
 _COLUMNS = 500
 _LETTERS = 25  # that fit into a margin of 42 mm
@@ -72,7 +74,7 @@ def slip_traces(
     longest: float | None = None,
     ax: Axes | None = None,
 ) -> Figure:
-    """Draw friction against sliding distance, stroke above stroke, each shifted up to be seen.
+    """Draw friction against sliding distance, stroke above stroke, each shifted to be seen.
 
     Parameters
     ----------
@@ -89,7 +91,8 @@ def slip_traces(
     Returns
     -------
     matplotlib.figure.Figure
-        Every trace keeps its scale; what it was shifted by stands beside it.
+        Every trace keeps its scale; what it was shifted by, up or down, stands beside it, and is
+        a round number, so that it can be taken off again.
 
     Raises
     ------
@@ -116,20 +119,19 @@ def slip_traces(
     rank: dict[str, int] = {}
     make = _wide(25.0 + 13.0 * len(drawn), left=15, right=42, top=4)
     with several_panels(None if ax is None else [ax], ("traces",), make) as (figure, (axes,)):
-        base = None
+        base = -np.inf
         for (trace, x, y), height in zip(drawn, heights, strict=True):
             part = x <= end
             low = float(y[part].min())
-            base = low if base is None else base
-            shift = base - low
-            base += max(height, 0.6 * gap) + gap  # room for the words
+            shift = _round_up(base - low, gap) if base > -np.inf else 0.0
+            base = low + shift + max(height, 0.6 * gap) + gap  # room for the words
             count = sum(t.surface == trace.surface for t in traces)
             place = rank[trace.surface] = rank.get(trace.surface, -1) + 1
             colour = shade(chosen[trace.surface], place, count)
             short = envelope(x[part] * 1e6, y[part] + shift, _COLUMNS)
             axes.plot(*short, color=colour, linewidth=0.8, label=plain(trace.label))
             words = _wrapped(trace.label)
-            words += f"\nshifted by {shift:+.2f}" if abs(shift) > 0.005 else ""
+            words += f"\n{_shift_text(shift)}" if shift else ""
             axes.annotate(
                 words,
                 (1.01, short[1][-min(20, short[1].size) :].mean()),
@@ -138,7 +140,9 @@ def slip_traces(
                 fontsize=7,
                 annotation_clip=False,
             )
-            keep(figure, "traces", trace.label, sliding_distance_um=short[0], shifted=short[1])
+            up = np.full(len(short[0]), shift)
+            x_y = {"sliding_distance_um": short[0], "shifted": short[1]}
+            keep(figure, "traces", trace.label, **x_y, shift=up)
         axes.set_xlim(0, end * 1e6)
         axes.set_xlabel("sliding distance (µm)")
         force = main_signal(traces[0].run).name == "friction_force"
@@ -147,6 +151,23 @@ def slip_traces(
         if ax is not None:
             name_all(ax)
     return figure
+
+
+def _round_up(shift: float, gap: float) -> float:
+    """Next larger shift with one digit at the place of the gap's first."""
+    digits = -math.floor(math.log10(gap)) if gap > 0 else 2
+    return round(math.ceil(round(shift * 10.0**digits, 6)) / 10.0**digits, max(digits, 0))
+
+
+def _shift_text(shift: float) -> str:
+    """Say how far, and which way, a trace was shifted.
+
+    Examples
+    --------
+    >>> _shift_text(0.4), _shift_text(-1.0)
+    ('shifted up by 0.4', 'shifted down by 1')
+    """
+    return f"shifted {'up' if shift > 0 else 'down'} by {number(abs(shift), 6)}"
 
 
 def _wide(

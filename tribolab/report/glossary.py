@@ -41,7 +41,7 @@ GLOSSARY: dict[str, str] = {
     "h rms": "Root mean square of the roughness heights.",
     "Slope rms": "Root mean square of the slopes of the roughness.",
     "Hurst exponent": "How roughness grows with the length it is looked at: slope of the power "
-    "spectrum is −2(1 + H).",
+    "spectrum is −2(1 + H). Fractal from 0 to 1; above 1 the surface is smooth at short distances.",
     "Roll-off": "Wavenumber below which the power spectrum no longer rises.",
     "Stick-slip": "Friction rises and falls at constant speed: sticking and slipping by turns.",
     "Macroscopic instability, controlled by adhesion": "The rubber surface as a whole buckles and "

@@ -17,6 +17,7 @@ from markupsafe import Markup
 
 from tribolab import words
 from tribolab.records import judgement, wording
+from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.report.answer import conditions, oscillating
@@ -139,6 +140,8 @@ def environment(folder: Path) -> jinja2.Environment:
         "conditions": conditions,
         "oscillating": oscillating,
         "is_described": is_described,
+        "is_steep": is_steep,
+        "hurst_verdict": hurst_verdict,
         "run_error": run_error,
         "HEADS": HEADS,
         "GLOSSARY": GLOSSARY,

@@ -47,10 +47,10 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
     -------
     pandas.DataFrame
         A row per published number: quantity, surface, condition, published (text with unit),
-        computed (in the same unit), relative_difference, tolerance, status (reproduced | differs
-        | published value inconsistent | measured, not computed) and a note. What cannot be
-        computed has none of the three numbers, and what is printed as a bound no relative
-        difference.
+        computed (in the same unit), relative_difference, tolerance, status (reproduced | by
+        construction | within a wide tolerance | differs | published value inconsistent |
+        measured, not computed) and a note. What cannot be computed has none of the three numbers,
+        and what is printed as a bound no relative difference.
 
     Raises
     ------

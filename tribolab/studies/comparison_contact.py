@@ -11,7 +11,8 @@ from tribolab.studies.verdict import Computed, Own
 
 
 def _nominal_pressure(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.pressure(row), 0.005, "mean Hertz pressure F/(2aL)", exact=True)
+    note = "mean pressure F/(2aL) of the Hertz contact, half-width a"
+    return Computed(theory.pressure(row), 0.005, note, exact=True)
 
 
 def _hertz_max_pressure(row: Published, theory: Theory) -> Computed:
@@ -31,21 +32,27 @@ def _adhesive_half_width(row: Published, theory: Theory) -> Computed:
 
 
 def _rms_roughness(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.roughness(row.surface), 0.005, _BY_CONSTRUCTION)
+    return Computed(theory.roughness(row.surface), 0.005, given=_SPECTRUM_HAS_IT)
 
 
 def _rms_slope(row: Published, theory: Theory) -> Computed:
-    return Computed(theory.slope(row.surface), 0.005, _BY_CONSTRUCTION)
+    return Computed(theory.slope(row.surface), 0.005, given=_SPECTRUM_HAS_IT)
 
 
-_BY_CONSTRUCTION = "by construction: the stand-in spectrum was made to have it"
+# What an input was chosen for: see `tribolab.studies.xu2026` on the spectra.
+_SPECTRUM_HAS_IT = "the stand-in spectrum was made to have it"
+_EXPONENT = "the stand-in's exponent H was chosen for the areas with adhesion"
+_PRESSURE = "its pressure is not printed, and 0.1 MPa was chosen for the areas without adhesion"
+_LEVEL = "the paper does not say where the contact ends, and the level was chosen for its widths"
 
 
 def _area(row: Published, theory: Theory) -> Computed:
-    at = f"at {theory.pressure(row) / 1e6:.4g} MPa"
+    note = f"at {theory.pressure(row) / 1e6:.4g} MPa, stand-in spectrum"
+    guessed = [] if theory.has_load(row) else [_PRESSURE]
     if medium := theory.medium(row):
-        return Computed(theory.adhesive_area(row, medium), 0.03, f"{at}, stand-in spectrum")
-    return Computed(theory.area(row), 0.01, f"{at}, stand-in spectrum")
+        given = "; ".join([_EXPONENT, *guessed])
+        return Computed(theory.adhesive_area(row, medium), 0.03, note, given=given)
+    return Computed(theory.area(row), 0.01, note, given="; ".join(guessed))
 
 
 def _work(row: Published, theory: Theory) -> Computed:
@@ -64,11 +71,11 @@ def _macroscopic(row: Published, theory: Theory) -> Computed:
 def _enhancement(row: Published, theory: Theory) -> Computed:
     medium = "dry" if row.condition.startswith("dry") else "glycerol"
     if "loads" not in row.condition:
-        return Computed(theory.enhancement(row.surface, medium)[0], 0.03)
+        return Computed(theory.enhancement(row.surface, medium)[0], 0.03, given=_EXPONENT)
     every = theory.enhancement(row.surface, medium)
     note = f"{max(every):.3g} at the lowest load to {min(every):.3g} at the highest"
     mean = sum(every) / len(every)
-    return Computed(mean, 0.03, note, low=min(every), high=max(every))
+    return Computed(mean, 0.03, note, low=min(every), high=max(every), given=_EXPONENT)
 
 
 def _viscoelastic(row: Published, theory: Theory) -> Computed:
@@ -88,13 +95,16 @@ def _line_pressure(row: Published, theory: Theory) -> Computed:
 
 
 def _line_width(row: Published, theory: Theory) -> Computed:
-    note = "between the points where pressure is 1e-3 of its maximum (inferred)"
-    return Computed(theory.line(row)[1], 0.025, note)
+    note = "between the points where pressure is 1e-3 of its maximum"
+    return Computed(theory.line(row)[1], 0.025, note, given=_LEVEL)
 
 
 def _alpha(row: Published, theory: Theory) -> Computed:
     every = [theory.separation_decay(name) for name in xu2026.surfaces]
-    note = f"h_rms/u0 of the asymptote of u(p): {min(every):.3g} to {max(every):.3g}"
+    note = (
+        f"at large separations pressure falls by a factor e over the length u0, and alpha = "
+        f"h_rms/u0 is {min(every):.3g} to {max(every):.3g} on the three surfaces"
+    )
     return Computed(sum(every) / len(every), 0.05, note)
 
 

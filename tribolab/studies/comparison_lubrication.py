@@ -17,8 +17,9 @@ _GONE = 1e-4  # phi_p
 def _percolation(row: Published, theory: Theory) -> Computed:
     gone, visible, closed = (theory.flow_stops(level) for level in (_GONE, 1e-3, 0.0))
     note = (
-        f"where phi_p falls below {_GONE:g} (inferred: no threshold is printed): {_span(gone)} on "
-        f"the three surfaces; below 1e-3 at {_span(visible)}, zero at {_span(closed)}"
+        f"where the pressure flow factor phi_p falls below {_GONE:g} (inferred: no threshold is "
+        f"printed): {_span(gone)} on the three surfaces; below 1e-3 at {_span(visible)}, zero at "
+        f"{_span(closed)}"
     )
     return Computed(sum(gone) / len(gone), 0.25, note, low=min(gone), high=max(gone))
 
@@ -26,10 +27,11 @@ def _percolation(row: Published, theory: Theory) -> Computed:
 def _boundary_onset(row: Published, theory: Theory) -> Computed:
     onset, wider = (theory.boundary_onset(row, share) for share in (_DRY_SHARE, 0.95))
     note = (
-        f"friction is {_DRY_SHARE:.0%} of that of the dry contact; 95 % at {wider:.2g} m/s; "
-        "stand-in spectrum"
+        f"friction is {100 * _DRY_SHARE:.0f} % of that of the dry contact; 95 % at {wider:.2g} "
+        "m/s, above the printed bound: the paper does not say which share it means; stand-in "
+        "spectrum"
     )
-    return Computed(onset, 0.0, note)
+    return Computed(onset, max(0.0, wider / row.si - 1), note, low=onset, high=wider)
 
 
 def _fitted(row: Published, theory: Theory) -> Measured:
@@ -46,7 +48,8 @@ def _corrected(row: Published, theory: Theory) -> Computed:
     fitted = find_published(xu2026.published, "shear_stress", row.surface, row.condition)
     growth = theory.enhancement(row.surface, "glycerol")[0]
     note = f"the printed {fitted.text} {fitted.unit} over the area's growth, {growth:.3g}"
-    return Computed(fitted.si / growth, 0.03, note)
+    given = "it is printed numbers over an area that the stand-in's exponent H was chosen for"
+    return Computed(fitted.si / growth, 0.03, note, given=given)
 
 
 def _corrected_ratio(row: Published, theory: Theory) -> Computed:

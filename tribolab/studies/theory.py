@@ -70,12 +70,18 @@ class Theory:
                     return self.load(other)
         raise AnalysisError(f"published {row.quantity}: no load in '{row.condition}'")
 
+    def has_load(self, row: Published) -> bool:
+        """Whether the condition is one of the loads, or a pressure that the paper assigns one."""
+        try:
+            return self.load(row) > 0
+        except AnalysisError:
+            return False
+
     def pressure(self, row: Published) -> float:
         """Exact mean Hertz pressure [Pa] of the load; a pressure without a load as it stands."""
-        try:
-            return float(hertz_mean_pressure(self.load(row), self._contact))
-        except AnalysisError:
+        if not self.has_load(row):
             return 1e6 * _stated(_PRESSURE, row)
+        return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
         """Medium of a condition with adhesion, "" without."""

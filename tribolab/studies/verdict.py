@@ -3,6 +3,10 @@
 No verdict is written down here. A printed number is called inconsistent only if a power of ten or
 a reciprocal leads from it to the computed one, if other numbers of the paper exclude it, or if the
 paper's own inputs fix it in closed form and it is something else.
+
+Agreement is not always a test. A number that was put in, that an input was chosen for, or that
+follows from such numbers alone agrees *by construction*; one that needs more than `NARROW` of room
+agrees *within a wide tolerance*. Only what is left is called reproduced.
 """
 
 from __future__ import annotations
@@ -11,11 +15,17 @@ import math
 from typing import NamedTuple
 
 from tribolab.studies.published import Published
+from tribolab.words import number, percent
 
 REPRODUCED = "reproduced"
+BY_CONSTRUCTION = "by construction"
+WIDE = "within a wide tolerance"
 DIFFERS = "differs"
 INCONSISTENT = "published value inconsistent"
 MEASURED = "measured, not computed"
+
+NARROW = 0.01  # relative; agreement that needs more than this is agreement in a wide tolerance
+_COARSE = 0.05  # half of the last digit, relative: a number printed with one digit says little
 
 
 class Computed(NamedTuple):
@@ -27,6 +37,7 @@ class Computed(NamedTuple):
     exact: bool = False  # a closed form of numbers that the paper prints
     low: float = math.nan  # where one printed number stands for several, their range
     high: float = math.nan
+    given: str = ""  # why it agrees by construction
 
 
 class Measured(NamedTuple):
@@ -89,11 +100,58 @@ def judge(row: Published, computed: Computed | Measured, own: Own | None = None)
             )
         elif computed.exact:
             reasons.append("the paper's own inputs give the computed number in closed form")
-    status = INCONSISTENT if reasons else REPRODUCED if agrees else DIFFERS
+    status = INCONSISTENT if reasons else _grade(row, computed) if agrees else DIFFERS
+    if agrees and computed.given:
+        reasons.append(f"by construction: {computed.given}")
+    if status == WIDE:
+        reasons.append(f"agrees only within {room_text(_room(row, computed))}")
     if agrees and not row.relation and low == high:
         if abs(computed.value - row.si) > computed.tolerance * abs(row.si):
             reasons.append("agrees within the last digit that is printed")
     return Verdict(status, "; ".join([*reasons, computed.note] if computed.note else reasons))
+
+
+def room_text(tolerance: float) -> str:
+    """Return a relative tolerance as a reader says it.
+
+    Examples
+    --------
+    >>> room_text(0.25), room_text(6.385)
+    ('25 %', 'a factor of 7.4')
+    """
+    return percent(tolerance) if tolerance < 1 else f"a factor of {number(1 + tolerance, 2)}"
+
+
+def _grade(row: Published, computed: Computed) -> str:
+    """Say what the agreement of a number is worth."""
+    if computed.given:
+        return BY_CONSTRUCTION
+    printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0
+    rounding = printed if printed <= _COARSE and not row.relation.startswith(BOUNDS) else 0.0
+    return REPRODUCED if _off(row, computed) <= max(NARROW, rounding) else WIDE
+
+
+def _off(row: Published, computed: Computed) -> float:
+    """How far a computed number, or the range it stands for, lies from the printed one [1]."""
+    if row.relation == ">" or not row.si:
+        return 0.0
+    low, high = _range(computed)
+    if row.relation.startswith(BOUNDS):
+        return max(0.0, high / row.si - 1)
+    return max(0.0, low - row.ends[1], row.ends[0] - high) / abs(row.si)
+
+
+def _room(row: Published, computed: Computed) -> float:
+    """Room that a number was given [1]: its tolerance, or half of the last digit."""
+    if row.relation.startswith(BOUNDS):
+        return computed.tolerance
+    return max(computed.tolerance, row.last_digit / 2 / abs(row.si))
+
+
+def _range(computed: Computed) -> tuple[float, float]:
+    low = computed.value if math.isnan(computed.low) else computed.low
+    high = computed.value if math.isnan(computed.high) else computed.high
+    return low, high
 
 
 def _agrees(row: Published, computed: Computed) -> bool:
@@ -101,8 +159,7 @@ def _agrees(row: Published, computed: Computed) -> bool:
         return computed.value > row.si
     if row.relation in ("at most", "below"):
         return computed.value <= row.si * (1 + computed.tolerance)
-    low = computed.value if math.isnan(computed.low) else computed.low
-    high = computed.value if math.isnan(computed.high) else computed.high
+    low, high = _range(computed)
     half = row.last_digit / 2
     overlaps = low <= row.ends[1] + half and high >= row.ends[0] - half
     return overlaps or _close(row, computed.value, computed.tolerance)

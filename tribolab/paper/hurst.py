@@ -1,0 +1,78 @@
+"""What the exponents above 1 of the stand-in spectra mean for slope and contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from tribolab.records.hurst_words import hurst_verdict
+from tribolab.studies import xu2026
+from tribolab.surface.self_affine import SelfAffine, moment
+
+_SLOPE = 3  # q^3 C: the integrand of the mean square slope
+_ENDLESS = 1e30  # 1/m
+
+
+@dataclass(frozen=True)
+class SteepSpectrum:
+    """A stand-in spectrum whose exponent exceeds 1.
+
+    Parameters
+    ----------
+    surface
+        Its name.
+    hurst
+        Exponent H [1].
+    half_slope_wavelength
+        Wavelength [m]: half of the mean square slope comes from longer waves.
+    slope_beyond
+        What the root-mean-square slope would gain [1, relative] if the power law went on beyond
+        the last wavenumber without end.
+    verdict
+        What the exponent means.
+    """
+
+    surface: str
+    hurst: float
+    half_slope_wavelength: float
+    slope_beyond: float
+    verdict: str
+
+
+def steep_spectra() -> list[dict[str, Any]]:
+    """Return what stands on the page for each stand-in spectrum with H above 1.
+
+    Examples
+    --------
+    >>> [one["surface"] for one in steep_spectra()]
+    ['Smooth', 'Sb-S', 'Sb-R']
+    """
+    return [
+        asdict(_judged(surface.name, surface.spectrum))
+        for surface in xu2026.surfaces.values()
+        if surface.spectrum.hurst > 1
+    ]
+
+
+def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
+    whole = moment(spectrum, _SLOPE)
+    endless = moment(replace(spectrum, high=_ENDLESS), _SLOPE)
+    return SteepSpectrum(
+        name,
+        spectrum.hurst,
+        2 * math.pi / _half(spectrum, whole),
+        math.sqrt(endless / whole) - 1,
+        hurst_verdict(spectrum.hurst),
+    )
+
+
+def _half(spectrum: SelfAffine, whole: float) -> float:
+    """Wavenumber [1/m] up to which half of the mean square slope is gathered."""
+    from scipy.optimize import brentq
+
+    def missing(log_q: float) -> float:
+        return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5
+
+    ends = math.log(spectrum.rolloff * (1 + 1e-9)), math.log(spectrum.high)
+    return math.exp(brentq(missing, *ends))
