@@ -85,8 +85,9 @@ PARTS = (
     ("bars", "Appendix C: friction with error bars", ("App. C",)),
 )
 _ABOUT = {
-    "theory": "The equations are computed in full: where the paper sketches p(u) by one "
-    "exponential, Eq. (8), the integral behind it is taken. The drawing of the contact is left "
+    "theory": "The equations are computed in full: where the paper sketches the "
+    "contact pressure over the separation, p(u), by one exponential, Eq. (8), the integral behind "
+    "it is taken. The drawing of the contact is left "
     "out.",
     "setup": "Forces and lengths are the paper's. Its measurements are not public: the virtual "
     "rig stands in for the laboratory, with the noise, clocks and loggers of a real one, and its "
