@@ -85,7 +85,7 @@ def plan_sliding_figures(
     planned: list[tuple[str, str, str, str, list[Shown]]] = []
     for surface, stem in traces_stems(curve.surface for curve in lowest).items():
         title = f"{surface or 'Runs'}: friction over sliding distance"
-        caption = f"{title}. The slowest speeds of each medium, each shifted by what stands beside it."
+        caption = f"{title}. The slowest speeds of each medium, shifted by what stands beside them."
         shown = [
             Shown(curve.medium or run, files[run], segment)
             for curve in lowest
