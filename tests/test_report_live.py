@@ -103,8 +103,8 @@ def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, result
     words = series["told"][0]
     assert "(between runs)" in words and "within the run: ± " in words
     # ± is of the mean of the runs, and what is no error of a mean has no ±
-    assert "standard error of the mean of 3 runs, widened for few runs\n" in words
-    assert "scatter of the runs: 0.016 (standard deviation)" in words
+    assert "mean of 3 runs, its ± widened\n" in words
+    assert "scatter of the runs: 0.016" in words
     assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
     with browser.page(results / "report.html") as page:
         drawn(page, "card-1")
@@ -210,7 +210,7 @@ def test_the_page_sent_alone_hands_out_tables_and_figures(browser, alone):
             page.click(f"#runs [data-out={kind}]")
         name, _, text = page.run("saved[0]")
         assert name == "runs.csv"
-        assert text.splitlines()[1].startswith("1,done,0.800 ± ") and "sb-s_long" in text
+        assert text.splitlines()[1].startswith("1,done,,sb-r_1,0.800 ± ") and "sb-s_long" in text
         book = page.run(
             "saved[1][2].arrayBuffer().then(b => btoa(String.fromCharCode(...new Uint8Array(b))))"
         )
@@ -401,3 +401,25 @@ def test_rows_of_very_many_runs_are_packed_and_all_of_them_sorted(
 
 def test_the_library_comes_with_its_licence(results):
     assert "Copyright (c) 2016-2024 Plotly Technologies Inc." in page_of(results)
+
+
+@pytest.mark.slow
+def test_axes_show_what_is_seen_and_bars_end_where_values_end(browser, results):
+    figure = {
+        "panels": [{"x": {"label": "gap", "log": True, "decades": 2}, "y": {"log": True}}],
+        "series": [{"label": "a", "x": [1e-6, 1, 10, 100], "y": [1e9, 2, 1, 0.5]}],
+    }
+    stress = {
+        "panels": [{"x": {"label": "load", "unit": "N"}, "y": {"label": "stress", "least": 0}}],
+        "series": [{"label": "a", "x": [31], "y": [0.2], "style": "points", "error": [0.5]}],
+    }
+    drawing = "(() => {{ const it = new report.drawing.Chart(document.querySelector('#card-1'));"
+    drawing += "it.data = {}; return {} }})()"
+    with browser.page(results / "report.html") as page:
+        low, high = page.run(drawing.format(json.dumps(figure), "it.range('y', 0)"))
+        # what lies outside the gaps that are seen has no part in the height
+        assert np.log10(0.25) < low < np.log10(0.5) and np.log10(2) < high < np.log10(4)
+        low, high = page.run(drawing.format(json.dumps(stress), "it.range('x', 0)"))
+        assert low < 20 and high > 42
+        bars = page.run(drawing.format(json.dumps(stress), "it.traces()[0].error_y"))
+        assert (bars["array"], bars["arrayminus"]) == ([0.5], [0.2])

@@ -5,9 +5,10 @@ report.drawing = (() => {
   const HUES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b6b6b", "#000000"];
   const DARKER = ["#5db4ee", "#ff8a3d", "#35c79a", "#e79cc6", "#f2bd45", "#8fd0f5", "#a8b0b8", "#ffffff"];
   const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
-  const DASHES = { line: "solid", dashed: "dash", dotted: "dot" };
+  const DASHES = { line: "solid", dashed: "dash", dotted: "dot", dashdot: "dashdot" };
   const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
-  const PAPER = 680, HALF = 325; // widths that fit between the margins of A4, of one and of two beside each other
+  const PAPER = 680, HALF = 316; // widths that fit between the margins of A4, of one and of two beside each other
+  const AROUND = 70; // above and below the axes: a legend that is no taller than these leaves most to the plot
   const still = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
   let library = null;
   const state = { printing: false };
@@ -25,10 +26,12 @@ report.drawing = (() => {
   // Known before a figure is drawn: what is below does not move when it comes.
   function heightOf(place, width, panels, labels) {
     const columns = Math.max(1, Math.floor(width / 210));
-    const legend = labels > 1 ? Math.min(Math.ceil(labels / columns) * 20, 160) : 0;
     const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
     const low = place.closest(".cards") ? 175 : 240;
-    return (state.printing && panels === 1 ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1]) + legend;
+    const squeezed = state.printing && panels === 1 && !("rows" in place.dataset); // not where names stand below each other
+    const plot = squeezed ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1];
+    const whole = labels > 1 ? Math.ceil(labels / columns) * 21 : 0, legend = state.printing ? whole : Math.min(whole, plot - AROUND);
+    return { plot, legend, cut: legend < whole };
   }
 
   // The page's policy forbids style attributes as text; the library means what a script may set.
@@ -116,8 +119,9 @@ report.drawing = (() => {
         const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
         if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: one.faint ? 5 : 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
         else if (style === "band") traces.push(...this.band(one, base, hue));
-        else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", marker: { color: hue } });
-        else if (style === "heat") traces.push({ ...base, mode: "markers", marker: { color: one.high, symbol: "square", size: 7, colorscale: "Cividis", showscale: traces.length === 0, cmin: 0.3, cmax: 3, colorbar: { title: { text: "log₁₀ of<br>the ratio" }, thickness: 12 } }, hovertemplate: `${text(one.label)}<br>%{x} m/s, %{y} Hz<br>log₁₀ ratio %{marker.color}<extra></extra>` });
+        else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", textposition: "none", marker: { color: hue } });
+        // colours are levels here, so conditions are told by their markers, in the legend too
+        else if (style === "heat") traces.push({ ...base, x: [null], y: [null], mode: "markers", marker: { color: hues[6], symbol, size: 8 } }, { ...base, showlegend: false, mode: "markers", marker: { color: one.high, symbol, size: 7, colorscale: "Cividis", showscale: traces.length === 0, cmin: 0.3, cmax: 3, colorbar: { title: { text: "log₁₀ of the ratio", side: "right" }, thickness: 12 } }, hovertemplate: `${text(one.label)}<br>%{x} m/s, %{y} Hz<br>log₁₀ ratio %{marker.color}<extra></extra>` });
         else traces.push({ ...base, mode: "lines", line: { color: hue, width: style === "line" ? 2 : 1.6, dash: DASHES[style] } });
       }
       return traces;
@@ -125,7 +129,9 @@ report.drawing = (() => {
 
     bars(one, hue) {
       if (!one.error?.some((value) => value > 0)) return {};
-      return { error_y: { type: "data", array: one.error.map((value) => value ?? 0), color: hue, thickness: 1.4, width: 4 } };
+      const array = one.error.map((value) => value ?? 0), { least } = this.data.panels[one.panel ?? 0].y;
+      const below = least === undefined ? {} : { symmetric: false, arrayminus: array.map((value, k) => Math.max(0, Math.min(value, one.y[k] - least))) };
+      return { error_y: { type: "data", array, ...below, color: hue, thickness: 1.4, width: 4 } };
     }
 
     band(one, base, hue) {
@@ -142,13 +148,17 @@ report.drawing = (() => {
     range(side, panel) {
       const log = this.isLog(side, panel);
       let low = Infinity, high = -Infinity;
+      const least = side === "y" ? this.data.panels[panel].y.least ?? -Infinity : -Infinity;
+      const seen = side === "y" ? this.range("x", panel) : undefined, wide = this.isLog("x", panel);
+      const within = (x) => !seen || typeof x !== "number" || ((wide ? Math.log10(x) : x) >= seen[0] && (wide ? Math.log10(x) : x) <= seen[1]);
       for (const one of this.shown()) {
         if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || (this.off.get(one.label) ?? one.faint)) continue;
         const values = side === "x" ? one.x : one.y;
         for (let k = 0; k < values.length; k++) {
           const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;
           if (typeof value !== "number") { if (typeof value === "string") return undefined; continue; }
-          for (const end of [value - bar, value + bar, value]) {
+          if (side === "y" && !within(one.x[k])) continue;
+          for (const end of [Math.max(value - bar, least), value + bar, value]) {
             if (log && !(end > 0)) continue;
             if (log && end < value / 20) continue;
             low = Math.min(low, end);
@@ -161,7 +171,7 @@ report.drawing = (() => {
       if (log) [low, high] = [Math.log10(low), Math.log10(high)];
       if (log && decades) low = Math.max(low, high - decades);
       else if (side === "y" && low > 0 && low < 0.6 * high) low = 0;
-      const room = (high - low || Math.abs(high) * 0.1 || 0.5) * 0.06;
+      const room = high > low ? (high - low) * 0.06 : log ? 0.3 : Math.abs(high) * 0.5 || 0.5;
       return [low === 0 && !log ? 0 : low - room, high + room];
     }
 
@@ -172,8 +182,8 @@ report.drawing = (() => {
         width: this.width, height: this.height, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
         font: { family: FONT, size: 13, color: ink }, hovermode: "closest", dragmode: still ? false : "zoom",
         margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.legend().length > 1,
-        hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: 13 } },
-        legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: 12 }, groupclick: "togglegroup", itemsizing: "constant" },
+        hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: narrow ? 12 : 13 } },
+        legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: narrow ? 11 : 12 }, maxheight: this.sizes.cut ? this.sizes.legend : undefined, groupclick: "togglegroup", itemsizing: "constant" },
         shapes: this.shapes?.() ?? [],
         ...(this.more?.() ?? {}),
       };
@@ -210,9 +220,12 @@ report.drawing = (() => {
       return Math.max(260, this.place.clientWidth);
     }
 
+    get sizes() { return heightOf(this.place, this.width, this.data.panels.length, this.legend().length); }
+
     get height() {
       if (this.full) return innerHeight - 110;
-      return heightOf(this.place, this.width, this.data.panels.length, this.legend().length);
+      const { plot, legend } = this.sizes;
+      return plot + legend;
     }
 
     async draw() {
@@ -273,8 +286,10 @@ report.drawing = (() => {
       for (const button of this.figure.querySelectorAll("[data-scale]")) {
         const side = button.dataset.scale, log = this.isLog(side, 0);
         button.hidden = side === "y" && !this.data.panels[0].y.label;
-        button.textContent = `${side === "x" ? "→" : "↑"} ${log ? "log" : "linear"}`;
-        button.setAttribute("aria-label", `${side === "x" ? "Horizontal" : "Vertical"} axis: ${log ? "logarithmic, make it linear" : "linear, make it logarithmic"}`);
+        const { label } = this.data.panels[0][side];
+        button.textContent = `${label?.match(/ (\S{1,4})$/)?.[1] ?? (side === "x" ? "→" : "↑")}: ${log ? "log" : "linear"}`;
+        button.title = `${side === "x" ? "Horizontal" : "Vertical"} axis${label ? ` (${label})` : ""}: ${log ? "logarithmic, make it linear" : "linear, make it logarithmic"}`;
+        button.setAttribute("aria-label", `${button.textContent}. ${button.title}`);
       }
     }
 

@@ -36,7 +36,8 @@ report.charts = (() => {
   function watch(place) {
     for (const figure of place.querySelectorAll("figure.live")) {
       const plot = figure.querySelector(".plot"), { panels, labels } = plot.dataset;
-      if (panels && plot.clientWidth) plot.style.minHeight = `${heightOf(plot, plot.clientWidth, Number(panels), Number(labels))}px`;
+      const size = panels && plot.clientWidth && heightOf(plot, plot.clientWidth, Number(panels), Number(labels));
+      if (size) plot.style.minHeight = `${size.plot + size.legend}px`;
       near.observe(figure);
     }
   }

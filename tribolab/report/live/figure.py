@@ -14,7 +14,7 @@ import numpy as np
 from tribolab.records.packed import deflated
 from tribolab.records.traces import as_text
 
-Style = Literal["points", "line", "dashed", "dotted", "band", "bars", "heat"]
+Style = Literal["points", "line", "dashed", "dotted", "dashdot", "band", "bars", "heat"]
 Values = Sequence[Any] | np.ndarray
 _DIGITS = 6  # more than any screen resolves
 
@@ -23,13 +23,15 @@ _DIGITS = 6  # more than any screen resolves
 class Axis:
     """What is drawn along one side: its name, its unit, whether logarithmic at first.
 
-    Of `decades` so many below the highest value are seen at first; 0 is all of them.
+    Of `decades` so many below the highest value are seen at first; 0 is all of them. Error bars end
+    at `least`, below which no value can lie.
     """
 
     label: str
     unit: str = ""
     log: bool = False
     decades: int = 0
+    least: float | None = None
 
 
 @dataclass(frozen=True)

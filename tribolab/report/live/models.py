@@ -124,7 +124,7 @@ def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Live
         "Open: as fitted, for the contact area without adhesion; filled: in the larger area that "
         "adhesion makes. Bars: the whole standard error, the spectrum's part in it where known.",
         "Fitted shear stress over the load, by surface and medium.",
-        (Panel(Axis("load", "N"), Axis("shear stress σ", "MPa")),),
+        (Panel(Axis("load", "N"), Axis("shear stress σ", "MPa", least=0.0)),),
         tuple(series),
     )
 

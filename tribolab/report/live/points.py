@@ -13,6 +13,7 @@ from tribolab.report.plain import plain_speed
 from tribolab.words import many, number
 
 _FEW = 14  # runs: up to here the curve widens its error by Student's t
+_NAMED = 4  # runs, at a point
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
 
@@ -131,26 +132,21 @@ def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) 
     lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} ({error.holds})"]
     runs = int(row.get("runs") or 1)
     if runs > 1:
-        lines.append(f"standard error of the mean of {runs} runs{widened(runs)}")
+        lines.append(f"mean of {runs} runs, its ± widened" if runs <= _FEW else f"{runs} runs")
         if error.scatter is not None:
-            lines.append(f"scatter of the runs: {number(error.scatter, 2)} (standard deviation)")
+            lines.append(f"scatter of the runs: {number(error.scatter, 2)}")
         if error.within is not None:
-            lines.append(f"within the run: ± {number(error.within, 2)}, usually")
+            lines.append(f"within the run: ± {number(error.within, 2)}")
     else:
         lines.append("between runs: not known, one run")
     if points:
         samples = sum(point.effective_samples for point in points)
         count = sum(point.segments for point in points)
-        lines.append(f"{many(count, 'segment')}, {samples:.0f} independent samples")
+        lines += [many(count, "segment"), f"{samples:.0f} independent samples"]
         names = [point.run for point in points]
-        shown = names[:4] + ([f"and {len(names) - 4} more"] if len(names) > 4 else [])
-        lines.append(", ".join(shown))
+        # a line for each: a long one would be cut beside the point, or lie on it
+        lines += names[:_NAMED] + ([f"and {len(names) - _NAMED} more"] * (len(names) > _NAMED))
     return "\n".join(lines)
-
-
-def widened(runs: int) -> str:
-    """Return what is said of the error between so many runs."""
-    return ", widened for few runs" if runs <= _FEW else ""
 
 
 def run_error(

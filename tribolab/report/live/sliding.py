@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _MOST_EVENTS = 300
 _EXCERPT = 800  # points of a slow trace
+# Of what is looked at and of what stands beside it: in a liquid, and dry, in the same colour.
+_STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
 
 
 class Slow(NamedTuple):
@@ -215,7 +217,7 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
     series = []
     for one in opened:
         for number_, (speed, distance, values) in enumerate(one.traces):
-            style: Style = "line" if number_ == 0 else "dotted"
+            style = _STYLES[number_ > 0][one.labels["open"]]
             told = (f"{one.name}, {plain_speed(speed)}",)
             more: dict[str, Any] = one.labels | {"colour": one.colour, "goes_to": (one.run,)}
             series.append(Series(one.name, distance, values, style=style, told=told, **more))
@@ -225,7 +227,8 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
         "sliding-traces",
         "sliding",
         "Friction over sliding distance at the slowest speeds",
-        "At the lowest load of each surface and medium; full: the slowest speed, dotted: the next.",
+        "At the lowest load of each surface and medium. The slowest speed: full in a liquid, "
+        "dashed dry; the next: dotted in a liquid, dots and dashes dry.",
         "Friction over sliding distance, a line for each condition and speed.",
         (Panel(Axis("sliding distance", "µm"), Axis("friction coefficient µ")),),
         tuple(series),
@@ -241,19 +244,19 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
         more: dict[str, Any] = one.labels | {"colour": one.colour}
         f = found["frequency"].values
         kept = np.isfinite(found["psd"].values)
-        series.append(Series(one.name, f[kept], found["psd"].values[kept], **more))
+        of, noise = (style[one.labels["open"]] for style in _STYLES)
+        series.append(Series(one.name, f[kept], found["psd"].values[kept], of, **more))
         limit = found["psd_significant"].values
-        style: Style = "dotted"
         more["told"] = (f"{one.name}: limit of noise",)
-        series.append(Series(one.name, f[kept], limit[kept], style, **more))
+        series.append(Series(one.name, f[kept], limit[kept], noise, **more))
     if not series:
         return None
     return LiveFigure(
         "sliding-spectra",
         "sliding",
         "Spectra of friction at the slowest speed",
-        "Dotted: the power that noise exceeds anywhere in one spectrum of a thousand. What rises "
-        "above it is an oscillation.",
+        "Full: in a liquid; dashed: dry. Dotted, and dots and dashes: the power that noise exceeds "
+        "anywhere in one spectrum of a thousand. What rises above it is an oscillation.",
         "Power spectrum of the friction coefficient over frequency.",
         (Panel(Axis("frequency", "Hz", log=True), Axis("power spectrum of µ", "1/Hz", log=True)),),
         tuple(series),
@@ -270,14 +273,16 @@ def _events(opened: Sequence[_Open]) -> LiveFigure | None:
         kept = thinned(drops.size, _MOST_EVENTS)
         share = (np.arange(drops.size) + 1) / max(drops.size, 1)
         more: dict[str, Any] = one.labels | {"colour": one.colour}
-        series.append(Series(f"{one.name}: {drops.size} drops", drops[kept], share[kept], **more))
+        name, style = f"{one.name}: {drops.size} drops", _STYLES[0][one.labels["open"]]
+        series.append(Series(name, drops[kept], share[kept], style, **more))
     if not series:
         return None
     return LiveFigure(
         "sliding-events",
         "sliding",
         "How far friction drops",
-        "Share of the drops, at all speeds of a run, that are smaller than a value.",
+        "Share of the drops, at all speeds of a run, that are smaller than a value. Full: in a "
+        "liquid; dashed: dry.",
         "Cumulative distribution of the drops of friction.",
         (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
         tuple(series),
@@ -302,7 +307,8 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
         kept = np.isfinite(level) & (level > 0.3)
         values = [float(f"{v:.3g}") for v in level[kept]]
         label = one.name
-        series.append(Series(label, speed[kept], f[kept], style="heat", high=values, **one.labels))
+        more: dict[str, Any] = one.labels | {"colour": one.colour}
+        series.append(Series(label, speed[kept], f[kept], style="heat", high=values, **more))
     series = [one for one in series if len(one.x)]
     if not series:
         return None
@@ -310,8 +316,8 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
         "sliding-spectrogram",
         "sliding",
         "Power over that of noise, at every speed and frequency",
-        "Only what is at least twice the noise is drawn. Switch conditions on and off in the "
-        "legend.",
+        "Only what is at least twice the noise is drawn; filled: in a liquid, open: dry. Switch "
+        "conditions on and off in the legend.",
         "Ratio of the power spectrum to its noise over speed and frequency.",
         (Panel(SPEED, Axis("frequency", "Hz", log=True)),),
         tuple(series),
