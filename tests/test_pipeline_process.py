@@ -26,6 +26,7 @@ from tribolab.campaign.pool import WorkerDied
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.traces import trace_size
+from tribolab.report.reviewing import review_data
 from tribolab.rig import read_truth
 
 
@@ -187,7 +188,8 @@ def test_files_and_folders_whose_names_are_not_utf8_are_analysed(campaign, tmp_p
     assert reused(process(config, folder / "next", previous=outcome.folder)) == [
         run.name for run in outcome.runs
     ]
-    json.dumps([files, outcome.sources], ensure_ascii=False).encode()  # it is text throughout
+    shown = [files, outcome.sources, review_data(config, [])]
+    json.dumps(shown, ensure_ascii=False).encode()  # it is text throughout
 
 
 def reused(outcome):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.campaign.review import REVIEW_FILE, load_entries
 from tribolab.campaign.toml_file import text_of
+from tribolab.provenance import as_text
 
 if TYPE_CHECKING:
     from tribolab.campaign.config import Campaign
@@ -39,10 +40,10 @@ def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> dict[s
         ``applied``, and their ``text`` as a person wrote it, "" where it is no table of its own.
     """
     file = Path(campaign.file)
-    name = f"{file.parent.absolute()}\n{file.name}\n{campaign.name}"
+    name = f"{as_text(file.parent.absolute())}\n{as_text(file.name)}\n{campaign.name}"
     data: dict[str, Any] = {
         "key": hashlib.sha256(name.encode()).hexdigest()[:24],
-        "files": [file.name, REVIEW_FILE],
+        "files": [as_text(file.name), REVIEW_FILE],
         "head": "",
         "entries": [],
     }
