@@ -108,6 +108,20 @@ def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, result
     assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
     with browser.page(results / "report.html") as page:
         drawn(page, "card-1")
+        page.run(
+            "(() => { const point = document.querySelector('#card-1 .point')"
+            ".getBoundingClientRect(), at = { clientX: point.x + point.width / 2, clientY: point.y + point.height / 2 };"
+            " document.querySelector('#card-1 .nsewdrag').dispatchEvent("
+            "new MouseEvent('mousemove', { ...at, bubbles: true })) })()"
+        )
+        page.wait("document.querySelector('#card-1 .told') !== null")
+        words, apart = page.run(
+            "(() => { const told = document.querySelector('#card-1 .told'), of = one =>"
+            " one.getBoundingClientRect(), point = of(document.querySelector('#card-1 .point'));"
+            " return [told.textContent, of(told).bottom < point.top || of(told).top > point.bottom]"
+            " })()"
+        )
+        assert words == series["told"][0] and apart
         page.click("#card-1 .points .point")
         page.wait("document.querySelector('#run-1').open && location.hash === '#run-1'")
 

@@ -114,7 +114,8 @@ report.drawing = (() => {
           visible: (this.off.get(one.label) ?? one.faint) ? "legendonly" : true, meta: one.goes_to,
           hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
         };
-        if (one.told?.length > 1 || (one.told?.length && one.style === "points")) Object.assign(base, { text: one.told.map(lines), hovertemplate: "%{text}<extra></extra>" });
+        // what is told of a point stands beside it, see tellOf
+        if (one.told?.length > 1 || (one.told?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.told[k] ?? one.told[0]), hoverinfo: "none", hovertemplate: null });
         if (style !== "band") seen.add(one.label);
         const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
         if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: one.faint ? 5 : 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
@@ -262,8 +263,24 @@ report.drawing = (() => {
         this.paint(Plotly);
         return false;
       });
+      this.place.on("plotly_hover", (event) => { this.tellOf(event.points[0]); });
+      this.place.on("plotly_unhover", () => { this.told?.remove(); });
       this.place.on("plotly_doubleclick", () => { this.whole(); });
       this.place.on("plotly_relayout", () => this.follow?.());
+    }
+
+    // Above the point or below it, so that it is never covered, and whole.
+    tellOf(point) {
+      this.told?.remove();
+      if (typeof point?.customdata !== "string") return;
+      this.told ??= Object.assign(document.createElement("div"), { className: "told" });
+      this.told.textContent = point.customdata;
+      this.figure.append(this.told);
+      const { xaxis, yaxis } = point, plot = this.place.getBoundingClientRect(), figure = this.figure.getBoundingClientRect(), own = this.told.getBoundingClientRect();
+      const x = plot.left + xaxis._offset + xaxis.d2p(point.x), y = plot.top + yaxis._offset + yaxis.d2p(point.y);
+      const left = Math.max(8, Math.min(x - own.width / 2, document.documentElement.clientWidth - own.width - 8));
+      this.told.style.left = `${left - figure.left}px`;
+      this.told.style.top = `${(y - own.height - 14 >= 0 ? y - own.height - 14 : y + 14) - figure.top}px`;
     }
 
     // Chips for the loads, and what the switches say.
