@@ -110,7 +110,8 @@ def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, result
         drawn(page, "card-1")
         page.run(
             "(() => { const point = document.querySelector('#card-1 .point')"
-            ".getBoundingClientRect(), at = { clientX: point.x + point.width / 2, clientY: point.y + point.height / 2 };"
+            ".getBoundingClientRect(), at = { clientX: point.x + point.width / 2,"
+            " clientY: point.y + point.height / 2 };"
             " document.querySelector('#card-1 .nsewdrag').dispatchEvent("
             "new MouseEvent('mousemove', { ...at, bubbles: true })) })()"
         )
