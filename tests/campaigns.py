@@ -5,8 +5,8 @@ import re
 import shutil
 from pathlib import Path
 
-from tribolab.campaign.store import Store
-from tribolab.campaign.surfaces import Surfaces, SurfaceTask, process_surface
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.surfaces.stage import Surfaces, SurfaceTask, process_surface
 from tribolab.rig import simulate_campaign
 
 RUNS = ("sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "sb-r_dry_31N_01", "sb-r_dry_31N_02")

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.config import Campaign
-from tribolab.campaign.data_files import write_data
-from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.store import Store
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import write_data
+from tribolab.campaign.store.outcome import Outcome
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.records.frames import curve_table, stick_slip_table

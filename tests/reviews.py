@@ -7,7 +7,7 @@ import pandas as pd
 from campaigns import RUNS, copied, simulated
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign.review import REVIEW_FILE
+from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.report.read_results import read_results
 
 FROZEN, SLIPPED, LATE, SOUND = RUNS  # what happened to the runs; the checks fail the first

@@ -5,11 +5,11 @@ import re
 
 import pytest
 
-from tribolab.campaign import catalogue
-from tribolab.campaign.config import SCHEMA_FILE, Campaign, campaign_schema
-from tribolab.campaign.load import load_campaign
-from tribolab.campaign.plan import plan
-from tribolab.campaign.toml_lines import line_of
+from tribolab.campaign.settings.config import SCHEMA_FILE, Campaign, campaign_schema
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.page import PAGE_FILE, campaign_page
+from tribolab.campaign.settings.plan import plan
+from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import ConfigError
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.schema_folder import schema_folder
@@ -305,8 +305,8 @@ def test_the_published_schema_is_the_models():
 
 
 def test_the_published_page_has_every_key_quantity_and_default():
-    page = (schema_folder() / catalogue.PAGE_FILE).read_text(encoding="utf-8")
-    assert page == catalogue.campaign_page()
+    page = (schema_folder() / PAGE_FILE).read_text(encoding="utf-8")
+    assert page == campaign_page()
     assert '| `radius` | Radius of the cylinder. | m | `"7 cm"` |  |' in page
     assert '| `fastest` | Highest sliding speed. | m/s | `"10 cm/s"` | `0.1` |' in page
     assert "| `min_samples` | Fewest samples in a segment. | integer, ≥ 2 |  | `10` |" in page

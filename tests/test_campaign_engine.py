@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from tribolab.campaign.engine import Stage, perform
+from tribolab.campaign.engine.stage import Stage, perform
 from tribolab.errors import OutputError
 
 

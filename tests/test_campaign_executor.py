@@ -9,8 +9,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from tribolab.campaign.executor import completed, workers
-from tribolab.campaign.pool import LastingPool, WorkerDied
+from tribolab.campaign.engine.executor import completed, workers
+from tribolab.campaign.engine.pool import LastingPool, WorkerDied
 from tribolab.errors import ConfigError
 
 
@@ -71,7 +71,7 @@ def test_an_interrupt_ends_the_processes_at_once():
 def test_workers_end_when_their_parent_is_killed():
     code = (
         "import os, time\n"
-        "from tribolab.campaign.pool import LastingPool\n"
+        "from tribolab.campaign.engine.pool import LastingPool\n"
         "if __name__ == '__main__':\n"
         "    pool = LastingPool(1)\n"
         "    print(pool.submit(os.getpid).result(), flush=True)\n"

@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.app.run import run_campaign
-from tribolab.campaign.kept import kept_model
-from tribolab.campaign.load import load_campaign
+from tribolab.campaign.models.kept import kept_model
 from tribolab.campaign.pipeline import process
-from tribolab.campaign.store import Store
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.store.catalogue import Store
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.records.part_records import ModelRecord, ModelRows

@@ -17,9 +17,9 @@ from tribolab.app.demo import DemoComparison
 from tribolab.app.terminal import truth_lines
 from tribolab.app.truth import Comparison
 from tribolab.app.truth_shear_stress import compare_shear_stress
-from tribolab.campaign.load import load_campaign
-from tribolab.campaign.model_analysis import beside
+from tribolab.campaign.models.analysis import beside
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift

@@ -12,10 +12,10 @@ from report_pages import figures_of
 from typer.testing import CliRunner
 
 from tribolab import rig
-from tribolab.campaign.load import load_campaign
-from tribolab.campaign.plan import scan_files
-from tribolab.campaign.surface_plan import PlannedSurface
-from tribolab.campaign.surfaces import SurfaceTask, process_surface
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.plan import scan_files
+from tribolab.campaign.surfaces.plan import PlannedSurface
+from tribolab.campaign.surfaces.stage import SurfaceTask, process_surface
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf

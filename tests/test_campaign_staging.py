@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tribolab.campaign import staging
-from tribolab.campaign.ledger import MARKER, Ledger
-from tribolab.campaign.staging import staged
+from tribolab.campaign.store import staging
+from tribolab.campaign.store.ledger import MARKER, Ledger
+from tribolab.campaign.store.staging import staged
 from tribolab.errors import ConfigError, OutputError
 
 
@@ -59,7 +59,7 @@ def test_without_an_exchange_of_folders_two_renames_do(tmp_path, monkeypatch):
 KILLED = """
 import os, signal
 from pathlib import Path
-from tribolab.campaign import staging
+from tribolab.campaign.store import staging
 
 output, moment = Path({output!r}), {moment!r}
 die = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
@@ -215,7 +215,7 @@ def test_brackets_and_stars_in_the_name_are_no_wildcards(tmp_path, name):
 INSIDE = """
 import os, signal
 from pathlib import Path
-from tribolab.campaign import staging
+from tribolab.campaign.store import staging
 
 staging.os.path.ismount = lambda path: True
 output, moment = Path({output!r}), {moment!r}

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
 
 DIALECT = """

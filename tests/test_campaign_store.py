@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tribolab.campaign.store import CATALOGUE, Catalogue, Store
+from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Store
 from tribolab.provenance import sha256_of_file
 from tribolab.records.mode_record import EvidenceRow, ModeRecord
 from tribolab.records.part_records import (
@@ -190,7 +190,7 @@ def read(monkeypatch):
         names.append(path.name)
         return sha256_of_file(path)
 
-    monkeypatch.setattr("tribolab.campaign.store.sha256_of_file", checksum)
+    monkeypatch.setattr("tribolab.campaign.store.catalogue.sha256_of_file", checksum)
     return names
 
 

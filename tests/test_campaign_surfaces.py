@@ -17,10 +17,10 @@ import tribolab
 from tribolab import rig
 from tribolab.app.run import run_campaign
 from tribolab.app.truth_surfaces import compare_surfaces
-from tribolab.campaign.load import load_campaign
-from tribolab.campaign.store import CATALOGUE, Store
-from tribolab.campaign.surface_plan import PlannedMedium, PlannedSurface, plan_surfaces
-from tribolab.campaign.surfaces import Surfaces, SurfaceTask, process_surface
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.store.catalogue import CATALOGUE, Store
+from tribolab.campaign.surfaces.plan import PlannedMedium, PlannedSurface, plan_surfaces
+from tribolab.campaign.surfaces.stage import Surfaces, SurfaceTask, process_surface
 from tribolab.cli import app
 from tribolab.contact.adhesion import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width

@@ -7,8 +7,8 @@ import xarray as xr
 from campaigns import simulated
 
 from tribolab.app.truth import compare_run, summary, write_truth
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 
 
 def true_segments():

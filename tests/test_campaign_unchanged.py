@@ -8,11 +8,11 @@ import pytest
 from campaigns import RUNS, copied, fingerprint, simulated
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign import runs as runs_module
-from tribolab.campaign.load import load_and_plan
-from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.store import Store
-from tribolab.campaign.unchanged import note, unchanged
+from tribolab.campaign.runs import stage as runs_module
+from tribolab.campaign.settings.load import load_and_plan
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.outcome import Outcome
+from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.records.parts import CurveOutcome, RunOutcome
 
 OPTIONS = {"figures": "none", "pdf": False}
@@ -50,7 +50,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
         for name in ("process", "write_report"):
             place = "campaign.pipeline" if name == "process" else "report.results"
             guarded.setattr(f"tribolab.{place}.{name}", refuse)
-        guarded.setattr("tribolab.campaign.store.sha256_of_file", refuse)
+        guarded.setattr("tribolab.campaign.store.catalogue.sha256_of_file", refuse)
         guarded.setattr("tribolab.io.netcdf.read_netcdf", refuse)
         again = run(campaign, finish=refuse)
     assert fingerprint(first.folder) == before and first.folder.stat() == folder

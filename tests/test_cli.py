@@ -19,7 +19,7 @@ from reporting import made_outcome
 import tribolab
 from tribolab import cli
 from tribolab.app.progress import progress_bars
-from tribolab.campaign.config import Qc
+from tribolab.campaign.settings.config import Qc
 from tribolab.records.parts import ModelOutcome
 
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}

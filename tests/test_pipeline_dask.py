@@ -13,10 +13,10 @@ import pytest
 from campaigns import simulated
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign.cluster import ClusterGone
-from tribolab.campaign.executor import workers
-from tribolab.campaign.load import load_campaign
+from tribolab.campaign.engine.cluster import ClusterGone
+from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError
 
 distributed = pytest.importorskip("distributed")
@@ -64,7 +64,7 @@ def test_a_cluster_does_every_run_though_one_worker_is_killed(cluster, tmp_path)
 def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(
     tmp_path, victims, monkeypatch
 ):
-    monkeypatch.setattr("tribolab.campaign.cluster.PATIENCE", 3.0)
+    monkeypatch.setattr("tribolab.campaign.engine.cluster.PATIENCE", 3.0)
     campaign = simulated(tmp_path, repeats=1)
     levels = _levels()
     heard: set[str] = set()
@@ -118,7 +118,7 @@ def _processes(folder):
 
 @pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_is_one_clear_error(monkeypatch):
-    monkeypatch.setattr("tribolab.campaign.cluster.DASK_TIMEOUT", "1s")
+    monkeypatch.setattr("tribolab.campaign.engine.cluster.DASK_TIMEOUT", "1s")
     with (
         pytest.raises(ConfigError, match=r"no Dask scheduler answers at tcp://127.0.0.1:1;"),
         workers(scheduler="tcp://127.0.0.1:1"),

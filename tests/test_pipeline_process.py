@@ -17,12 +17,12 @@ from campaigns import RUNS, copied, fingerprint, simulated
 
 import tribolab
 import tribolab as tl
-from tribolab.campaign import runs
-from tribolab.campaign.executor import workers
-from tribolab.campaign.load import load_campaign
+from tribolab.campaign.engine.executor import workers
+from tribolab.campaign.engine.pool import WorkerDied
 from tribolab.campaign.pipeline import process
-from tribolab.campaign.plan import planned_runs
-from tribolab.campaign.pool import WorkerDied
+from tribolab.campaign.runs import stage
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.plan import planned_runs
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.traces import trace_size
@@ -151,11 +151,12 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     def broken(run):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr(runs, "analyse", broken)
+    monkeypatch.setattr(stage, "analyse", broken)
     outcome = process(load_campaign(campaign), tmp_path)
     assert outcome.curves == ()
     assert outcome.runs[0].error == "ZeroDivisionError"
-    assert outcome.runs[0].reason.startswith("crashed with ZeroDivisionError at runs.py:")
+    said = "crashed with ZeroDivisionError at campaign/runs/stage.py:"
+    assert outcome.runs[0].reason.startswith(said)
 
 
 def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
@@ -338,7 +339,7 @@ def test_a_script_without_its_guard_is_told_so_and_harms_nothing(campaign, tmp_p
 def test_a_worker_hands_back_a_record_not_signals(original, tmp_path):
     (tmp_path / "data").mkdir()
     run = planned_runs(load_campaign(original))[0]
-    answer = runs.process_run(runs.RunTask(run, tmp_path, *trace_size(10_000)))
+    answer = stage.process_run(stage.RunTask(run, tmp_path, *trace_size(10_000)))
     assert (tmp_path / answer.record.outcome.data_file).stat().st_size > 50_000
     assert len(pickle.dumps(answer)) < 50_000
 

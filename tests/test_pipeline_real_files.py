@@ -2,8 +2,8 @@
 
 import pytest
 
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
 
 TEXT = """

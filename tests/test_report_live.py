@@ -14,7 +14,7 @@ from chromium import BROWSER, chromium
 from report_pages import DRAW_ALL, FLAGGED, LONG, OPEN_ALL, RUNS, figures_of, made, page_of
 from reporting import made_run
 
-from tribolab.campaign.store import Catalogue
+from tribolab.campaign.store.catalogue import Catalogue
 from tribolab.report import page as page_module
 
 FAILED = "the page could not be opened: no chromium was found"

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign.store import Catalogue
+from tribolab.campaign.store.catalogue import Catalogue
 
 CAMPAIGN = """[campaign]
 name = "real files"

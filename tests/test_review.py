@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.app.run import run_campaign
-from tribolab.campaign.load import load_campaign
-from tribolab.campaign.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient

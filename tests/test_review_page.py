@@ -12,7 +12,7 @@ from chromium import BROWSER, chromium
 from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, rows_of
 
 from tribolab.app.run import run_campaign
-from tribolab.campaign.review import REVIEW_FILE, load_review
+from tribolab.campaign.settings.review import REVIEW_FILE, load_review
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision

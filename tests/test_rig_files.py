@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tribolab import rig
-from tribolab.campaign.load import load_campaign
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError, ReadError
 from tribolab.rig.files import fixed_table, force_file, motion_file
 

@@ -59,7 +59,7 @@ def test_a_stream_that_is_closed_changes_nothing_but_what_is_shown(closed):
 
 STOPPED = """
 import sys, time
-from tribolab.campaign.staging import staged
+from tribolab.campaign.store.staging import staged
 from tribolab.app.streams import Terminated, prepared
 try:
     with prepared(), staged(sys.argv[1]) as folder:

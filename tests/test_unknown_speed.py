@@ -12,8 +12,8 @@ from rich.console import Console
 from tribolab import cli
 from tribolab.app import terminal
 from tribolab.campaign import curves
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run_checks import check_run
 from tribolab.records.part_records import CurveRecord

@@ -6,8 +6,8 @@ import xarray as xr
 from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops

@@ -69,8 +69,8 @@ _PUBLIC = {
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
-    "load_campaign": "tribolab.campaign.load",
-    "load_review": "tribolab.campaign.review",
+    "load_campaign": "tribolab.campaign.settings.load",
+    "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
     "TribolabError": "tribolab.errors",
     "plot": "",
@@ -141,8 +141,8 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.app.run import run_campaign
-    from tribolab.campaign.load import load_campaign
-    from tribolab.campaign.review import load_review
+    from tribolab.campaign.settings.load import load_campaign
+    from tribolab.campaign.settings.review import load_review
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution

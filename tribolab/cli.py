@@ -15,7 +15,7 @@ from tribolab.app.streams import Terminated, prepared, say
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.store.outcome import Outcome
 
 USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
 _MANY = 12  # files, from which on it pays to start other processes
@@ -227,7 +227,7 @@ def simulate(
         tribolab simulate faulty --small --fault spikes --fault sign
     """
     with _reported(debug):
-        from tribolab.campaign.executor import workers
+        from tribolab.campaign.engine.executor import workers
         from tribolab.rig import simulate_campaign
 
         with progress_bars(quiet) as progress, workers(jobs) as pool:
@@ -306,7 +306,7 @@ def info(
     """
     with _reported(debug):
         from tribolab.app.file_info import Descriptions
-        from tribolab.campaign.engine import perform
+        from tribolab.campaign.engine.stage import perform
 
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             tell = progress or (lambda stage, done, total: None)
@@ -372,7 +372,7 @@ def _pool(
     jobs: int | None, files: Sequence[Path]
 ) -> contextlib.AbstractContextManager[Executor | None]:
     """Return processes to look at files in; a few files are looked at here, which is sooner."""
-    from tribolab.campaign.executor import workers
+    from tribolab.campaign.engine.executor import workers
 
     return workers(1 if jobs is None and len(files) < _MANY else jobs)
 

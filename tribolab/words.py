@@ -180,7 +180,9 @@ def explain(error: BaseException) -> tuple[str, str]:
     if frames := traceback.extract_tb(error.__traceback__):
         ours = [frame for frame in frames if Path(frame.filename).is_relative_to(_PACKAGE)]
         frame = (ours or frames)[-1]
-        where = f" at {Path(frame.filename).name}:{frame.lineno}"
+        file = Path(frame.filename)
+        place = file.relative_to(_PACKAGE).as_posix() if ours else file.name
+        where = f" at {place}:{frame.lineno}"
     return f"crashed with {name}{where}: {text}" if text else f"crashed with {name}{where}", name
 
 

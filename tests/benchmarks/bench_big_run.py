@@ -54,8 +54,8 @@ import importlib, resource, sys, time
 from pathlib import Path
 sys.path.insert(0, {root!r})
 import netCDF4, pyarrow.csv, scipy.signal, scipy.stats, xarray
-from tribolab.campaign import runs
-from tribolab.campaign.plan import PlannedRun
+from tribolab.campaign.runs import stage
+from tribolab.campaign.settings.plan import PlannedRun
 
 def timed(module, name, part):
     place = importlib.import_module(module)
@@ -78,13 +78,13 @@ timed(friction + "segments.find", "find_segments", "segments")
 timed(friction + "coefficient.coefficient", "friction_coefficient", "coefficient")
 timed(friction + "oscillation.stick_slip", "stick_slip", "stick-slip")
 timed("tribolab.qc.run_checks", "check_run", "checks")
-timed("tribolab.campaign.runs", "write_data", "write")
-timed("tribolab.campaign.runs", "_trace", "trace")
+timed("tribolab.campaign.runs.stage", "write_data", "write")
+timed("tribolab.campaign.runs.stage", "_trace", "trace")
 folder = Path({folder!r})
 run = PlannedRun("big", (folder / "big.csv",), ("big.csv",), "S", "dry", 31.0, None, None,
                  str(folder / "bench.toml"))
 clock, cpu = time.perf_counter(), time.process_time()
-record = runs.process_run(runs.RunTask(run, folder)).record
+record = stage.process_run(stage.RunTask(run, folder)).record
 spent = time.process_time() - cpu, time.perf_counter() - clock
 print("%-12s %7.2f s CPU %7.2f s   peak %6.0f MB" % ("all", *spent, peak()))
 outcome = record.outcome

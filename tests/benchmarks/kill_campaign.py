@@ -34,7 +34,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 from campaigns import fingerprint, simulated
 
-from tribolab.campaign.ledger import Ledger, _digest
+from tribolab.campaign.store.ledger import Ledger, _digest
 
 # What is stated before and after the change: segments (so runs and curves) and modulus (so
 # contact and models) all follow.

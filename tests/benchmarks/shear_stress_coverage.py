@@ -29,8 +29,8 @@ import pandas as pd
 import xarray as xr
 from scipy import stats
 
-from tribolab.campaign.load import load_campaign
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.io.netcdf import read_netcdf

@@ -70,7 +70,7 @@ def _thesis(folder: Path) -> str:
 
 @case("loss 2: a copied marker makes nothing ours", codes=(USAGE,), after=_thesis, large=True)
 def _(folder: Path) -> Command:
-    from tribolab.campaign.ledger import MARKER
+    from tribolab.campaign.store.ledger import MARKER
 
     file = campaign(folder, results=True)
     (folder / "thesis").mkdir()

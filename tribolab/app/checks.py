@@ -15,7 +15,7 @@ from rich.table import Table
 
 from tribolab.app.file_info import read_scan
 from tribolab.app.streams import say
-from tribolab.campaign.engine import Progress, Stage, perform
+from tribolab.campaign.engine.stage import Progress, Stage, perform
 from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.logs import group_files

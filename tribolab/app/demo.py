@@ -11,12 +11,12 @@ import pandas as pd
 from tribolab.app.truth import Comparison, compare_with_truth, write_truth
 from tribolab.app.truth_shear_stress import compare_shear_stress, write_truth_shear_stress
 from tribolab.app.truth_surfaces import compare_surfaces, write_truth_surfaces
-from tribolab.campaign.executor import workers
+from tribolab.campaign.engine.executor import workers
 from tribolab.report import tables
 
 if TYPE_CHECKING:
-    from tribolab.campaign.engine import Progress
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.engine.stage import Progress
+    from tribolab.campaign.store.outcome import Outcome
 
 
 @dataclass(frozen=True)

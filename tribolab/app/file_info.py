@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tribolab.app.ranges import range_of
-from tribolab.campaign.engine import Stage
+from tribolab.campaign.engine.stage import Stage
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect

@@ -7,16 +7,16 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
-from tribolab.campaign.config import Campaign
-from tribolab.campaign.engine import Progress
-from tribolab.campaign.executor import workers
-from tribolab.campaign.ledger import Ledger
-from tribolab.campaign.load import load_and_plan
-from tribolab.campaign.outcome import Outcome
-from tribolab.campaign.plan import inputs_of, planned_runs
-from tribolab.campaign.staging import resolved, staged
-from tribolab.campaign.store import Catalogue
-from tribolab.campaign.unchanged import note, unchanged
+from tribolab.campaign.engine.executor import workers
+from tribolab.campaign.engine.stage import Progress
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.load import load_and_plan
+from tribolab.campaign.settings.plan import inputs_of, planned_runs
+from tribolab.campaign.store.catalogue import Catalogue
+from tribolab.campaign.store.ledger import Ledger
+from tribolab.campaign.store.outcome import Outcome
+from tribolab.campaign.store.staging import resolved, staged
+from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.errors import ConfigError
 from tribolab.report.figure_choice import wanted
 

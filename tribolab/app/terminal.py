@@ -12,7 +12,7 @@ from rich.segment import Segment
 from rich.table import Table
 
 from tribolab.app.ranges import range_of
-from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome

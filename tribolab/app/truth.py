@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import AnalysisError
 from tribolab.report import tables
 

@@ -10,7 +10,7 @@ import pandas as pd
 from tribolab.report import tables
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.store.outcome import Outcome
 
 COLUMNS = [
     *("curve", "surface", "medium", "normal_force_N"),

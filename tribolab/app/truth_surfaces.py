@@ -12,7 +12,7 @@ from tribolab.records.parts import Row, number_of
 from tribolab.report import tables
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.store.outcome import Outcome
 
 COLUMNS = [
     "surface",

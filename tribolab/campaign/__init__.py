@@ -1,1 +1,1 @@
-"""Campaigns: the typed campaign file and the pipeline over its runs."""
+"""Campaigns: files of settings, and the stages over runs, curves, surfaces and models."""

@@ -8,12 +8,12 @@ from pathlib import Path
 from traceback import format_exception
 from typing import TYPE_CHECKING, Any
 
-from tribolab.campaign.data_files import NETCDF, digest, write_data
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.plan import distinct, safe_name
-from tribolab.campaign.run_analysis import AS_FOUND as FRICTION_AS_FOUND
-from tribolab.campaign.runs import RunCame
-from tribolab.campaign.store import Store
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
+from tribolab.campaign.runs.stage import RunCame
+from tribolab.campaign.settings.plan import distinct, safe_name
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import NETCDF, digest, write_data
 from tribolab.errors import TribolabError
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import CurveRecord, Origin

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.campaign.curves import SLIP
-from tribolab.campaign.data_files import optional_data, read_data
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.store import Store
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.mode.model import Mode
 from tribolab.provenance import sha256_of
 from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
@@ -21,7 +21,7 @@ from tribolab.records.parts import CurveOutcome, Row, number_of
 from tribolab.words import explain
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 KIND = "mode"
 _ROUGH_ENOUGH = 0.0  # J/m2: a surface without macroscopic adhesion slides steadily

@@ -9,21 +9,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.curves import Curves
-from tribolab.campaign.data_files import UNFINISHED
-from tribolab.campaign.engine import Progress, perform
-from tribolab.campaign.kept import keep_runs
-from tribolab.campaign.models import Models
-from tribolab.campaign.outcome import OpenOutcome
-from tribolab.campaign.plan import PlannedRun, planned_runs
-from tribolab.campaign.pool import WorkerDied
-from tribolab.campaign.review import lost_decisions
-from tribolab.campaign.runs import RunCame, Runs
-from tribolab.campaign.store import Store
-from tribolab.campaign.surfaces import Surfaces
-from tribolab.campaign.zeros import to_lend
+from tribolab.campaign.engine.pool import WorkerDied
+from tribolab.campaign.engine.stage import Progress, perform
+from tribolab.campaign.models.stage import Models
+from tribolab.campaign.runs.kept import keep_runs
+from tribolab.campaign.runs.stage import RunCame, Runs
+from tribolab.campaign.runs.zeros import to_lend
+from tribolab.campaign.settings.plan import PlannedRun, planned_runs
+from tribolab.campaign.settings.review import lost_decisions
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import UNFINISHED
+from tribolab.campaign.store.outcome import OpenOutcome
+from tribolab.campaign.surfaces.stage import Surfaces
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 
 def process(

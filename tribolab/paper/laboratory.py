@@ -12,9 +12,9 @@ from tribolab.errors import AnalysisError
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
-    from tribolab.campaign.outcome import Outcome
-    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.store.outcome import Outcome
+    from tribolab.campaign.surfaces.plan import PlannedSurface
 
 Progress = Callable[[str, int, int], None]
 FOLDER = "simulated"
@@ -46,7 +46,7 @@ def simulate(
     laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
 ) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
-    from tribolab.campaign.load import load_campaign
+    from tribolab.campaign.settings.load import load_campaign
     from tribolab.rig import Protocol, Rig, simulate_campaign
 
     file = simulate_campaign(
@@ -79,7 +79,7 @@ def analyse(
         If a run failed.
     """
     from tribolab.campaign.pipeline import process
-    from tribolab.campaign.surface_plan import plan_surfaces
+    from tribolab.campaign.surfaces.plan import plan_surfaces
 
     runs_only = campaign.model_copy(
         update={"surface": (), "model": campaign.model.model_copy(update={"compute": False})}

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.campaign.executor import completed, workers
-from tribolab.campaign.staging import staged
+from tribolab.campaign.engine.executor import completed, workers
+from tribolab.campaign.store.staging import staged
 from tribolab.paper import laboratory as lab
 from tribolab.paper.data import SURFACES, PaperData
 from tribolab.paper.document import context_of, paper_document, shown_sections
@@ -23,8 +23,8 @@ from tribolab.report import tables
 from tribolab.report.templating import framed
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import Outcome
-    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.campaign.store.outcome import Outcome
+    from tribolab.campaign.surfaces.plan import PlannedSurface
 
 Progress = Callable[[str, int, int], None]
 

@@ -13,7 +13,7 @@ from tribolab.studies import xu2026
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.records.parts import CurveOutcome
 
 Computed = tuple[dict[str, "xr.Dataset"], list[dict[str, Any]]]  # groups of a file, and rows
@@ -55,7 +55,7 @@ def compute(task: Task) -> list[dict[str, Any]]:
     """Compute a task, write its data file, and return its rows if it has any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
-        from tribolab.campaign.data_files import write_data
+        from tribolab.campaign.store.data_files import write_data
 
         root = _root(task)
         write_data({None: root} | groups, data_file(task.folder, task.kind, task.surface))
@@ -77,7 +77,7 @@ def _origin(task: Task) -> dict[str, str]:
     There is no checksum of a file where there is no file; the settings are then the constants.
     """
     if task.scans is not None:
-        from tribolab.campaign.surfaces import named, sources_of
+        from tribolab.campaign.surfaces.stage import named, sources_of
 
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return named(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
@@ -101,7 +101,7 @@ def _dry(task: Task) -> Computed:
 
 def _spectrum(task: Task) -> Computed:
     """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
-    from tribolab.campaign.surface_scans import spectra, usable_scans
+    from tribolab.campaign.surfaces.scans import spectra, usable_scans
 
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.campaign.outcome import Outcome
+from tribolab.campaign.store.outcome import Outcome
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, Row, number_of
 from tribolab.records.run_record import RunRecord

@@ -19,8 +19,8 @@ from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.words import many, span
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.store.outcome import Outcome
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome
     from tribolab.records.run_record import RunRecord
 

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.store import Store
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice

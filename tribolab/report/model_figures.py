@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.store.outcome import Outcome
     from tribolab.records.parts import ModelOutcome
 
 _NO_MODEL = ": no shear stress describes this curve, so only the model's viscous part is drawn"

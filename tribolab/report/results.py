@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.campaign.engine import Progress, perform
+from tribolab.campaign.engine.stage import Progress, perform
 from tribolab.campaign.modes import Modes
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
@@ -32,7 +32,7 @@ from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import surface_record, table
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import OpenOutcome, Outcome
+    from tribolab.campaign.store.outcome import OpenOutcome, Outcome
     from tribolab.records.parts import RunOutcome
 
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")

@@ -10,12 +10,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribolab.campaign.review import REVIEW_FILE, load_entries
-from tribolab.campaign.toml_file import text_of
+from tribolab.campaign.settings.review import REVIEW_FILE, load_entries
+from tribolab.campaign.settings.toml_file import text_of
 from tribolab.provenance import as_text
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*decision[ \t]*\]\]", re.MULTILINE)
 _ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines that end a text

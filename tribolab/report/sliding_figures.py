@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from tribolab.campaign.outcome import Outcome
+    from tribolab.campaign.store.outcome import Outcome
     from tribolab.plot.stick_slip import Trace
     from tribolab.records.parts import CurveOutcome
 

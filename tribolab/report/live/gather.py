@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine import perform
+from tribolab.campaign.engine.stage import perform
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
@@ -22,7 +22,7 @@ from tribolab.report.live.surfaces import record_of_surfaces
 from tribolab.report.model_records import ModelRow
 
 if TYPE_CHECKING:
-    from tribolab.campaign.outcome import OpenOutcome
+    from tribolab.campaign.store.outcome import OpenOutcome
     from tribolab.records.parts import CurveOutcome
 
 _SLOWEST = 2  # speeds of each condition whose traces are drawn

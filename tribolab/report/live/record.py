@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.store import Store
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.parts import Notice
 from tribolab.report.live.figure import ShownFigure

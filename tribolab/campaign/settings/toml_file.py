@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from tribolab.campaign import problems
+from tribolab.campaign.settings import problems
 from tribolab.errors import ConfigError
 
 Model = TypeVar("Model", bound=BaseModel)

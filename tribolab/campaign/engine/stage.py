@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from typing import ClassVar, Generic, TypeVar
 
-from tribolab.campaign.executor import completed
+from tribolab.campaign.engine.executor import completed
 from tribolab.errors import OutputError
 
 Task = TypeVar("Task")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.campaign.plan import PlannedRun
-from tribolab.campaign.zeros import attributes
+from tribolab.campaign.runs.zeros import attributes
+from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.errors import ConfigError
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from tribolab.records.parts import Finding
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.qc.findings import Findings
 
 _FAILED = ("fail", "error")

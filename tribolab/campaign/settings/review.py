@@ -9,9 +9,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from tribolab.campaign.fields import Si, Text
-from tribolab.campaign.problems import Problem, message
-from tribolab.campaign.toml_file import checked, text_of
+from tribolab.campaign.settings.fields import Si, Text
+from tribolab.campaign.settings.problems import Problem, message
+from tribolab.campaign.settings.toml_file import checked, text_of
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
 

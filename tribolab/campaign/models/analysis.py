@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from tribolab.campaign.data_files import optional_data, read_data
-from tribolab.campaign.model_plan import PlannedModel
+from tribolab.campaign.models.plan import PlannedModel
+from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.errors import AnalysisError
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp

@@ -21,7 +21,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from tribolab.campaign.data_files import link
+from tribolab.campaign.store.data_files import link
 from tribolab.provenance import sha256_of_file
 from tribolab.records.parts import PageTrace, Source
 

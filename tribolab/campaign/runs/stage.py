@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
-from tribolab.campaign.data_files import write_data
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.plan import PlannedRun
-from tribolab.campaign.run_analysis import QUALITY, analyse, labels_of
-from tribolab.campaign.store import Entry, Store
-from tribolab.campaign.zeros import zero_of
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.runs.analysis import QUALITY, analyse, labels_of
+from tribolab.campaign.runs.zeros import zero_of
+from tribolab.campaign.settings.plan import PlannedRun
+from tribolab.campaign.store.catalogue import Entry, Store
+from tribolab.campaign.store.data_files import write_data
 from tribolab.errors import AnalysisError, OutputError, told
 from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.data_files import digest, write_data
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.kept import kept_surface
-from tribolab.campaign.runs import source_of
-from tribolab.campaign.store import Store
-from tribolab.campaign.surface_plan import PlannedSurface, plan_surfaces
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.runs.stage import source_of
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import digest, write_data
+from tribolab.campaign.surfaces.kept import kept_surface
+from tribolab.campaign.surfaces.plan import PlannedSurface, plan_surfaces
 from tribolab.errors import OutputError
 from tribolab.provenance import made, sha256_of
 from tribolab.records.part_records import SurfaceRecord
@@ -23,8 +23,8 @@ from tribolab.words import explain
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.config import Campaign
-    from tribolab.campaign.surface_scans import CheckedScans
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.surfaces.scans import CheckedScans
 
 KIND = "surface"
 SCANS = "scans"  # group of the scans as they were read, with their quality flags
@@ -129,7 +129,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         text = "no scans are named, so its roughness and contact are not computed"
         note = Finding("note", text)
         return SurfaceRecord(SurfaceOutcome(surface.name, (), "skipped", findings=(note,)))
-    from tribolab.campaign.surface_scans import usable_scans
+    from tribolab.campaign.surfaces.scans import usable_scans
 
     sources = sources_of(surface)
     checked: CheckedScans | None = None
@@ -173,8 +173,8 @@ def analyse(
     TribolabError
         If the scans have no spectrum.
     """
-    from tribolab.campaign.surface_contact import contact_groups, lowest_wavenumber
-    from tribolab.campaign.surface_scans import spectra
+    from tribolab.campaign.surfaces.contact import contact_groups, lowest_wavenumber
+    from tribolab.campaign.surfaces.scans import spectra
 
     findings = list(checked.findings)
     q_low = lowest_wavenumber(surface)

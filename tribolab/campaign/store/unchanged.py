@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tribolab.campaign.ledger import Ledger
-from tribolab.campaign.outcome import OpenOutcome, Outcome
-from tribolab.campaign.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
-from tribolab.campaign.review import REVIEW_FILE, lost_decisions
-from tribolab.campaign.store import Catalogue, Identity
+from tribolab.campaign.settings.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
+from tribolab.campaign.store.catalogue import Catalogue, Identity
+from tribolab.campaign.store.ledger import Ledger
+from tribolab.campaign.store.outcome import OpenOutcome, Outcome
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
     CurveOutcome,
@@ -24,7 +24,7 @@ from tribolab.records.parts import (
 )
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 Part = TypeVar("Part", RunOutcome, SurfaceOutcome, ModelOutcome)
 _FACT = "made from"
@@ -133,7 +133,7 @@ def _as_before(parts: Sequence[Part]) -> tuple[Part, ...]:
 
 
 def _dialect(campaign: Campaign, instrument: str) -> str:
-    from tribolab.campaign.plan import instrument_of
+    from tribolab.campaign.settings.plan import instrument_of
 
     return sha256_of_dialect(instrument_of(campaign, instrument))
 

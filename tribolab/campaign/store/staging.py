@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from tribolab.campaign.ledger import MARKER, Ledger, other_name
+from tribolab.campaign.store.ledger import MARKER, Ledger, other_name
 from tribolab.errors import ConfigError, OutputError
 
 _RENAME_EXCHANGE = 2

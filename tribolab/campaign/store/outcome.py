@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
-    from tribolab.campaign.store import Catalogue, Store
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.store.catalogue import Catalogue, Store
     from tribolab.records.parts import (
         CurveOutcome,
         ModelOutcome,

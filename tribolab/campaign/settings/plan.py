@@ -11,14 +11,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribolab.campaign.problems import Problem, message
-from tribolab.campaign.review import REVIEW_FILE, review_beside
+from tribolab.campaign.settings.problems import Problem, message
+from tribolab.campaign.settings.review import REVIEW_FILE, review_beside
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
 from tribolab.provenance import as_text, sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign, RunEntry, Surface
+    from tribolab.campaign.settings.config import Campaign, RunEntry, Surface
 
 _LONGEST_NAME = 100
 

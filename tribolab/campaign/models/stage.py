@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribolab.campaign.data_files import optional_data, write_data
-from tribolab.campaign.engine import Stage
-from tribolab.campaign.kept import kept_model
-from tribolab.campaign.model_plan import PlannedModel, plan_models
-from tribolab.campaign.store import Store
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.models.kept import kept_model
+from tribolab.campaign.models.plan import PlannedModel, plan_models
+from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.data_files import optional_data, write_data
 from tribolab.errors import OutputError
 from tribolab.provenance import made, sha256_of
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
@@ -22,7 +22,7 @@ from tribolab.words import explain
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 KIND = "model"
 
@@ -119,7 +119,7 @@ def process_model(task: ModelTask) -> ModelRecord:
     OutputError
         If the results cannot be written.
     """
-    from tribolab.campaign.model_analysis import analyse
+    from tribolab.campaign.models.analysis import analyse
     from tribolab.records.model_rows import model_rows
 
     began = time.monotonic()

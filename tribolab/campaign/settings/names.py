@@ -7,12 +7,12 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.plan import instrument_of
-from tribolab.campaign.problems import Problem
+from tribolab.campaign.settings.plan import instrument_of
+from tribolab.campaign.settings.problems import Problem
 from tribolab.errors import ConfigError, nearest, shown
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
 
 
 def of_names(campaign: Campaign) -> list[Problem]:

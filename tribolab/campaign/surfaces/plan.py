@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribolab.campaign.plan import (
+from tribolab.campaign.settings.plan import (
     distinct,
     instrument_of,
     label_of,
@@ -18,7 +18,7 @@ from tribolab.campaign.plan import (
 from tribolab.provenance import sha256_of, sha256_of_file
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
     from tribolab.records.parts import RunOutcome
 
 

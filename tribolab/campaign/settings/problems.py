@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import BaseModel, ValidationError
 
-from tribolab.campaign.toml_lines import line_of
+from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import nearest, shown
 
 if TYPE_CHECKING:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.campaign import problems
-from tribolab.campaign.config import Campaign
-from tribolab.campaign.names import of_names
-from tribolab.campaign.plan import PlannedRun, plan
-from tribolab.campaign.toml_file import checked, text_of
+from tribolab.campaign.settings import problems
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.names import of_names
+from tribolab.campaign.settings.plan import PlannedRun, plan
+from tribolab.campaign.settings.toml_file import checked, text_of
 from tribolab.errors import ConfigError
 
 

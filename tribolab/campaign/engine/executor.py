@@ -14,8 +14,8 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from tribolab.campaign.cluster import LOOK, Cluster, ClusterGone, dask_executor, gone
-from tribolab.campaign.pool import LastingPool
+from tribolab.campaign.engine.cluster import LOOK, Cluster, ClusterGone, dask_executor, gone
+from tribolab.campaign.engine.pool import LastingPool
 from tribolab.errors import ConfigError, brief
 
 

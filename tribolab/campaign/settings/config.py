@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
-from tribolab.campaign.fields import Patterns, PositiveSi, ShareOfEnds, Si, Spread, Text
+from tribolab.campaign.settings.fields import Patterns, PositiveSi, ShareOfEnds, Si, Spread, Text
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 
 if TYPE_CHECKING:

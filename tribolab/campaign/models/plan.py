@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.provenance import joined_sources, sha256_of
 
 if TYPE_CHECKING:
-    from tribolab.campaign.config import Campaign
+    from tribolab.campaign.settings.config import Campaign
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tribolab.campaign.config import campaign_schema
+from tribolab.campaign.settings.config import campaign_schema
 from tribolab.friction.segments.find import find_segments
 from tribolab.quantities import QUANTITIES, Quantity
 from tribolab.turns import reciprocal

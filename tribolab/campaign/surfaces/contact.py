@@ -15,7 +15,7 @@ from tribolab.validity import together
 from tribolab.words import explain
 
 if TYPE_CHECKING:
-    from tribolab.campaign.surface_plan import PlannedSurface
+    from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.contact.geometry import LineContact
 
 Groups = dict[str, xr.Dataset]

@@ -1,0 +1,1 @@
+"""Where and how work is done: stages, executors, pools and clusters."""

@@ -1,0 +1,1 @@
+"""The runs of a campaign: analysed, checked, written and recorded."""

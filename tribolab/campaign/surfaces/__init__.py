@@ -1,0 +1,1 @@
+"""The surfaces of a campaign: scans, spectrum, roughness, contact and adhesion."""

@@ -1,0 +1,81 @@
+"""Earlier surfaces that are kept because their scans or their modulus cannot be read now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.settings.named import is_named
+from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
+from tribolab.records.part_records import SurfaceRecord
+from tribolab.records.parts import Finding
+
+if TYPE_CHECKING:
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.store.catalogue import Store
+    from tribolab.campaign.surfaces.plan import PlannedSurface
+
+
+def kept_surface(
+    campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
+) -> tuple[SurfaceRecord, bool]:
+    """Return the earlier record of a surface some of whose files cannot be read now.
+
+    They are its scans and its modulus. Without such files, or without earlier results, the record
+    comes back as it is.
+
+    Returns
+    -------
+    tuple of SurfaceRecord and bool
+        The record, and whether it is an earlier one.
+    """
+    now = record.outcome
+    known = store.before.get("surface", now.name, SurfaceRecord)
+    if known is None or store.previous is None or now.status == "skipped":
+        return record, False
+    before, sources = known.record.outcome, known.record.sources
+    if not before.done:
+        return record, False
+    patterns = next(s.scans or () for s in campaign.surface if s.name == now.name)
+    names = [label for label, _, _ in sources]
+    content = {checksum for _, checksum, _ in record.sources}
+    spoilt = _left_out(now.findings, names) - _left_out(before.findings, names)
+    gone = {
+        label
+        for label, checksum, _ in sources
+        if label not in {mine for mine, _, _ in record.sources}
+        and checksum not in content
+        and is_named(campaign, patterns, label)
+    }
+    why = sorted(f"{PurePosixPath(label).name}: {GONE}" for label in gone)
+    why += sorted(f"{PurePosixPath(label).name} cannot be read" for label in spoilt)
+    what = "scans"
+    if planned.modulus_file is not None and planned.modulus_file[1] in names:
+        lost = {"modulus"} & {*before.parts} - {*now.parts}
+        if lost and any(f.severity in ("fail", "error") for f in now.findings if not f.check):
+            what = "scans" if why else "its modulus"
+            why.append(f"{planned.modulus_file[0].name} cannot be read")
+    if not now.done and now.error not in VERDICTS:
+        why.append(now.reason)
+    if not why:
+        return record, False
+    text = kept_text(store.previous / before.data_file, f"{what} cannot be read now ({why[0]})")
+    if not store.link("surface", now.name, before.data_file, planned.data_file):
+        return record, False
+    said = [f for f in before.findings if f.message != before.kept]
+    outcome = replace(
+        before,
+        data_file=planned.data_file,
+        findings=(*said, Finding("fail", text)),
+        reused=False,
+        kept=text,
+    )
+    return replace(known.record, outcome=outcome), True
+
+
+def _left_out(findings: Iterable[Finding], labels: Iterable[str]) -> set[str]:
+    """Return the files of which findings say that they could not be read."""
+    grave = [f.message for f in findings if f.severity == "fail" and not f.check]
+    return {label for label in labels for text in grave if f"scan {label} is left out" in text}
