@@ -183,7 +183,7 @@ def test_the_table_of_runs_the_card_and_the_curve_have_one_error(offset):
     }
     run = xr.Dataset({k: ("segment", v) for k, v in data.items()}, attrs={"offset": offset})
     [curve] = measured_stribeck_curve([run]).friction_coefficient_sem.values
-    [mark] = friction_facts(run)["highlights"]
+    [mark] = friction_facts(run).highlights
     rows = friction_table(run).to_dict("records")
     [point] = run_points("r", rows, offset)
     assert curve == pytest.approx(0.002 / (1 if offset == "half loop" else np.sqrt(2)))

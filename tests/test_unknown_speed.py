@@ -127,7 +127,7 @@ def test_a_trend_that_can_be_told_is_still_told_and_many_samples_show_that_there
 def test_the_report_shows_no_drift_of_zero_where_it_was_not_decided(together):
     for run in together.runs:
         friction = read_netcdf(together.folder / run.data_file, group="friction")
-        assert friction_facts(friction)["relative_drift"] is None
+        assert friction_facts(friction).relative_drift is None
 
 
 def printed(outcome):

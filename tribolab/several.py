@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
 import numpy as np
 
 from tribolab.errors import AnalysisError, Cure
+from tribolab.untyped import Arguments
 from tribolab.validity import together
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ def _dims(value: Any) -> tuple[Hashable, ...]:
     return tuple(getattr(holder, "dims", ()))
 
 
-def _along(function: Callable[..., Any], given: dict[str, Any], dim: Hashable) -> Any:
+def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
     """Call a function for each place along a dim, and put the results together."""
     import xarray as xr
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     return table.rename_axis("variable")
 
 
-def _row(variable: xr.DataArray) -> dict[str, Any]:
+def _row(variable: xr.DataArray) -> dict[str, object]:
     values = variable.to_numpy().ravel()
     missing = np.isnan(values) if values.dtype.kind == "f" else np.zeros(values.size, bool)
     known = values[~missing]

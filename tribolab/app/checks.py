@@ -23,6 +23,7 @@ from tribolab.io.runs import read_run
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run
+from tribolab.untyped import Json
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -292,7 +293,7 @@ def as_json(checked: Sequence[Checked], fail_on: str) -> str:
     return json.dumps(document(checked, fail_on), indent=1, allow_nan=False)
 
 
-def document(checked: Sequence[Checked], fail_on: str) -> dict[str, Any]:
+def document(checked: Sequence[Checked], fail_on: str) -> Json:
     """Return everything as one JSON document; what is not known is null."""
     from tribolab.version import __version__
 

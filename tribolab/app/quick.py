@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+
+from tribolab.untyped import Arguments
 
 _OTHER_ARRAYS = ("dask", "dask.array", "pint", "cupy", "sparse")
 
@@ -18,7 +19,7 @@ def plain_arrays_only() -> None:
     """
     if any(name in sys.modules for name in ("xarray", *_OTHER_ARRAYS)):
         return
-    nothing: dict[str, Any] = dict.fromkeys(_OTHER_ARRAYS)  # None: an import of it fails
+    nothing: Arguments = dict.fromkeys(_OTHER_ARRAYS)  # None: an import of it fails
     sys.modules.update(nothing)
     try:
         import xarray as xr

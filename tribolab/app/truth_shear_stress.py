@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from tribolab.records.parts import Row
 from tribolab.report import tables
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         for run in read_truth(folder).facts["runs"].values()
         if "shear_stress" in run["law"]
     }
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     for fit in tables.read(path).to_dict("records"):
         known = true.get((fit["surface"], fit["medium"], fit["normal_force_N"]))
         if known is None:

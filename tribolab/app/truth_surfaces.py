@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -49,7 +49,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     from tribolab.surface.self_affine import SelfAffine, rms_roughness, rms_slope, tabulate
 
     facts = read_truth(folder).facts
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
 
     def add(surface: str, quantity: str, force: float | None, row: Row, true: float) -> None:
         value, low, high = (_known(row, name) for name in _with_bounds(quantity))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import format_exception
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
@@ -208,7 +208,7 @@ def _condition(run: RunOutcome) -> Condition:
     return run.surface, run.medium, load, alone
 
 
-def _labels(curve: CurveOutcome) -> dict[str, Any]:
+def _labels(curve: CurveOutcome) -> dict[str, str]:
     labels = {"curve_name": curve.name, "runs": "; ".join(curve.run_names)}
     return labels | {key: v for key in ("surface", "medium") if (v := getattr(curve, key))}
 

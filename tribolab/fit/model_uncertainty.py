@@ -17,6 +17,7 @@ from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import CELLS, stribeck_curve
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
+from tribolab.untyped import Arguments
 from tribolab.validity import reasons_of, together
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
@@ -141,7 +142,7 @@ def model_uncertainty(
     speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
     if np.any(speeds <= 0):
         raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
-    given: dict[str, Any] = {
+    given: Arguments = {
         "viscosity": eta,
         "load": force,
         "shear_stress": stress,
@@ -202,7 +203,7 @@ def model_uncertainty(
 def _all_ends(
     contact: LineContact,
     psd: xr.Dataset | None,
-    coarse: dict[str, Any],
+    coarse: Arguments,
     varied: list[Variation],
     reference: xr.Dataset,
     refit: bool,

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from tribolab.untyped import Json
+
 _MARK, _TUPLE = "json:", "json-tuple:"
 
 
-def encoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+def encoded(attrs: Mapping[Any, Any]) -> Json:
     """Return attributes that netCDF takes.
 
     True, False, None, dicts and lists become JSON text behind the mark ``json:``, tuples behind
@@ -25,7 +27,7 @@ def encoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     return {str(name): _encode(value) for name, value in attrs.items()}
 
 
-def decoded(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+def decoded(attrs: Mapping[Any, Any]) -> Json:
     """Return attributes as they were before `encoded`.
 
     Examples

@@ -11,6 +11,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError
 from tribolab.quantities import QUANTITIES
+from tribolab.untyped import Json
 
 _NUMBERS = "fiub"
 # attributes that are reckoned with; of another kind they say nothing
@@ -73,7 +74,7 @@ def _held(variable: xr.DataArray) -> str:
     return "numbers" if variable.dtype.kind in _NUMBERS else "text or dates"
 
 
-def _attributes(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+def _attributes(attrs: Mapping[Any, Any]) -> Json:
     return {str(name): value for name, value in attrs.items() if _says_something(str(name), value)}
 
 

@@ -12,6 +12,7 @@ from tribolab.errors import ReadError
 from tribolab.io.logs import PathLike, group_files
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.runs import read_run
+from tribolab.untyped import Arguments
 
 
 @overload
@@ -95,7 +96,7 @@ def read(
     >>> [run.attrs["source"] for run in read(folder / "*_force.csv")]
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
-    settings: dict[str, Any] = {"pair": pair, "clock_shift": clock_shift}
+    settings: Arguments = {"pair": pair, "clock_shift": clock_shift}
     if not isinstance(path, str | Path) or not is_pattern(path):
         return read_run(path, instrument, **settings)
     files = [file for file in matching(path) if file.is_file()]

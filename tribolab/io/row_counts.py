@@ -17,13 +17,12 @@ import xarray as xr
 from tribolab.io.clocks.clock import Mended
 from tribolab.io.content.model import Content
 from tribolab.io.dialects.model import Dialect
+from tribolab.untyped import Json
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 
 
-def row_attributes(
-    kept: int, contents: list[Content], mended: Mended, dialect: Dialect
-) -> dict[str, Any]:
+def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: Dialect) -> Json:
     """Count the rows of a run's files.
 
     Parameters
@@ -53,9 +52,9 @@ def row_attributes(
     return attrs
 
 
-def _counted(kept: int, reasons: Mapping[str, int]) -> dict[str, Any]:
+def _counted(kept: int, reasons: Mapping[str, int]) -> Json:
     lost = sum(reasons.values())
-    attrs: dict[str, Any] = {"rows_in_file": kept + lost}
+    attrs: Json = {"rows_in_file": kept + lost}
     if lost:
         attrs["rows_left_out"] = lost
         attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in reasons.items() if n)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import numpy as np
 import pandas as pd
@@ -29,6 +29,7 @@ from tribolab.io.row_counts import (
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.stamping import stamp
 from tribolab.units import to_si
+from tribolab.untyped import Json
 
 
 def read_run(
@@ -278,7 +279,7 @@ def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]
 
 def _add_speed(
     columns: dict[str, np.ndarray],
-    attrs: dict[str, Any],
+    attrs: Json,
     time: np.ndarray,
     where: str,
     dialect: Dialect,
@@ -312,13 +313,13 @@ def _check_normal_force(
     )
 
 
-def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> dict[str, Any]:
+def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
     """Provenance, and what else the run should know of its files."""
     from tribolab.version import __version__
 
     labels = {name: label for content in contents for name, label in content.labels.items()}
     unused = dict.fromkeys(name for content in contents for name in content.not_used)
-    attrs: dict[str, Any] = {
+    attrs: Json = {
         "source": "; ".join(as_text(content.path.name) for content in contents),
         "source_sha256": "; ".join(content.sha256 for content in contents),
         "tribolab_version": __version__,

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.io.attributes import encoded
+from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     import netCDF4
@@ -108,7 +109,7 @@ def _by_xarray(file: netCDF4.Dataset, group: str | None, data: xr.Dataset) -> No
     copy.dump_to_store(xr.backends.NetCDF4DataStore(file, group=group))
 
 
-def storage(values: np.ndarray) -> dict[str, Any]:
+def storage(values: np.ndarray) -> Arguments:
     """Say how an array is stored: chunks and filters as netCDF4 takes them; none if it is short.
 
     Notes
@@ -127,7 +128,7 @@ def storage(values: np.ndarray) -> dict[str, Any]:
     """
     if values.dtype.kind not in "fiu" or not values.ndim or values.size <= _LONG:
         return {}
-    layout: dict[str, Any] = {"chunksizes": tuple(min(n, CHUNK) for n in values.shape)}
+    layout: Arguments = {"chunksizes": tuple(min(n, CHUNK) for n in values.shape)}
     sample = _sample(values)
     plain, shuffled = (
         len(zlib.compress(block.tobytes(), _COMPRESSION)) for block in (sample, sample.T)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -30,6 +30,7 @@ from tribolab.studies.verdict import (
     WIDE,
     room_text,
 )
+from tribolab.untyped import Json
 
 SCHEMA_VERSION = "1.1"
 
@@ -123,11 +124,11 @@ def shown_sections() -> list[Section]:
 
 def paper_document(
     table: pd.DataFrame,
-    figures: Sequence[dict[str, Any]],
+    figures: Sequence[Json],
     fits: pd.DataFrame,
     laboratory: Laboratory,
     sources: Sequence[tuple[str, str, int]],
-) -> dict[str, Any]:
+) -> Json:
     """Return all that the page says as plain data: ``paper.json``.
 
     Parameters
@@ -168,7 +169,7 @@ def paper_document(
     )
 
 
-def context_of(document: dict[str, Any]) -> dict[str, Any]:
+def context_of(document: Json) -> Json:
     """Return the document with what its page wants besides."""
     rows = document["numbers"]
     return document | {
@@ -184,7 +185,7 @@ def context_of(document: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _paired(table: pd.DataFrame) -> list[tuple[dict[str, Any], Published]]:
+def _paired(table: pd.DataFrame) -> list[tuple[Json, Published]]:
     """Put every row beside the published number that it is about, of which the order is known."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
@@ -193,7 +194,7 @@ def _paired(table: pd.DataFrame) -> list[tuple[dict[str, Any], Published]]:
     return pairs
 
 
-def _row(record: dict[str, Any], known: Published) -> dict[str, Any]:
+def _row(record: Json, known: Published) -> Json:
     figure = next((one for one in FIGURES if one.has(record)), None)
     section = BY_NAME[figure.name].section if figure else _section(known.where)
     note = str(record["note"])
@@ -208,7 +209,7 @@ def _row(record: dict[str, Any], known: Published) -> dict[str, Any]:
     }
 
 
-def _difference(record: dict[str, Any], known: Published) -> str:
+def _difference(record: Json, known: Published) -> str:
     """Say how a number differs that has no relative difference; "" if it has one or is unknown."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] in (REPRODUCED, BY_CONSTRUCTION):

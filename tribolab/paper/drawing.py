@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
-from tribolab.records.frames import rows_of
 from tribolab.records.wording import with_error
 from tribolab.words import force_text, number, span, speed_text, speeds
 
@@ -256,7 +255,7 @@ def shear_stress(data: PaperData) -> Drawn:
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
         f"in the adhesive area {fit['corrected_shear_stress_Pa'] / 1e6:.3g} MPa"
-        for fit in rows_of(data.fits)
+        for fit in data.fits.to_dict("records")
     )
     return plot.shear_stress(data.fits, surfaces=SURFACES), said
 

@@ -12,6 +12,7 @@ from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import Drawn
 from tribolab.report.figure_files import Drawn as Picture
 from tribolab.report.figure_files import save_figure
+from tribolab.untyped import Json
 
 COMPUTED, SIMULATED = "computed here", "simulated"
 _STAND_IN = (
@@ -270,7 +271,7 @@ class DrawTask:
     data: PaperData
 
 
-def draw(task: DrawTask) -> dict[str, Any]:
+def draw(task: DrawTask) -> Json:
     """Draw a figure into the results and return its record."""
     known = BY_NAME[task.name]
     with _ALONE:

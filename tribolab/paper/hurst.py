@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 from tribolab.records.hurst_words import hurst_verdict
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
+from tribolab.untyped import Json
 
 _SLOPE = 3  # q^3 C: the integrand of the mean square slope
 _ENDLESS = 1e30  # 1/m
@@ -40,7 +40,7 @@ class SteepSpectrum:
     verdict: str
 
 
-def steep_spectra() -> list[dict[str, Any]]:
+def steep_spectra() -> list[Json]:
     """Return what stands on the page for each stand-in spectrum with H above 1.
 
     Examples

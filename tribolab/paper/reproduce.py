@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -18,9 +18,10 @@ from tribolab.paper.data import SURFACES, PaperData
 from tribolab.paper.document import context_of, paper_document, shown_sections
 from tribolab.paper.figures import FIGURES, DrawTask, draw
 from tribolab.paper.work import Task, compute
-from tribolab.records.frames import rows_of
+from tribolab.records.parts import Row
 from tribolab.report import tables
 from tribolab.report.templating import framed
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -45,7 +46,7 @@ class Reproduction:
 
     folder: Path
     table: pd.DataFrame
-    document: dict[str, Any]
+    document: Json
 
 
 def reproduce(
@@ -110,7 +111,7 @@ def _computed(
         tasks.append(Task("wet", name, folder, tuple(forces), tuple(wet)))
     tasks += [Task("dry", name, folder) for name in SURFACES]
     tasks += [Task("spectrum", surface.name, folder, scans=surface) for surface in scans]
-    rows: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    rows: dict[tuple[str, str], list[Row]] = {}
     for task, future in completed(pool, compute, tasks):
         rows[task.kind, task.surface] = future.result()
         tell("theory", len(rows), len(tasks))
@@ -123,7 +124,7 @@ def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """Divide the fitted shear stresses by the growth of the area by adhesion in glycerol."""
     data = PaperData(folder, (), (), fits)
     growth = []
-    for fit in rows_of(fits):
+    for fit in fits.to_dict("records"):
         loads = data.read("dry", fit["surface"], "loads").swap_dims(load="normal_force")
         mine = loads.area_enhancement.sel(medium="glycerol", normal_force=fit["normal_force_N"])
         growth.append(float(mine))
@@ -134,8 +135,8 @@ def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
     )
 
 
-def _drawn(data: PaperData, pool: Executor | None, tell: Progress) -> list[dict[str, Any]]:
-    done: dict[str, dict[str, Any]] = {}
+def _drawn(data: PaperData, pool: Executor | None, tell: Progress) -> list[Json]:
+    done: dict[str, Json] = {}
     for task, future in completed(pool, draw, [DrawTask(figure.name, data) for figure in FIGURES]):
         done[task.name] = future.result()
         tell("figures", len(done), len(FIGURES))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.errors import AnalysisError
 from tribolab.provenance import made, sha256_of
+from tribolab.records.parts import Row
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.records.parts import CurveOutcome
 
-Computed = tuple[dict[str, "xr.Dataset"], list[dict[str, Any]]]  # groups of a file, and rows
+Computed = tuple[dict[str, "xr.Dataset"], list[Row]]  # groups of a file, and rows
 _LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
 
 
@@ -51,7 +52,7 @@ def data_file(folder: Path, kind: str, surface: str) -> Path:
     return folder / "data" / f"{kind}_{surface}.nc"
 
 
-def compute(task: Task) -> list[dict[str, Any]]:
+def compute(task: Task) -> list[Row]:
     """Compute a task, write its data file, and return its rows if it has any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
@@ -123,7 +124,7 @@ def _wet(task: Task) -> Computed:
     return groups, rows
 
 
-def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> dict[str, Any]:
+def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> Row:
     """Fit the shear stress to a simulated curve, as the authors did to theirs."""
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.io.netcdf import read_netcdf

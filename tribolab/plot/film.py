@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,6 +23,7 @@ from tribolab.plot.style import (
     new_figure,
     tidy,
 )
+from tribolab.untyped import Arguments
 from tribolab.words import speed_text
 
 # From dark to light and from blue to yellow: in order for everybody, on paper too.
@@ -89,7 +89,7 @@ def film_profiles(
             widest = max(widest, np.abs(x[total > 5e-3 * total.max()]).max())
             place = round(rank * (len(_SPEED_COLOURS) - 1) / max(len(profiles) - 1, 1))
             centre = max(centre, float(profile["separation"].values[np.abs(x).argmin()]))
-            look: dict[str, Any] = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
+            look: Arguments = {"color": _SPEED_COLOURS[place], "linewidth": 1.1}
             for panel, (name, factor, _) in zip(panels, _PANELS, strict=True):
                 panel.plot(x, factor * profile[name].values, **look, label=speed_text(v))
             numbers = {f"{name}_{unit}": profile[name].values for name, unit in _UNITS}

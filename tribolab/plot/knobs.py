@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from matplotlib.figure import Figure
 
 from tribolab.plot.style import PaperFigure
+from tribolab.untyped import Arguments
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])
 _FINE = 2  # pixels of the picture for one on the screen
@@ -64,7 +65,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
             controls = {}
             display(Markdown("*The knobs want ipywidgets: `pip install 'tribolab[lab]'`*"))
 
-        def values() -> dict[str, Any]:
+        def values() -> Arguments:
             return {name: control.value for name, control in controls.items()}
 
         def redraw(change: object) -> None:
@@ -83,7 +84,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
     return show
 
 
-def _controls(ranges: dict[str, Any], defaults: dict[str, Any]) -> dict[str, Any]:
+def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
     """Return a widget for each parameter, at its default."""
     from ipywidgets import interactive
 
@@ -99,7 +100,7 @@ def _controls(ranges: dict[str, Any], defaults: dict[str, Any]) -> dict[str, Any
     return controls
 
 
-def _box(controls: dict[str, Any]) -> dict[str, Any]:
+def _box(controls: Arguments) -> Arguments:
     """Return what a notebook shows of the knobs, and what stands for them where none runs."""
     from ipywidgets import VBox
 
@@ -108,7 +109,7 @@ def _box(controls: dict[str, Any]) -> dict[str, Any]:
     return {**shown, "text/plain": f"to be turned in a running notebook: {places}"}
 
 
-def _picture(figure: Figure) -> tuple[dict[str, bytes], dict[str, Any]]:
+def _picture(figure: Figure) -> tuple[dict[str, bytes], Arguments]:
     """Return a figure as PNG, and how wide it is shown; pyplot forgets it."""
     if isinstance(figure, PaperFigure):
         return {"image/png": figure._repr_png_()}, {}

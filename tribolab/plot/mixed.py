@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -33,6 +33,7 @@ from tribolab.plot.style import (
     new_figure,
     surface_styles,
 )
+from tribolab.untyped import Arguments
 
 _MODEL_HEIGHT, _MISFIT_HEIGHT = 50.0, 20.0  # mm
 
@@ -130,7 +131,7 @@ def _model(
 ) -> None:
     v = curve["sliding_speed"].values
     fluid = curve["friction_coefficient_couette"] + curve["friction_coefficient_pressure"]
-    lines: tuple[tuple[str, xr.DataArray, dict[str, Any], str], ...] = (
+    lines: tuple[tuple[str, xr.DataArray, Arguments, str], ...] = (
         ("model", curve["friction_coefficient"], {"linestyle": "-", "linewidth": 1.2}, "model"),
         ("solid", curve["friction_coefficient_solid"], {"linestyle": "--"}, "solid part"),
         ("viscous", fluid, {"linestyle": (0, (1, 1.2)), "color": BLACK}, "viscous part"),

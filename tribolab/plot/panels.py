@@ -29,6 +29,7 @@ from tribolab.plot.style import (
     new_figure,
     paper_style,
 )
+from tribolab.untyped import Arguments
 from tribolab.words import MINUS, aligned, number, speed_text
 
 _MOST_PANELS = 24
@@ -271,8 +272,8 @@ class _Cell:
 
 
 _TICK = 1.0  # mm
-_LINE: dict[str, Any] = {"color": "#222222", "linewidth": 0.6, "zorder": 4}
-_EDGE: dict[str, Any] = {"edgecolor": "#222222", "linewidth": 0.6, "zorder": 4}
+_LINE: Arguments = {"color": "#222222", "linewidth": 0.6, "zorder": 4}
+_EDGE: Arguments = {"edgecolor": "#222222", "linewidth": 0.6, "zorder": 4}
 
 
 def _tick_labels(ticks: np.ndarray) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +16,7 @@ from tribolab.plot.frame import logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.panel import Panels, several_panels
 from tribolab.plot.style import BLACK, DOUBLE_MM, PaperFigure, keep, margins, new_figure
+from tribolab.untyped import Arguments
 from tribolab.words import speed_text
 
 _LOUDEST = 1e3  # times the background; what is above has the same colour
@@ -86,7 +86,7 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset], *, axes: Panels | None = N
             panel.set_title(plain(label), fontsize=7, loc="left", pad=3)
         if axes is None:
             width = 1 - 22 / DOUBLE_MM
-            place: dict[str, Any] = {"cax": figure.add_axes((width, 0.25, 0.015, 0.5))}
+            place: Arguments = {"cax": figure.add_axes((width, 0.25, 0.015, 0.5))}
         else:
             place = {"ax": panels}
         words = "power over background $S/S_0$"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -32,6 +32,7 @@ from tribolab.plot.style import (
     new_figure,
     shade,
 )
+from tribolab.untyped import Arguments
 from tribolab.words import number
 
 _COLUMNS = 500
@@ -245,7 +246,7 @@ def slip_events(
     names = list(_event_columns(next(iter(shown.values()))))
     with several_panels(axes, names, _three) as (figure, panels):
         for k, (label, slip) in enumerate(shown.items()):
-            look: dict[str, Any] = {
+            look: Arguments = {
                 "color": lines[k % len(lines)],
                 "linestyle": "-" if k < len(lines) else "--",
             }

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from tribolab.friction.coefficient.steadiness import WORDS
 from tribolab.plot.labels import column
+from tribolab.records.parts import Row
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -76,7 +77,7 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
     return pd.DataFrame(columns)
 
 
-def rows_of(table: pd.DataFrame) -> list[dict[str, Any]]:
+def rows_of(table: pd.DataFrame) -> list[Row]:
     """Return the rows of a table, each by the names of the columns.
 
     Examples

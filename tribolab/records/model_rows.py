@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribolab.records.frames import frame
 from tribolab.records.model_words import judgement
 from tribolab.records.part_records import ModelRows
+from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float)
     return float(area.sel(medium=dry[0]) / area.sel(medium=medium))
 
 
-def _sensitivity(found: xr.Dataset) -> list[dict[str, Any]]:
+def _sensitivity(found: xr.Dataset) -> list[Row]:
     rows = []
     for name in found["variation"].values.tolist():
         one = found.sel(variation=name)

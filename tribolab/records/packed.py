@@ -5,9 +5,10 @@ from __future__ import annotations
 import base64
 import zlib
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+
+from tribolab.untyped import Json
 
 _TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept
@@ -123,7 +124,7 @@ def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
     return worst, most
 
 
-def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> dict[str, Any]:
+def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Json:
     """Pack points: when as steps from place to place, values as shares of their range in 16 bits.
 
     Parameters

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from tribolab.words import many
 if TYPE_CHECKING:
     import xarray as xr
 
+    from tribolab.qc.findings import FindingRow
 
 _SPEED_TOLERANCE = 0.1
 
@@ -40,9 +42,8 @@ def facts_of(
         Its friction without a person's decisions, where there are any.
     """
     decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
-    return RunFacts(
-        **_of_record(run),
-        **friction_facts(friction),
+    return replace(
+        _of_record(run, friction_facts(friction)),
         decisions=decided,
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
@@ -66,41 +67,50 @@ def main_quantity(friction: xr.Dataset) -> str:
     return "friction_coefficient"
 
 
-def _of_record(run: xr.Dataset) -> dict[str, Any]:
+def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
+    """Add what the run itself says."""
     time = np.asarray(run["time"], float)
     attrs = run.attrs
     shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
-    return {
-        "instrument": str(attrs.get("instrument", "")),
-        "quality": str(attrs.get("quality", "")),
-        "checks": tuple(
-            CheckRow(**{k: plain_value(row[k]) for k in _CHECK}, decision=row.get("decision", ""))
+    return replace(
+        facts,
+        instrument=str(attrs.get("instrument", "")),
+        quality=str(attrs.get("quality", "")),
+        checks=tuple(
+            CheckRow(
+                row["check"],
+                row["status"],
+                row["variable"],
+                row["message"],
+                plain_value(row["value"]),
+                row["unit"],
+                row.get("decision", ""),
+            )
             for row in findings_of(run)
         ),
-        "recorded_at": str(attrs.get("recorded_at", "")),
-        "duration_s": float(time[-1] - time[0]) if time.size else 0.0,
-        "samples": int(time.size),
-        "signals": tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
-        "columns_not_used": tuple(filter(None, str(attrs.get("columns_not_used", "")).split("; "))),
-        "clock_shift_s": shift.get("clock_shift_s"),
-        "clock_shift_uncertainty_s": shift.get("clock_shift_uncertainty_s"),
-        "clock_shift_source": str(attrs.get("clock_shift_source", "")),
-        "history": str(attrs.get("history", "")),
-    }
+        recorded_at=str(attrs.get("recorded_at", "")),
+        duration_s=float(time[-1] - time[0]) if time.size else 0.0,
+        samples=int(time.size),
+        signals=tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
+        columns_not_used=tuple(filter(None, str(attrs.get("columns_not_used", "")).split("; "))),
+        clock_shift_s=shift.get("clock_shift_s"),
+        clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
+        clock_shift_source=str(attrs.get("clock_shift_source", "")),
+        history=str(attrs.get("history", "")),
+    )
 
 
-def findings_of(run: xr.Dataset) -> list[dict[str, Any]]:
+def findings_of(run: xr.Dataset) -> list[FindingRow]:
     """Return what the checks said of a run, in plain rows."""
-    found: list[dict[str, Any]] = run.attrs.get("findings", [])
+    found: list[FindingRow] = run.attrs.get("findings", [])
     return found
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
-_CHECK = ("check", "status", "variable", "message", "value", "unit")
 
 
-def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
-    """Return what `RunFacts` says of a run's friction, by its fields.
+def friction_facts(friction: xr.Dataset) -> RunFacts:
+    """Return what a run's friction says of it; the other facts are not known yet.
 
     Of segments that a person rejected it says nothing, unless all of them are.
     """
@@ -113,22 +123,22 @@ def friction_facts(friction: xr.Dataset) -> dict[str, Any]:
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
     scatter = scatter[np.isfinite(scatter)]
-    facts = {
-        "quantity": name,
-        "offset": str(friction.attrs.get("offset", "")),
-        "trim": friction.attrs.get("trim"),
-        "velocity_source": str(friction.attrs.get("velocity_source", "")),
-        "sliding_speed_min_m_s": np.nanmin(speed, initial=np.inf),
-        "sliding_speed_max_m_s": np.nanmax(speed, initial=-np.inf),
-        "value_min": value[finite].min() if finite.any() else None,
-        "value_max": value[finite].max() if finite.any() else None,
-        "relative_scatter": float(np.median(scatter)) if scatter.size else None,
-        "relative_drift": drift_of(friction, value),
-        "unsteady_segments": int((values_of(friction, "steady", value.size) == 0).sum()),
-    }
     sem = values_of(friction, f"{of}_sem", value.size)
     alone = independent(friction)
-    return plain_value(facts) | {"highlights": tuple(_highlights(speed, value, std, sem, alone))}
+    return RunFacts(
+        quantity=name,
+        offset=str(friction.attrs.get("offset", "")),
+        trim=plain_value(friction.attrs.get("trim")),
+        velocity_source=str(friction.attrs.get("velocity_source", "")),
+        sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
+        sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
+        value_min=plain_value(value[finite].min()) if finite.any() else None,
+        value_max=plain_value(value[finite].max()) if finite.any() else None,
+        relative_scatter=float(np.median(scatter)) if scatter.size else None,
+        relative_drift=plain_value(drift_of(friction, value)),
+        unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
+        highlights=tuple(_highlights(speed, value, std, sem, alone)),
+    )
 
 
 def stick_slip_of(slip: xr.Dataset) -> Waveform:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribolab.plot.labels import column
 from tribolab.records.part_records import SurfaceRows
+from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value, validity_of
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
     )
 
 
-def _roughness(found: xr.Dataset, psd: xr.Dataset) -> dict[str, Any]:
+def _roughness(found: xr.Dataset, psd: xr.Dataset) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
     for name in ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq"):
         rough[column(name)] = float(found[name].mean())
@@ -89,7 +90,7 @@ def _roughness(found: xr.Dataset, psd: xr.Dataset) -> dict[str, Any]:
     return rough
 
 
-def _contact(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+def _contact(groups: Mapping[str, xr.Dataset]) -> list[Row]:
     """One row per load; without loads one per pressure."""
     if "contact" not in groups:
         return []
@@ -113,7 +114,7 @@ def _contact(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
     return result
 
 
-def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[Row]:
     if "adhesion_loads" not in groups:
         return []
     found, result = groups["adhesion_loads"], []
@@ -132,7 +133,7 @@ def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
     return result
 
 
-def _rows(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
+def _rows(data: xr.Dataset, dim: str) -> list[Row]:
     """Return the variables over one dimension, a row per entry, named as the tables' columns."""
     names = [str(name) for name in data.variables if data[name].dims == (dim,)]
     values = {column(name): data[name].values.tolist() for name in names}

@@ -14,6 +14,7 @@ from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points
 from tribolab.records.parts import FlaggedSpan, PageTrace
+from tribolab.untyped import Json
 from tribolab.words import speed_text
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def trace(
     friction: xr.Dataset | None,
     points: int,
     shared: Shared | None = None,
-) -> dict[str, Any]:
+) -> Json:
     """Return a run's trace for the page: signals over time, segments and flagged spans.
 
     Parameters
@@ -169,7 +170,7 @@ def finer_trace(
     return ""
 
 
-def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int) -> dict[str, Any]:
+def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int) -> Json:
     time = np.asarray(run["time"], float)
     bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
     clock, main = shared

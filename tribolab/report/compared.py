@@ -48,7 +48,7 @@ def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> 
         name: _rows([data.get(name) for data in results.values()], longest, first)
         for name, first in variables.items()
     }
-    labels: dict[str, Any] = {
+    labels: dict[str, tuple[str, np.ndarray]] = {
         key: ("run", np.array([facts[name][key] for name in names], dtype=object))
         for key in ("surface", "medium", "quality")
     }

@@ -73,13 +73,15 @@ def write_tables(outcome: Outcome, curves: Sequence[CurveRecord], folder: Path) 
 
     def decided() -> Iterator[Row]:
         for entry in outcome.store.all("run", RunRecord):
-            front: Row = {"run": entry.record.outcome.name} | labels(entry.record.outcome)
+            name: Row = {"run": entry.record.outcome.name}
+            front = name | labels(entry.record.outcome)
             for decision in entry.record.facts.decisions:
                 yield front | decision.row()
 
     def found() -> Iterator[Row]:
         for curve in curves:
-            front: Row = {"curve": curve.outcome.name} | labels(curve.outcome)
+            name: Row = {"curve": curve.outcome.name}
+            front = name | labels(curve.outcome)
             yield from (front | plain_value(row) for row in curve.points_as_found)
 
     if any(True for _ in decided()):

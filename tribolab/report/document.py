@@ -14,8 +14,10 @@ from pydantic import TypeAdapter
 
 from tribolab.provenance import sha256_of_file
 from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
+from tribolab.records.parts import Row
 from tribolab.records.run_record import RunFacts
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
+from tribolab.untyped import Json
 from tribolab.words import many, span
 
 if TYPE_CHECKING:
@@ -30,7 +32,7 @@ _FACTS = TypeAdapter(RunFacts)
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
-def labels(what: RunOutcome | CurveOutcome) -> dict[str, Any]:
+def labels(what: RunOutcome | CurveOutcome) -> Row:
     """Return surface, medium and nominal load, as every table and record names them."""
     return {
         "surface": what.surface,
@@ -43,7 +45,7 @@ def report_document(
     outcome: Outcome,
     runs: Sequence[Mapping[str, Any]],
     findings: Sequence[Notice],
-) -> dict[str, Any]:
+) -> Json:
     """Return what stands first in the report, as plain data, ready for JSON.
 
     Parameters
@@ -77,7 +79,7 @@ def verdict(
     runs: Sequence[Mapping[str, Any]],
     rejected_scans: Sequence[str] = (),
     lost_decisions: int = 0,
-) -> dict[str, Any]:
+) -> Json:
     """Return what came of the campaign in one sentence and its numbers.
 
     Parameters
@@ -145,7 +147,7 @@ def verdict(
 _BAD = ("fail", "error")
 
 
-def run_document(record: RunRecord) -> dict[str, Any]:
+def run_document(record: RunRecord) -> Json:
     """Return a run as report.json has it."""
     run, facts = record.outcome, plain_facts(record.facts)
     return {
@@ -166,9 +168,9 @@ def run_document(record: RunRecord) -> dict[str, Any]:
     }
 
 
-def plain_facts(facts: RunFacts) -> dict[str, Any]:
+def plain_facts(facts: RunFacts) -> Json:
     """Return the numbers of a run as plain data."""
-    plain: dict[str, Any] = _FACTS.dump_python(facts, mode="json")
+    plain: Json = _FACTS.dump_python(facts, mode="json")
     if plain["stick_slip"] is not None:
         plain["stick_slip"] = {
             "class": plain["stick_slip"]["class_"],
@@ -177,7 +179,7 @@ def plain_facts(facts: RunFacts) -> dict[str, Any]:
     return plain
 
 
-def brief_run(run: Mapping[str, Any]) -> dict[str, Any]:
+def brief_run(run: Mapping[str, Any]) -> Json:
     """Return what the table of runs shows of a run: all but what is long."""
     brief = {key: value for key, value in run.items() if key not in _LONG}
     objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
@@ -187,7 +189,7 @@ def brief_run(run: Mapping[str, Any]) -> dict[str, Any]:
 _LONG = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
 
 
-def _campaign(campaign: Campaign) -> dict[str, Any]:
+def _campaign(campaign: Campaign) -> Json:
     file = Path(campaign.file)
     there = file.is_file()
     return {

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from tribolab.records.model_rows import FITTED, LABELS
 from tribolab.records.wording import plain_value
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.records.part_records import ModelRecord
@@ -53,7 +54,7 @@ class ModelRow:
     """
 
     model: ModelOutcome
-    fit: dict[str, Any] | None
+    fit: Json | None
     curve: tuple[Row, ...]
     sensitivity: tuple[Row, ...]
     not_varied: str
@@ -61,7 +62,7 @@ class ModelRow:
     validity: str
 
     @property
-    def labels(self) -> dict[str, Any]:
+    def labels(self) -> Row:
         """Columns that stand first in every table."""
         model = self.model
         values = model.curve, model.surface, model.medium, model.normal_force
@@ -139,14 +140,14 @@ def complete(rows: Sequence[ModelRow]) -> None:
             }
 
 
-def _add_spectrum(fit: dict[str, Any], relative: float) -> None:
+def _add_spectrum(fit: Json, relative: float) -> None:
     """Add the spectrum's relative standard error to those of the shear stresses."""
     for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
         value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
         fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
-def _is_known(fit: dict[str, Any]) -> bool:
+def _is_known(fit: Json) -> bool:
     """Whether a shear stress stands out from its error: a ratio to another says nothing."""
     return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
@@ -173,7 +174,7 @@ def sensitivity_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     return pd.DataFrame(varied, columns=SENSITIVITY)
 
 
-def model_record(model: ModelOutcome, rows: ModelRow | None) -> dict[str, Any]:
+def model_record(model: ModelOutcome, rows: ModelRow | None) -> Json:
     """Return a model for report.json."""
     fit = None if rows is None or rows.fit is None else rows.fit
     return plain_value(

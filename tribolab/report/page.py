@@ -18,16 +18,17 @@ from tribolab.report.answer import cards, of_nothing
 from tribolab.report.live.figure import ShownFigure
 from tribolab.report.sections import shown_sections
 from tribolab.report.templating import environment, framing
+from tribolab.untyped import Json
 from tribolab.words import force_text
 
 _MOST_ROWS = 100  # of the table of runs; more are packed, and laid out when they are asked for
-Runs = Callable[[], Iterable[dict[str, Any]]]
+Runs = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
     """What stands under one run: its place from 1, and all the rest compressed."""
 
-    run: dict[str, Any]
+    run: Json
     place: int
     packed: str
 
@@ -80,7 +81,7 @@ def _context(
     runs: Runs,
     store: Traces,
     live: Sequence[ShownFigure],
-) -> dict[str, Any]:
+) -> Json:
     surfaces = document.get("surfaces", [])
     every = document["runs"]
     first, rest = parted(grouped_runs(every), _MOST_ROWS)
@@ -162,7 +163,7 @@ def parted(groups: Sequence[Group], most: int) -> tuple[list[Group], list[Group]
     return first, rest
 
 
-def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Return findings, those that say the same once for all runs that they hold for.
 
     Examples
@@ -171,7 +172,7 @@ def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, An
     >>> [row["runs"] for row in grouped_findings([one | {"run": "a"}, one | {"run": "b"}])]
     [['a', 'b']]
     """
-    rows: dict[tuple[str, str, str], dict[str, Any]] = {}
+    rows: dict[tuple[str, str, str], Json] = {}
     for finding in findings:
         where, message = finding["where"], finding["message"]
         # surfaces and models are named in the place: what is said of all of them is said once
@@ -187,10 +188,10 @@ def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[dict[str, An
     return list(rows.values())
 
 
-def left_out(runs: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def left_out(runs: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Return what was left out of all runs, a row per reason, the longest first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
-    rows: dict[str, dict[str, Any]] = {}
+    rows: dict[str, Json] = {}
     for run in runs:
         for entry in run["omitted"]:
             row = rows.setdefault(

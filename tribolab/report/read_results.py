@@ -6,10 +6,11 @@ import json
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.errors import ReadError, brief, nearest, shown
 from tribolab.report import tables
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,10 +73,10 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return read_netcdf(known[name], group=group)
 
     @cached_property
-    def _report(self) -> dict[str, Any]:
+    def _report(self) -> Json:
         path = self.folder / "report.json"
         try:
-            report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            report: Json = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
             raise ReadError(f"{path}: the report cannot be read: {brief(error)}") from error
         return report

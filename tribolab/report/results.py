@@ -30,6 +30,7 @@ from tribolab.report.reviewing import review_data
 from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
 from tribolab.report.surface_records import surface_record, table
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome, Outcome
@@ -136,7 +137,7 @@ def write_report(
     tell("page", 1, 1)
 
 
-def _documents(outcome: Outcome) -> Iterator[dict[str, Any]]:
+def _documents(outcome: Outcome) -> Iterator[Json]:
     """Give the runs as report.json has them, one after the other."""
     for entry in outcome.store.all("run", RunRecord):
         yield run_document(entry.record)
@@ -144,9 +145,9 @@ def _documents(outcome: Outcome) -> Iterator[dict[str, Any]]:
 
 def _runs(
     outcome: Outcome,
-) -> tuple[list[dict[str, Any]], list[Notice], dict[str, list[RunPoint]]]:
+) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]]]:
     """Return what is brief of every run, what is said of it, and its friction over speed."""
-    briefs: list[dict[str, Any]] = []
+    briefs: list[Json] = []
     said: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
     for entry in outcome.store.all("run", RunRecord):
@@ -233,7 +234,7 @@ def _figure(record: FigureRecord) -> dict[str, str]:
     return {name: getattr(record, name) for name in names}
 
 
-def _curve(curve: CurveRecord) -> dict[str, Any]:
+def _curve(curve: CurveRecord) -> Json:
     """Return a curve for report.json."""
     outcome = curve.outcome
     facts = {
@@ -244,7 +245,7 @@ def _curve(curve: CurveRecord) -> dict[str, Any]:
     return {"name": outcome.name, **labels(outcome), **facts}
 
 
-def _mode(mode: ModeRecord, curve: CurveRecord) -> dict[str, Any]:
+def _mode(mode: ModeRecord, curve: CurveRecord) -> Json:
     """Return the sliding mode of a curve for report.json."""
     return plain_value(
         {
@@ -285,8 +286,8 @@ def _write_tables(
         return (entry.record for entry in store.all("run", RunRecord))
 
     def labelled(what: str, name: str, part: Any, rows: Iterable[Row]) -> Iterator[Row]:
-        front: Row = {what: name} | labels(part)
-        return (front | row for row in rows)
+        named: Row = {what: name}
+        return (named | labels(part) | row for row in rows)
 
     def friction() -> Iterator[Row]:
         for record in records():

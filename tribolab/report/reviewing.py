@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.campaign.settings.review import REVIEW_FILE, load_entries
 from tribolab.campaign.settings.toml_file import text_of
 from tribolab.provenance import as_text
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -21,7 +22,7 @@ _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*decision[ \t]*\]\]", re.MULTILINE)
 _ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines that end a text
 
 
-def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> Json:
     """Return the decisions beside a campaign file, as the page carries them.
 
     Parameters
@@ -41,7 +42,7 @@ def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> dict[s
     """
     file = Path(campaign.file)
     name = f"{as_text(file.parent.absolute())}\n{as_text(file.name)}\n{campaign.name}"
-    data: dict[str, Any] = {
+    data: Json = {
         "key": hashlib.sha256(name.encode()).hexdigest()[:24],
         "files": [as_text(file.name), REVIEW_FILE],
         "head": "",

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from tribolab.records.part_records import SurfaceRows
+from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.records.parts import Row, SurfaceOutcome
@@ -27,7 +28,7 @@ def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.
     return pd.DataFrame(parts, columns=["surface", "quality", *columns])
 
 
-def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> dict[str, Any]:
+def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> Json:
     """Return a surface for report.json."""
     return {
         "name": surface.name,

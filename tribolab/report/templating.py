@@ -25,6 +25,7 @@ from tribolab.report.glossary import GLOSSARY, HEADS
 from tribolab.report.live.points import run_error
 from tribolab.report.plain import plain_speed, plain_speeds
 from tribolab.report.sections import Section
+from tribolab.untyped import Json
 from tribolab.words import aligned, force_text, number
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
@@ -60,7 +61,7 @@ def framed(
 
 def framing(
     template: str, sections: Sequence[Section], folder: Path, *, draws: bool
-) -> tuple[jinja2.Template, dict[str, Any]]:
+) -> tuple[jinja2.Template, Json]:
     """Return a template, and what the frame of a page wants to know.
 
     Parameters

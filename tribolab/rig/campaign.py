@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
 from tribolab.rig.scan_faults import ScanFault
 from tribolab.studies import xu2026
+from tribolab.untyped import Json
 
 Law = Callable[[np.ndarray], np.ndarray]
 _NOTE = (
@@ -224,14 +224,14 @@ def _run_all(
     work: list[_Job],
     pool: Executor | None,
     progress: Callable[[str, int, int], None] | None,
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, Json]:
     """Do the jobs here or in other processes; facts of runs and of scans with faults, in order."""
     do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
     # laws first: repeats share one, wherever each of them is simulated
     laws = dict(zip(conditions, do(_law, conditions), strict=True))
     work = [replace(job, law=laws.get(job.condition)) for job in work]
-    facts: dict[str, dict[str, Any]] = {"runs": {}, "scans": {}}
+    facts: dict[str, Json] = {"runs": {}, "scans": {}}
     for done, (job, (name, fact)) in enumerate(zip(work, do(_do, work), strict=True), start=1):
         if job.number:
             facts["runs"][name] = fact
@@ -246,7 +246,7 @@ def _law(condition: _Condition) -> Law:
     return friction_law(condition.surface, condition.medium, condition.normal_force)
 
 
-def _do(job: _Job) -> tuple[str, dict[str, Any]]:
+def _do(job: _Job) -> tuple[str, Json]:
     """Make one run's two files and its truth, or the scans of one surface; say what is true."""
     c = job.condition
     if not job.number:
@@ -282,7 +282,7 @@ def _generator(seed: int, name: str) -> np.random.Generator:
 
 
 def _write_facts(
-    folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, dict[str, Any]]
+    folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, Json]
 ) -> None:
     from tribolab.version import __version__
 

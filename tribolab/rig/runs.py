@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, is_dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -26,6 +25,7 @@ from tribolab.rig.simulated import SimulatedRun
 from tribolab.stamping import stamp
 from tribolab.studies import xu2026
 from tribolab.units import to_si
+from tribolab.untyped import Json
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
@@ -154,7 +154,7 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
     return stamp(xr.Dataset(data, {"time": time}))
 
 
-def _named(thing: object) -> dict[str, Any]:
+def _named(thing: object) -> Json:
     """Return parameters of a law for the record; a bare function has its name only."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
     values = {k: v for k, v in values.items() if not isinstance(v, tuple)}  # tables follow

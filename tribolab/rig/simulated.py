@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import pandas as pd
 import xarray as xr
+
+from tribolab.untyped import Json
 
 
 @dataclass(frozen=True)
@@ -44,4 +45,4 @@ class SimulatedRun:
     motion_log: xr.Dataset
     noise_free: xr.Dataset
     segments: pd.DataFrame
-    facts: dict[str, Any]
+    facts: Json

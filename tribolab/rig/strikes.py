@@ -6,16 +6,15 @@ the motion log and the facts: where it struck, and how hard. Nothing is changed 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError
 from tribolab.rig.simulated import SimulatedRun
+from tribolab.untyped import Json
 from tribolab.words import Count
 
-Facts = dict[str, Any]
+Facts = Json
 Struck = tuple[xr.Dataset, xr.Dataset, Facts]
 _UNLOADED = 0.05  # of the greatest normal force; above it, load is on
 _FAST = 130.0  # Hz; slower logs do not show the lines of mains and rig

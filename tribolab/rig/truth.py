@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from tribolab.errors import ReadError
+from tribolab.untyped import Json
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Truth:
     (True, 4)
     """
 
-    facts: dict[str, Any]
+    facts: Json
     segments: dict[str, pd.DataFrame]
 
 

@@ -13,6 +13,7 @@ from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.errors import AnalysisError
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp
+from tribolab.untyped import Arguments
 from tribolab.validity import together
 from tribolab.words import explain
 
@@ -198,7 +199,7 @@ def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
 
 
 def _uncertain(
-    contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: dict[str, Any]
+    contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: Arguments
 ) -> xr.Dataset:
     from tribolab.fit.model_uncertainty import model_uncertainty
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribolab.provenance import joined_sources, sha256_of
+from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -52,11 +53,11 @@ class PlannedModel:
 
     curve: CurveOutcome
     surface_file: str
-    contact: dict[str, Any]
+    contact: Arguments
     viscosity: float
     viscosity_range: tuple[float, float] | None
     youngs_modulus_range: tuple[float, float] | None
-    settings: dict[str, Any]
+    settings: Arguments
     leading: bool
     uncertain: bool
     repeatability: float
@@ -135,7 +136,7 @@ def plan_models(
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
 
 
-def _missing(curve: CurveOutcome, contact: dict[str, Any], surface: SurfaceOutcome | None) -> str:
+def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | None) -> str:
     unknown = [name for name, value in contact.items() if value is None]
     if unknown:
         return f"[contact] wants {', '.join(unknown)}"

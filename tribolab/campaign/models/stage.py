@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.models.kept import kept_model
@@ -17,6 +17,7 @@ from tribolab.errors import OutputError
 from tribolab.provenance import made, sha256_of
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding, ModelOutcome
+from tribolab.untyped import Json
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ def _root(model: PlannedModel) -> xr.Dataset:
     import xarray as xr
 
     curve = model.curve
-    attrs: dict[str, Any] = {
+    attrs: Json = {
         "surface": curve.surface,
         "medium": curve.medium,
         "normal_force_N": float(model.normal_force),

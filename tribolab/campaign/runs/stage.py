@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse, labels_of
@@ -19,6 +19,7 @@ from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
+from tribolab.untyped import Json
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -252,7 +253,7 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
     )
 
 
-def sources_of(run: PlannedRun, attrs: dict[str, Any]) -> tuple[Source, ...]:
+def sources_of(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
     """Return the files of a run with the checksums that were taken while reading."""
     names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
     known = dict(zip(names, sums, strict=False))
@@ -286,7 +287,7 @@ def _trace(
         return None, [Notice("error", task.run.name, "trace", text)]
 
 
-def _root(run: PlannedRun, attrs: dict[str, Any]) -> xr.Dataset:
+def _root(run: PlannedRun, attrs: Json) -> xr.Dataset:
     """Attributes of the whole file, for those who open it without naming a group."""
     import xarray as xr
 

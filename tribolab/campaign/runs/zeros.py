@@ -19,7 +19,7 @@ FEWEST = 2  # zeros without which their scatter is not known
 _DIGITS = 6
 
 
-def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, Any]:
+def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | float]:
     """Attributes of a friction result that later say what `zero_of` returns."""
     method = str(friction.attrs.get("offset", ""))
     sure = all(d["status"] == "pass" for d in friction.attrs.get("zero_doubts", []))

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 from tribolab.campaign.settings.fields import Patterns, PositiveSi, ShareOfEnds, Si, Spread, Text
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.untyped import Arguments, Json
 
 if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
@@ -238,7 +239,7 @@ class Qc(Table):
     def _by_default(self) -> bool:
         return not (self.limits or self.skip)  # then the checks, half a second, need no import
 
-    def run_options(self) -> dict[str, Any]:
+    def run_options(self) -> Arguments:
         """Return limits and names to skip, as far as they are of checks on runs."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
@@ -246,7 +247,7 @@ class Qc(Table):
 
         return self._of(RUN_CHECKS)
 
-    def scan_options(self) -> dict[str, Any]:
+    def scan_options(self) -> Arguments:
         """Return limits and names to skip, as far as they are of checks on scans."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
@@ -254,7 +255,7 @@ class Qc(Table):
 
         return self._of(SCAN_CHECKS)
 
-    def _of(self, checks: Mapping[str, Any]) -> dict[str, Any]:
+    def _of(self, checks: Mapping[str, Any]) -> Arguments:
         return {
             "limits": {name: of for name, of in self.limits.items() if name in checks},
             "skip": tuple(name for name in self.skip if name in checks),
@@ -304,7 +305,7 @@ class Campaign(Table):
         """Say where the campaign file lies: its folders are relative to it."""
         self._file = path
 
-    def quality_options(self, entry: RunEntry) -> dict[str, Any]:
+    def quality_options(self, entry: RunEntry) -> Arguments:
         """Return the arguments of `check_run` for a run."""
         options = self.qc.run_options()
         contact = self.contact.whole()
@@ -315,7 +316,7 @@ class Campaign(Table):
             options["contact_width"] = 2 * float(hertz_half_width(load, contact))
         return options
 
-    def scan_quality_options(self) -> dict[str, Any]:
+    def scan_quality_options(self) -> Arguments:
         """Return the arguments of `check_scan_set` for the scans of a surface."""
         return self.qc.scan_options()
 
@@ -334,13 +335,13 @@ class Campaign(Table):
         """Folder of the results."""
         return self._file.parent / self.campaign.output
 
-    def friction_options(self, entry: RunEntry) -> dict[str, Any]:
+    def friction_options(self, entry: RunEntry) -> Arguments:
         """Arguments of `friction_coefficient` for the runs of an entry."""
         stated = {"zero_uncertainty": entry.zero_uncertainty, "rectified": entry.rectified}
         known = {key: value for key, value in stated.items() if value is not None}
         return self.friction.model_dump() | known
 
-    def segment_options(self, entry: RunEntry) -> dict[str, Any]:
+    def segment_options(self, entry: RunEntry) -> Arguments:
         """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""
         options = self.segments.model_dump(exclude_none=True)
         if entry.segments is not None:
@@ -348,7 +349,7 @@ class Campaign(Table):
         return options
 
 
-def campaign_schema() -> dict[str, Any]:
+def campaign_schema() -> Json:
     """Return the JSON Schema (2020-12) of the campaign file."""
     schema = Campaign.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

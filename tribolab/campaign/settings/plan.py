@@ -9,13 +9,14 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.settings.problems import Problem, message
 from tribolab.campaign.settings.review import REVIEW_FILE, review_beside
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
 from tribolab.provenance import as_text, sha256_of, sha256_of_file
+from tribolab.untyped import Arguments, Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign, RunEntry, Surface
@@ -62,9 +63,9 @@ class PlannedRun:
     sliding_speed: float | None
     clock_shift: float | None
     instrument: str | None
-    segments: dict[str, Any] = field(default_factory=dict)
-    friction: dict[str, Any] = field(default_factory=dict)
-    quality: dict[str, Any] = field(default_factory=dict)
+    segments: Arguments = field(default_factory=dict)
+    friction: Arguments = field(default_factory=dict)
+    quality: Arguments = field(default_factory=dict)
     config_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
 
@@ -244,10 +245,10 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     return group_files(files, instrument)
 
 
-def _settings(campaign: Campaign, entry: RunEntry) -> dict[str, Any]:
+def _settings(campaign: Campaign, entry: RunEntry) -> Json:
     """Return what all runs of an entry share, with its checksum."""
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
-    settings: dict[str, Any] = {
+    settings: Json = {
         "surface": entry.surface or "",
         "medium": entry.medium or "",
         "normal_force": entry.normal_force,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -14,6 +14,7 @@ from tribolab.campaign.settings.problems import Problem, message
 from tribolab.campaign.settings.toml_file import checked, text_of
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
+from tribolab.untyped import Json
 
 REVIEW_FILE = "review.toml"
 SCHEMA_FILE = "review.schema.json"
@@ -145,7 +146,7 @@ def lost_decisions(campaign_file: Path, runs: Iterable[str]) -> tuple[str, ...]:
     return tuple(lost)
 
 
-def review_schema() -> dict[str, Any]:
+def review_schema() -> Json:
     """Return the JSON Schema (2020-12) of the review file."""
     schema = Review.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.plan import (
     distinct,
@@ -16,6 +16,7 @@ from tribolab.campaign.settings.plan import (
     sha256_of_dialect,
 )
 from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -69,13 +70,13 @@ class PlannedSurface:
     files: tuple[Path, ...]
     labels: tuple[str, ...]
     instrument: str | None
-    roughness: dict[str, Any]
-    contact: dict[str, Any]
+    roughness: Arguments
+    contact: Arguments
     forces: tuple[float, ...]
     lowest_force: float | None
     media: tuple[PlannedMedium, ...]
     modulus_file: tuple[Path, str] | None = None
-    quality: dict[str, Any] = field(default_factory=dict)
+    quality: Arguments = field(default_factory=dict)
     config_sha256: str = field(default="", compare=False)
 
 
@@ -107,7 +108,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
     for surface, file in zip(campaign.surface, files, strict=True):
         scans = scans_of(campaign, surface)
         instrument = surface.instrument and instrument_of(campaign, surface.instrument)
-        facts: dict[str, Any] = {
+        facts: Arguments = {
             "name": surface.name,
             "data_file": f"data/{file}.nc",
             "instrument": instrument,

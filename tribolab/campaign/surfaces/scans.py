@@ -12,16 +12,15 @@ from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan_sets import check_scan_set
-from tribolab.records.parts import Finding
+from tribolab.records.parts import Finding, Row
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.surfaces.plan import PlannedSurface
-    from tribolab.qc.findings import Findings
+    from tribolab.qc.findings import FindingRow, Findings
 
 _FAILED = ("fail", "error")
-_ROW = ("scan", "check", "status", "variable", "message", "where", "value", "unit")
 # shares of the mean square slope that come from extrapolation, from which on that is said
 _NOTED, _SUSPECT = 0.5, 0.8
 
@@ -47,7 +46,7 @@ class CheckedScans(NamedTuple):
     raw: xr.Dataset
     findings: list[Finding]
     quality: str
-    checks: list[dict[str, Any]]
+    checks: list[Row]
 
 
 def usable_scans(surface: PlannedSurface) -> CheckedScans:
@@ -91,10 +90,22 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         share = 100 * filled.attrs["dropout_share"]
         text = f"{number} dropouts were filled ({share:.2g} % of heights)"
         findings.append(Finding("note", text))
-    rows = [{"scan": label[path], **row} for path, said in checked.items() for row in said.rows]
-    checks = [{key: row[key] for key in _ROW} for row in rows]
+    checks = [_as_row(label[path], row) for path, said in checked.items() for row in said.rows]
     flagged = [checked[path].marked for path in alike]
     return CheckedScans(filled, _with_flags(together, flagged), findings, quality, checks)
+
+
+def _as_row(scan: str, said: FindingRow) -> Row:
+    return {
+        "scan": scan,
+        "check": said["check"],
+        "status": said["status"],
+        "variable": said["variable"],
+        "message": said["message"],
+        "where": said["where"],
+        "value": said["value"],
+        "unit": said["unit"],
+    }
 
 
 def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding]]:
@@ -138,7 +149,7 @@ def _objections(label: str, said: Findings) -> list[Finding]:
 def _with_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
     """Put the flags of each scan on the heights of all."""
     height = scans.height.assign_attrs(ancillary_variables="height_qc height_qc_tests")
-    variables: dict[str, Any] = {"height": height}
+    variables: dict[str, object] = {"height": height}
     for name in ("height_qc", "height_qc_tests"):
         parts = [scan[name].values for scan in flagged]
         values = np.stack(parts) if "scan" in scans.dims else parts[0]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,6 +13,7 @@ from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, NOTE, REJECT, D
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.stamping import stamp
+from tribolab.untyped import Json
 
 DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
 _MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means
@@ -87,7 +87,7 @@ def decide(
     told: list[list[str]] = [[] for _ in range(count)]
     if "decision" in segments:
         told = [[text] if text else [] for text in segments["decision"].values]
-    rows: list[dict[str, Any]] = list(segments.attrs.get(DECISIONS, []))
+    rows: list[Json] = list(segments.attrs.get(DECISIONS, []))
     for decision, places in zip(made, touched, strict=True):
         out[places] |= decision.action == REJECT
         # what is said of the whole run is not repeated of every segment, but why it is rejected

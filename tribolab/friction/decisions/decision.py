@@ -5,10 +5,10 @@ from __future__ import annotations
 import datetime as dt
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from tribolab.errors import AnalysisError, nearest, shown
 from tribolab.units import to_si
+from tribolab.untyped import Json
 
 REJECT, ACCEPT, BOUNDS, NOTE = "reject", "accept", "bounds", "note"
 ACTIONS = (REJECT, ACCEPT, BOUNDS, NOTE)
@@ -79,9 +79,9 @@ class Decision:
             where = f"{self.interval[0]:.6g} to {self.interval[1]:.6g} s"
         return f"{self.action}, {where} ({shown(self.author)}, {self.date})"
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> Json:
         """Return it as plain data, ready for JSON, with units in the names."""
-        facts: dict[str, Any] = {"action": self.action}
+        facts: Json = {"action": self.action}
         facts |= {f"{name}_s": getattr(self, name) for name in _TIMES}
         return facts | {"reason": self.reason, "author": self.author, "date": str(self.date)}
 

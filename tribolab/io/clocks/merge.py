@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime as dt
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,6 +10,7 @@ import xarray as xr
 from tribolab.errors import Cure, ReadError
 from tribolab.io.clocks.shift import estimate_clock_shift
 from tribolab.stamping import stamp
+from tribolab.untyped import Json
 
 _STEPWISE = {
     "set_speed",
@@ -99,7 +99,7 @@ def _shift(
     force_clock: np.ndarray,
     motion_clock: np.ndarray,
     given: float | None,
-) -> tuple[float, str, dict[str, Any]]:
+) -> tuple[float, str, Json]:
     if given is not None:
         return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
     apart = _recorded_apart(run, motion)

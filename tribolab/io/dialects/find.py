@@ -14,6 +14,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, peek
 from tribolab.io.schema_folder import schema_folder
+from tribolab.untyped import Json
 
 __all__ = [
     "Dialect",
@@ -138,7 +139,7 @@ def scan_dialects() -> list[Dialect]:
     return [dialect for dialect in map(load_dialect, known_dialects()) if is_scan(dialect)]
 
 
-def json_schema() -> dict[str, Any]:
+def json_schema() -> Json:
     """Return the JSON Schema of a dialect file, for editors and other programs."""
     schema = Dialect.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -6,7 +6,7 @@ import hashlib
 import io
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -16,6 +16,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
+from tribolab.untyped import Arguments
 
 BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
 _WORKERS = 2
@@ -158,7 +159,7 @@ class _Parser:
         self._read = arrow_csv.ReadOptions(
             column_names=names, block_size=_ONE_PIECE, use_threads=False
         )
-        self._convert: dict[str, Any] = {
+        self._convert: Arguments = {
             "include_columns": list(dict.fromkeys(self._wanted)),
             "null_values": ["", *dialect.text.missing],
             "decimal_point": dialect.text.decimal,
@@ -179,7 +180,7 @@ class _Parser:
             for name in self._wanted
         ]
 
-    def _arrow(self, block: bytes | memoryview, types: dict[str, Any]) -> pa.Table:
+    def _arrow(self, block: bytes | memoryview, types: Arguments) -> pa.Table:
         held = block.obj if isinstance(block, memoryview) else block
         assert isinstance(held, bytes | bytearray)  # `_pump` passes views of its own buffers
         # arrow is faster where it need not look for quotes
@@ -192,7 +193,7 @@ class _Parser:
         )
 
     def _second_try(
-        self, block: bytes, place: int, last: bool, types: dict[str, Any], error: Exception
+        self, block: bytes, place: int, last: bool, types: Arguments, error: Exception
     ) -> pa.Table:
         """Leave out a file's last row if the logger was stopped in it; else say what is wrong."""
         if last:

@@ -19,6 +19,7 @@ from tribolab.io.dialects.signature import peek
 from tribolab.io.scans.grid import even
 from tribolab.io.scans.safety import formats_to_try
 from tribolab.units import conversion, to_si
+from tribolab.untyped import Arguments, Json
 
 
 class NotSaidError(ReadError):
@@ -149,7 +150,7 @@ def _topography(
 ) -> tuple[Any, Any, float | None]:
     """Channel, topography, and what turns its heights into m, if its own unit does not."""
     channel = reader.default_channel
-    given: dict[str, Any] = {}
+    given: Arguments = {}
     if channel.physical_sizes is None:
         if x_unit is None:
             raise NotSaidError(
@@ -179,7 +180,7 @@ def _name(reader: Any) -> str:
     return str(reader.format())
 
 
-def _instrument(info: dict[str, Any]) -> dict[str, str | float]:
+def _instrument(info: Json) -> dict[str, str | float]:
     """Attributes from what SurfaceTopography found beside the heights."""
     attrs: dict[str, str | float] = {}
     if "acquisition_time" in info:

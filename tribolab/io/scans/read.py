@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import Literal, overload
 
 import numpy as np
 import xarray as xr
@@ -19,6 +19,7 @@ from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.grid import even, gridded
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.stamping import stamp
+from tribolab.untyped import Json
 
 PathLike = str | Path
 # where the scans of a surface differ, the one that shows least counts for all
@@ -251,9 +252,9 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
     return stamp(data, **_common([scan.attrs for scan in scans]))
 
 
-def _common(attrs: list[dict[str, Any]]) -> dict[str, Any]:
+def _common(attrs: list[Json]) -> Json:
     """Attributes of all scans; where they differ, joined as text."""
-    result: dict[str, Any] = {}
+    result: Json = {}
     for key in dict.fromkeys(key for scan in attrs for key in scan):
         values = [scan.get(key) for scan in attrs]
         numbers = [value for value in values if isinstance(value, float)]
