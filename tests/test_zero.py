@@ -13,6 +13,8 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.middles import middles
+from tribolab.friction.zero.offsets import wander
+from tribolab.friction.zero.rectified import ForceTrace, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.read import read
@@ -127,6 +129,15 @@ def test_zero_that_jumps_once_is_not_taken_for_a_drift():
     force = 9.0 * sign + np.where(time < 8, 0.0, 2.0)
     found = middles(force, np.ones(16), sign, np.arange(16) // 2, time)
     assert found.slope.tolist() == [0.0] * 8
+
+
+def test_a_jump_between_the_strokes_of_one_pair_is_in_its_error():
+    # the sharp loops beside it must not outvote the one that jumped, whose strokes scatter
+    value = np.array([0.0, 1e-5, 0.0, -6e-3, -12e-3, -12e-3])
+    error = np.array([2e-5, 2e-5, 2e-5, 7e-4, 2e-5, 2e-5])
+    moves = wander(value, error, 70.0 * np.arange(6))
+    step = np.mean(np.diff(value) ** 2)
+    assert 0.5 * step < moves.fast + 70.0 * moves.rate < 6 * step
 
 
 def test_stroke_without_partner_takes_the_zero_between_its_neighbours():
@@ -398,6 +409,29 @@ def test_wanted_zero_that_is_not_there_is_an_error_that_names_the_cure():
     run = programme([SPEED] * 2, loaded_rests=True)
     with pytest.raises(AnalysisError, match="offset='auto'"):
         analysed(run, offset="zero load")
+
+
+# lost signs
+
+
+@pytest.mark.parametrize(("lost", "kind"), [(True, "undecided"), (False, "signed")])
+def test_turns_within_a_sample_do_not_prove_a_sign(lost, kind):
+    rng = np.random.default_rng(3)
+    sign = np.tile([1.0, -1.0], 4)
+    levels = 2.0 * sign + 0.5 if lost else 0.25 * sign + 2.0
+    # one reading on the way from level to level, at any place of it
+    ways = zip(levels[:-1], levels[1:], [0.1, 0.92, 0.95, 0.93, 0.08, 0.07, 0.06], strict=True)
+    turns = [start + share * (stop - start) for start, stop, share in ways]
+    force = np.repeat(levels, 101)
+    force[100:-1:101] = turns
+    force = force + 0.01 * rng.standard_normal(force.size)
+    if lost:
+        force = np.abs(force)
+    parts = [slice(101 * i + 5, 101 * i + 95) for i in range(8)]
+    mean = np.array([force[part].mean() for part in parts])
+    loaded = np.ones(force.size, dtype=bool)
+    trace = ForceTrace(force, loaded, parts, mean, np.full(8, 1e-3), sign, np.nan)
+    assert folded(trace).kind.startswith(kind)
 
 
 # a campaign

@@ -75,11 +75,13 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
 
     scale = apart.mean()
     parts = np.stack([np.ones(apart.size), apart / scale], axis=1)
-    variances = np.zeros(2)
-    for _ in range(30):  # the weights depend on what is sought; this settles in a few rounds
-        expected = noise + parts @ variances
+    # the weights depend on what is sought; this settles in a few rounds. They begin equal: steps
+    # with a small error of their own would else outvote one that no error explains
+    expected = np.full(apart.size, np.max(excess + noise) + noise.max())
+    for _ in range(30):
         weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-300)
         variances, _ = optimize.nnls(parts * weight[:, None], excess * weight)
+        expected = noise + parts @ variances
     # so few squares tell a variance poorly: one standard error above it, as Student's t would; each
     # with the other held, because even spacing does not tell them apart
     variances = variances + np.sqrt(2 / ((parts * weight[:, None]) ** 2).sum(axis=0))

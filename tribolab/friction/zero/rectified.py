@@ -8,6 +8,9 @@ import numpy as np
 
 DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
 TOUCH = 5.0  # standard deviations from zero within which a force touches it
+BELOW = 1.0  # of the lower stroke's scatter: what lies deeper beneath it is on its way, too
+QUICK = 3  # readings so deep: where they are more, one of them would have come close to zero
+FEW = 0.1  # share of such turns that a spike or a slip may take below both levels
 MOST = 0.5  # share of the reversals that have to show it
 LIKE = 0.25  # of their mean: strokes that differ by less are of one level
 CLEAR = 5.0  # standard errors beyond which levels differ
@@ -116,7 +119,7 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
             return SIGNED
         if beside < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
-    dips, straight, seen = _reversals(trace)
+    dips, below, straight, seen = _reversals(trace)
     if dips >= MOST:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
@@ -125,20 +128,20 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     strokes = min(forward.size, backward.size)
     error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
     differ = high - low > max(CLEAR * error, 1e-6 * high)
-    if seen and dips < 1 - MOST and differ and straight >= MOST:
+    if seen and below <= FEW and differ and straight >= MOST:
         return SIGNED
     like = high - low < LIKE * (high + low) / 2
     why = f"{one_sign}, and the turns do not show whether it passes through zero"
     return Fold("undecided: alike" if like else "undecided", why)
 
 
-def _reversals(trace: ForceTrace) -> tuple[float, float, int]:
-    """Share of the turns that dip towards zero, share that goes straight across, number of turns.
+def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
+    """Share of the turns that dip towards zero, that go below both levels, straight; their number.
 
     "Straight" is a turn with readings between the two levels and none below them, where these are
     apart by more than the readings scatter; where they are not, one of at least ten readings.
     """
-    dips, straight, seen = 0, 0, 0
+    dips, below, straight, seen = 0, 0, 0, 0
     for i in range(len(trace.parts) - 1):
         if trace.sign[i] * trace.sign[i + 1] > 0 and (trace.sign < 0).any():
             continue
@@ -156,13 +159,15 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, int]:
             (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
         )
         (low, top), (bottom, _) = ends
-        if turn.min() < DIP * low:
-            dips += 1
+        dip = bool(turn.min() < DIP * low)
+        dips += dip
+        if dip or 0 < np.count_nonzero(turn < low - BELOW * (top - low)) <= QUICK:
+            below += 1
         elif top < bottom:
             straight += bool(((turn > top) & (turn < bottom)).any())
         else:
             straight += turn.size >= 10
-    return (dips / seen, straight / seen, seen) if seen else (0.0, 0.0, 0)
+    return (dips / seen, below / seen, straight / seen, seen) if seen else (0.0, 0.0, 0.0, 0)
 
 
 def _one_way(trace: ForceTrace) -> Fold:

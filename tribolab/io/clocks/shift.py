@@ -49,6 +49,7 @@ _MOVED = 0.5  # of a stroke's duration, between classes and starts: then other s
 _LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
 _HELD = 0.15  # least part of the square of the ways' difference that is in the error's
 _LATE = 0.06  # of a stroke's duration, that classes of speed may differ from the starts
+_VAGUE = 3.0  # times the error of the starts: a fit that tells no better confirms little
 _AGREE = 3.0  # standard deviations that two ways may lie apart
 _RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
 _AS_WELL = 3.0  # times what the classes leave unexplained
@@ -213,14 +214,13 @@ def _estimated(
         combined, part = ways["starts"], _LEAST_PART
     elif sharp_fit:
         known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
-        first = "starts" if known else "classes"
-        combined, part = _combined(ways[first], ways["motion"]), _PART
+        first = ways["classes"]
+        if known:
+            vague = ways["motion"].uncertainty > _VAGUE * ways["starts"].uncertainty
+            first = _late(ways["starts"], ways["classes"]) if vague else ways["starts"]
+        combined, part = _combined(first, ways["motion"]), _PART
     elif "starts" in ways and _confirmed(ways["starts"], ways["classes"], stroke):
-        # where friction takes its time to follow the speed, classes of speed are late, and the
-        # starts may be: what only classes confirm is known no better than half of that
-        late = 0.5 * (ways["starts"].shift - ways["classes"].shift)
-        error = float(np.hypot(ways["starts"].uncertainty, late))
-        combined, part = ways["starts"]._replace(uncertainty=error), _PART
+        combined, part = _late(ways["starts"], ways["classes"]), _PART
     else:
         return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
@@ -261,6 +261,16 @@ def _agree(first: Told, second: Told) -> bool:
 def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
     """Whether classes of speed confirm what the starts of strokes of a duration [s] tell."""
     return _agree(starts, classes) or abs(starts.shift - classes.shift) < _LATE * stroke
+
+
+def _late(starts: Told, classes: Told) -> Told:
+    """What starts tell that no sharp fit confirms: known no better than half of their advance.
+
+    Where friction takes its time to follow the speed, classes of speed are late, and the starts
+    may be.
+    """
+    advance = 0.5 * (starts.shift - classes.shift)
+    return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, advance)))
 
 
 def _refined(fit: Classes, shift: float, around: float) -> float:
