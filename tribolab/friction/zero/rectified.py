@@ -136,7 +136,7 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 
 
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
-    """Share of the turns that dip towards zero, that go below both levels, straight; their number.
+    """Share of the turns that dip towards zero, go below both levels, go straight; their number.
 
     "Straight" is a turn with readings between the two levels and none below them, where these are
     apart by more than the readings scatter; where they are not, one of at least ten readings.

@@ -264,7 +264,7 @@ def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
 
 
 def _late(starts: Told, classes: Told) -> Told:
-    """What starts tell that no sharp fit confirms: known no better than half of their advance.
+    """Widen what starts tell that no sharp fit confirms: half of their advance may be wrong.
 
     Where friction takes its time to follow the speed, classes of speed are late, and the starts
     may be.
