@@ -38,6 +38,7 @@ _CURVE = (
     "dominant_frequency",
 )
 _ENDING = {"dominant_wavelength": "_m", "recurrence_distance": "_m", "dominant_frequency": "_Hz"}
+SPEED_COLUMNS = tuple(name + _ENDING.get(name, "") for name in _CURVE)  # those that are known
 
 
 @dataclass(frozen=True)
@@ -151,8 +152,8 @@ def judge(task: ModeTask) -> ModeRecord:
     speeds = [
         {"sliding_speed_m_s": float(v)}
         | {
-            name + _ENDING.get(name, ""): mode.curve[name].values[k]
-            for name in _CURVE
+            column: mode.curve[name].values[k]
+            for name, column in zip(_CURVE, SPEED_COLUMNS, strict=True)
             if name in mode.curve
         }
         for k, v in enumerate(mode.curve["sliding_speed"].values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,12 +13,21 @@ from tribolab.qc.run_checks import RUN_CHECKS
 from tribolab.records.parts import BAD
 from tribolab.words import percent
 
+
+@dataclass(frozen=True)
+class Limits:
+    """From where on a number is suspect, and from where on it is beyond the limit."""
+
+    suspect: float
+    fail: float
+
+
 _STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}
 # A number at or above these is marked in the table of runs. Drift is judged as the check on
 # steadiness does; friction of soft contacts scatters by 2 to 10 % around a segment's mean.
-THRESHOLDS: dict[str, dict[str, float]] = {
-    "noise": {"suspect": 0.10, "fail": 0.50},
-    "drift": {key: _STEADINESS[key] for key in ("suspect", "fail")},
+THRESHOLDS = {
+    "noise": Limits(0.10, 0.50),
+    "drift": Limits(_STEADINESS["suspect"], _STEADINESS["fail"]),
 }
 # Chance below which a trend counts as one, again as that check has it.
 SURE = _STEADINESS["chance"]
@@ -34,9 +44,9 @@ def judge(kind: str, value: float | None) -> str:
     ('suspect', '', '')
     """
     limits = THRESHOLDS[kind]
-    if value is None or value < limits["suspect"]:
+    if value is None or value < limits.suspect:
         return ""
-    return "fail" if value >= limits["fail"] else "suspect"
+    return "fail" if value >= limits.fail else "suspect"
 
 
 def not_decided(change: np.ndarray, chance: np.ndarray, samples: np.ndarray) -> np.ndarray:

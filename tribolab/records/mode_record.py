@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
+from tribolab.records.annotations import one_of
 from tribolab.records.parts import CurveOutcome, ModelOutcome, Row
 
 
@@ -11,7 +13,7 @@ from tribolab.records.parts import CurveOutcome, ModelOutcome, Row
 class EvidenceRow:
     """One piece of evidence: for or against an adhesion-controlled mode, or neutral."""
 
-    side: str
+    side: Annotated[str, one_of("for", "against", "neutral")]
     text: str
     topic: str
 

@@ -21,15 +21,31 @@ if TYPE_CHECKING:
 LABELS = ("surface", "medium", "normal_force_N")
 
 
-FITTED = (
-    *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_common_error_Pa"),
-    *("shear_stress_total_error_Pa", "shear_stress_statistical_half_interval_Pa"),
-    *("area_enhancement", "area_enhancement_error"),
-    *("area_enhancement_low", "area_enhancement_high"),
-    *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa"),
-    *("chi_square", "degrees_of_freedom", "chi_square_p_value", "birge_ratio", "runs_p_value"),
-    *("valid_speed_low_m_s", "valid_speed_high_m_s", "residual_correlation", "interval_says"),
-)
+FITTED = {  # columns of a fit, and what they mean where the name does not say it
+    "shear_stress_Pa": "effective, for the contact area without adhesion",
+    "shear_stress_error_Pa": "standard error from those of the points",
+    "shear_stress_common_error_Pa": "standard error that all points share: repeatability of a "
+    "run's level",
+    "shear_stress_total_error_Pa": "standard error: of the points, with their misfit and "
+    "correlation; of the common level; of the spectrum where spectrum_error_from says whence",
+    "shear_stress_statistical_half_interval_Pa": "half the 95 % interval for the spectrum as it "
+    "is: statistical only",
+    "area_enhancement": "real contact area with adhesion over that without",
+    "area_enhancement_error": "standard error that reaches the farther of the two bounds with 95 %",
+    "area_enhancement_low": "least value within the bounds of spectrum and work of adhesion",
+    "area_enhancement_high": "greatest value within the bounds of spectrum and work of adhesion",
+    "corrected_shear_stress_Pa": "shear stress in the area that adhesion makes",
+    "corrected_shear_stress_error_Pa": "",
+    "chi_square": "",
+    "degrees_of_freedom": "",
+    "chi_square_p_value": "",
+    "birge_ratio": "",
+    "runs_p_value": "probability of so few changes of the residuals' sign by chance",
+    "valid_speed_low_m_s": "ends of the widest range of speeds that one shear stress describes",
+    "valid_speed_high_m_s": "",
+    "residual_correlation": "of the errors of neighbouring speeds, as the residuals tell it",
+    "interval_says": "what the 95 % interval holds, and which quantiles it was made with",
+}
 
 
 def model_rows(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
+from tribolab.records.annotations import Columns, means
 from tribolab.records.parts import CurveOutcome, ModelOutcome, Row, Source, SurfaceOutcome
 
 
@@ -13,6 +15,15 @@ class Origin:
 
     source: str = ""
     source_sha256: str = ""
+
+
+_POINT = Columns(
+    ("sliding_speed_m_s", "friction_coefficient"),
+    ("friction_coefficient_std", "friction_coefficient_sem"),
+    known=("sliding_speed_m_s",),
+    open=True,
+)
+Point = Annotated[Row, _POINT]  # of a measured curve
 
 
 @dataclass(frozen=True)
@@ -39,12 +50,12 @@ class CurveRecord:
     """
 
     outcome: CurveOutcome
-    points: tuple[Row, ...] = ()
+    points: tuple[Point, ...] = ()
     levels: tuple[float | None, ...] = ()
     digest: str = ""
     origin: Origin = Origin()
     no_slip: str = ""
-    points_as_found: tuple[Row, ...] = ()
+    points_as_found: tuple[Point, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -123,23 +134,13 @@ class ModelRecord:
 
 @dataclass(frozen=True)
 class FigureRecord:
-    """One figure in the results folder.
+    """One figure in the results folder."""
 
-    Parameters
-    ----------
-    file, data
-        Paths of the picture and of the numbers that it shows, relative to the folder; `data` is ""
-        if it keeps none.
-    caption
-        What stands below it.
-    alt
-        What it shows, in words and numbers, for who does not see it.
-    kind
-        What the page groups it by.
-    """
-
-    file: str
-    data: str
-    caption: str
-    alt: str
-    kind: str = ""
+    file: Annotated[str, means("SVG, relative to the results folder")]
+    data: Annotated[
+        str,
+        means("CSV with the numbers that it shows, relative to the results folder; empty if none"),
+    ]
+    caption: Annotated[str, means("what stands below it")]
+    alt: Annotated[str, means("what the figure shows, in words and numbers")]
+    kind: Annotated[str, means("what the page groups it by")] = ""

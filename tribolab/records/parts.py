@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
+from tribolab.records.annotations import one_of
 from tribolab.validity import reasons_of
 
 if TYPE_CHECKING:
@@ -291,7 +292,7 @@ class FlaggedSpan:
     """Where checks objected to a signal: suspect or fail, from when to when [s], which checks."""
 
     signal: str
-    severity: str
+    severity: Annotated[str, one_of("suspect", "fail")]
     start_s: float
     stop_s: float
     checks: tuple[str, ...]

@@ -3,20 +3,50 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
+from pydantic import Field
+
+from tribolab.friction.decisions.decision import ACTIONS
+from tribolab.qc.register import STATUSES
+from tribolab.records.annotations import Columns, Natural, means, one_of
 from tribolab.records.parts import FlaggedSpan, Notice, Row, RunOutcome, RunZero, Source
+from tribolab.records.wording import UNITS
+
+_QUANTITY = "what value_min, value_max and the highlights are"
+_SCATTER = "median over the segments of standard deviation / |mean|"
+_DRIFT = "largest significant change along a segment / mean friction; 0 if none is significant"
+_QUALITY = "gravest finding of the checks on the raw data, or what a person decided"
+_SEGMENT = Columns(
+    {
+        "segment": "number in the run, from 1",
+        "start_s": "",
+        "stop_s": "",
+        "sliding_speed_m_s": "",
+        "direction": "",
+    },
+    {
+        "friction_coefficient": "",
+        "friction_coefficient_std": "sample standard deviation of the pointwise ratio",
+        "friction_coefficient_sem": "standard error of the mean",
+    },
+    counts=("segment", "direction"),
+    values={"direction": (-1, 0, 1)},
+    row="one segment; every column of tables/friction.csv, with the unit in the name",
+    open=True,
+)
 
 
 @dataclass(frozen=True)
 class Highlight:
     """Mean friction over the strokes at one speed [m/s], with its scatter and its error."""
 
-    where: str
+    where: Annotated[str, one_of("slowest", "middle", "fastest", "all")]
     sliding_speed_m_s: float | None
     value: float | None
     std: float | None
     sem: float | None
-    segments: int
+    segments: Natural
 
 
 @dataclass(frozen=True)
@@ -24,7 +54,7 @@ class LeftOut:
     """What was left out of a run for one reason: how often, how long [s]."""
 
     reason: str
-    intervals: int
+    intervals: Natural
     duration_s: float | None
 
 
@@ -33,34 +63,38 @@ class CheckRow:
     """What one check said of a run, and how a person settled it, if one did."""
 
     check: str
-    status: str
+    status: Annotated[str, one_of(*STATUSES)]
     variable: str
     message: str
     value: float | None
     unit: str
-    decision: str = ""
+    decision: Annotated[str, means("how a person settled an objection, else empty")] = ""
 
 
 @dataclass(frozen=True)
 class DecisionRow:
-    """One decision on a run: what, when in the run [s], why, by whom, and what came of it.
+    """One decision on a run: what, when in the run [s], why, by whom, and what came of it."""
 
-    `segments` has the numbers of those that it touches, from 1; the friction coefficients are means
-    over these, with all decisions on the run (without the rejected ones) and as they were found.
-    """
-
-    action: str
-    start_s: float | None
+    action: Annotated[str, one_of(*ACTIONS)]
+    start_s: Annotated[
+        float | None, means("start of the interval that tells the segment; null for the whole run")
+    ]
     stop_s: float | None
     new_start_s: float | None
     new_stop_s: float | None
     reason: str
     author: str
     date: str
-    segments: tuple[int, ...] = ()
+    segments: Annotated[
+        tuple[Natural, ...], means("numbers of the segments that it touches, from 1")
+    ] = ()
     effect: str = ""
-    friction_coefficient: float | None = None
-    friction_coefficient_as_found: float | None = None
+    friction_coefficient: Annotated[
+        float | None, means("mean over these segments with all decisions, without the rejected")
+    ] = None
+    friction_coefficient_as_found: Annotated[
+        float | None, means("the same without any decision")
+    ] = None
 
     @property
     def where(self) -> str:
@@ -81,7 +115,7 @@ class DecisionRow:
 class Waveform:
     """The class of stick-slip of a run, and where it is seen."""
 
-    class_: str
+    class_: Annotated[str, Field(serialization_alias="class")]
     detail: str
 
 
@@ -92,12 +126,12 @@ class RunFacts:
     A run that failed has the defaults.
     """
 
-    quantity: str | None = None
+    quantity: Annotated[str, one_of(*UNITS, meaning=_QUANTITY)] | None = None
     value_min: float | None = None
     value_max: float | None = None
-    relative_scatter: float | None = None
-    relative_drift: float | None = None
-    unsteady_segments: int = 0
+    relative_scatter: Annotated[float | None, means(_SCATTER)] = None
+    relative_drift: Annotated[float | None, means(_DRIFT)] = None
+    unsteady_segments: Natural = 0
     stick_slip: Waveform | None = None
     sliding_speed_min_m_s: float | None = None
     sliding_speed_max_m_s: float | None = None
@@ -106,12 +140,12 @@ class RunFacts:
     position_range_m: tuple[float, float] | None = None
     velocity_source: str = ""
     instrument: str = ""
-    quality: str = ""
+    quality: Annotated[str, one_of("", *STATUSES, "accepted", "rejected", meaning=_QUALITY)] = ""
     checks: tuple[CheckRow, ...] = ()
     decisions: tuple[DecisionRow, ...] = ()
     recorded_at: str = ""
     duration_s: float | None = None
-    samples: int = 0
+    samples: Natural = 0
     signals: tuple[str, ...] = ()
     columns_not_used: tuple[str, ...] = ()
     clock_shift_s: float | None = None
@@ -120,7 +154,7 @@ class RunFacts:
     history: str = ""
     highlights: tuple[Highlight, ...] = ()
     omitted: tuple[LeftOut, ...] = ()
-    segments: tuple[Row, ...] = ()
+    segments: tuple[Annotated[Row, _SEGMENT], ...] = ()
     flagged: tuple[FlaggedSpan, ...] = ()
 
 

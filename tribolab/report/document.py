@@ -15,20 +15,30 @@ from pydantic import TypeAdapter
 from tribolab.provenance import sha256_of_file
 from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
 from tribolab.records.parts import Row
-from tribolab.records.run_record import RunFacts
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
+from tribolab.report.schema import (
+    CampaignFile,
+    CampaignVerdict,
+    Extent,
+    ReportedCurve,
+    ReportedFinding,
+    ReportedMode,
+    ReportedModel,
+    ReportedSurface,
+    ReportHead,
+    SourceFile,
+)
 from tribolab.untyped import Json
 from tribolab.words import many, span
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.store.outcome import Outcome
+    from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome
-    from tribolab.records.run_record import RunRecord
 
-SCHEMA_VERSION = "2.0"
 BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
-_FACTS = TypeAdapter(RunFacts)
+_HEAD = TypeAdapter(ReportHead)
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -41,12 +51,23 @@ def labels(what: RunOutcome | CurveOutcome) -> Row:
     }
 
 
-def report_document(
+def report_document(head: ReportHead) -> Json:
+    """Return what stands first in the report, as plain data, ready for JSON."""
+    return plain_value(_HEAD.dump_python(head, by_alias=True))
+
+
+def report_head(
     outcome: Outcome,
     runs: Sequence[Mapping[str, Any]],
     findings: Sequence[Notice],
-) -> Json:
-    """Return what stands first in the report, as plain data, ready for JSON.
+    *,
+    curves: Iterable[ReportedCurve],
+    surfaces: Iterable[ReportedSurface],
+    modes: Iterable[ReportedMode],
+    models: Iterable[ReportedModel],
+    figures: Mapping[str, Sequence[FigureRecord]],
+) -> ReportHead:
+    """Return all of the report but its runs.
 
     Parameters
     ----------
@@ -56,30 +77,36 @@ def report_document(
         Of each run what `brief_run` says.
     findings
         All findings, gravest first.
+    curves, surfaces, modes, models
+        As they are reported.
+    figures
+        By their section.
     """
     rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
-    lost = len(outcome.lost_decisions)
-    document = {
-        "schema_version": SCHEMA_VERSION,
-        "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "campaign": _campaign(outcome.campaign),
-        "verdict": verdict(runs, rejected, lost),
-        "thresholds": THRESHOLDS,
-        "findings": [finding._asdict() for finding in findings],
-        "sources": [
-            {"file": file, "sha256": checksum, "bytes": size}
-            for file, checksum, size in outcome.sources
-        ],
-        "versions": versions(),
-    }
-    return plain_value(document)
+    return ReportHead(
+        made_at=dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        campaign=_campaign(outcome.campaign),
+        verdict=verdict(runs, rejected, len(outcome.lost_decisions)),
+        thresholds=THRESHOLDS,
+        findings=tuple(ReportedFinding(*finding) for finding in findings),
+        sources=tuple(SourceFile(*source) for source in outcome.sources),
+        versions=versions(),
+        curves=tuple(curves),
+        surfaces=tuple(surfaces),
+        sliding_mode=tuple(modes),
+        models=tuple(models),
+        figures=tuple(figures["figures"]),
+        surface_figures=tuple(figures["surface_figures"]),
+        model_figures=tuple(figures["model_figures"]),
+        sliding_figures=tuple(figures["sliding_figures"]),
+    )
 
 
 def verdict(
     runs: Sequence[Mapping[str, Any]],
     rejected_scans: Sequence[str] = (),
     lost_decisions: int = 0,
-) -> Json:
+) -> CampaignVerdict:
     """Return what came of the campaign in one sentence and its numbers.
 
     Parameters
@@ -126,57 +153,26 @@ def verdict(
             mine = [run for run in sound if run["quantity"] == name]
             bounds = [run[key] for run in mine for key in ("value_min", "value_max")]
             known = [b for b in bounds if b is not None]
-            ranges[name] = {"min": min(known), "max": max(known)}
+            ranges[name] = Extent(min(known), max(known))
             parts.append(f"{SYMBOLS[name]} from {span(known, UNITS[name])}")
-    return {
-        "status": status,
-        "text": "; ".join(parts),
-        "runs": len(runs),
-        "done": len(done),
-        "failed": failed,
-        "rejected": rejected,
-        **{f"{word}_by_hand": count for word, count in by_hand.items()},
-        "kept": kept,
-        "reused": sum(run["reused"] for run in runs),
-        "segments": segments,
-        "segments_rejected": segments_rejected,
-        "ranges": ranges,
-    }
+    return CampaignVerdict(
+        status=status,
+        text="; ".join(parts),
+        runs=len(runs),
+        done=len(done),
+        failed=failed,
+        rejected=rejected,
+        rejected_by_hand=by_hand["rejected"],
+        accepted_by_hand=by_hand["accepted"],
+        kept=kept,
+        reused=sum(run["reused"] for run in runs),
+        segments=segments,
+        segments_rejected=segments_rejected,
+        ranges=ranges,
+    )
 
 
 _BAD = ("fail", "error")
-
-
-def run_document(record: RunRecord) -> Json:
-    """Return a run as report.json has it."""
-    run, facts = record.outcome, plain_facts(record.facts)
-    return {
-        "name": run.name,
-        "status": run.status,
-        "reason": run.reason,
-        "error": run.error,
-        **labels(run),
-        "files": list(run.files),
-        "data_file": run.data_file,
-        "reused": run.reused,
-        "kept": run.kept,
-        "seconds": run.seconds,
-        "segments_found": len(facts["segments"]),
-        "segments_rejected": run.segments_rejected,
-        "quality_as_found": run.quality_as_found,
-        **facts,
-    }
-
-
-def plain_facts(facts: RunFacts) -> Json:
-    """Return the numbers of a run as plain data."""
-    plain: Json = _FACTS.dump_python(facts, mode="json")
-    if plain["stick_slip"] is not None:
-        plain["stick_slip"] = {
-            "class": plain["stick_slip"]["class_"],
-            "detail": plain["stick_slip"]["detail"],
-        }
-    return plain
 
 
 def brief_run(run: Mapping[str, Any]) -> Json:
@@ -189,15 +185,15 @@ def brief_run(run: Mapping[str, Any]) -> Json:
 _LONG = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
 
 
-def _campaign(campaign: Campaign) -> Json:
+def _campaign(campaign: Campaign) -> CampaignFile:
     file = Path(campaign.file)
     there = file.is_file()
-    return {
-        "name": campaign.name,
-        "file": file.name,
-        "sha256": sha256_of_file(file) if there else "",
-        "text": file.read_text(encoding="utf-8-sig") if there else "",
-    }
+    return CampaignFile(
+        name=campaign.name,
+        file=file.name,
+        sha256=sha256_of_file(file) if there else "",
+        text=file.read_text(encoding="utf-8-sig") if there else "",
+    )
 
 
 def versions() -> dict[str, str]:

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 
 from tribolab.records.model_rows import FITTED, LABELS
-from tribolab.records.wording import plain_value
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
@@ -20,13 +19,27 @@ if TYPE_CHECKING:
 
 _95 = 1.959963984540054
 STATISTICAL = "statistical only: the spectrum's error is not in it"
+_FITTED = tuple(FITTED)
+BESIDE_FIT = {  # what only several models or the surface tell, and what it means
+    "area_dry_over_wet": "real contact area dry over that in the medium",
+    "judgement": "where measurement and model part, in words",
+    "spectrum_error_low": "relative change of the shear stress by what is not known of the "
+    "spectrum, down",
+    "spectrum_error_high": "and up",
+    "spectrum_error_from": "the curve for which it was computed; empty if for none",
+    "shear_stress_low_Pa": "ends of the 95 % interval with the spectrum's error in it",
+    "shear_stress_high_Pa": "",
+    "ratio_to": "surface to whose corrected shear stress the ratio is; empty if to none",
+    "ratio": "",
+    "ratio_error": "",
+}
 SHEAR_STRESS = [
     "curve",
     *LABELS,
-    *FITTED[:5],
+    *_FITTED[:5],
     *("spectrum_error_low", "spectrum_error_high", "spectrum_error_from"),
     *("shear_stress_low_Pa", "shear_stress_high_Pa"),
-    *FITTED[5:],
+    *_FITTED[5:],
     *("area_dry_over_wet", "ratio_to", "ratio", "ratio_error", "judgement"),
 ]
 CURVE = [
@@ -37,13 +50,19 @@ CURVE = [
     *("minimum_separation_m", "central_separation_m", "contact_area_ratio", "solid_load_share"),
     *("residual", "load_balance", "flux_variation", "iterations", "cells"),
 ]
-SENSITIVITY = [
-    "curve",
-    *LABELS,
-    *("variation", "low", "high", "largest_change", "largest_change_speed_m_s"),
-    *("largest_relative_change", "largest_relative_change_speed_m_s"),
-    *("shear_stress_change_low", "shear_stress_change_high", "reason"),
-]
+SENSITIVE = {  # columns of a variation, and what they mean
+    "variation": "",
+    "low": "",
+    "high": "",
+    "largest_change": "of the friction coefficient, over the height of the curve",
+    "largest_change_speed_m_s": "",
+    "largest_relative_change": "",
+    "largest_relative_change_speed_m_s": "",
+    "shear_stress_change_low": "relative change of the fitted shear stress at the low end",
+    "shear_stress_change_high": "",
+    "reason": "",
+}
+SENSITIVITY = ["curve", *LABELS, *SENSITIVE]
 
 
 @dataclass
@@ -172,28 +191,3 @@ def sensitivity_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return what moves the curves, a row per variation."""
     varied = [model.labels | row for model in rows for row in model.sensitivity]
     return pd.DataFrame(varied, columns=SENSITIVITY)
-
-
-def model_record(model: ModelOutcome, rows: ModelRow | None) -> Json:
-    """Return a model for report.json."""
-    fit = None if rows is None or rows.fit is None else rows.fit
-    return plain_value(
-        {
-            "name": model.name,
-            "curve": model.curve,
-            "status": model.status,
-            "reason": model.reason,
-            "error": model.error,
-            "surface": model.surface,
-            "medium": model.medium,
-            "normal_force_N": model.normal_force,
-            "data_file": model.data_file,
-            "reused": model.reused,
-            "kept": model.kept,
-            "seconds": model.seconds,
-            "fit": fit,
-            "sensitivity": rows.sensitivity if rows else [],
-            "not_varied": rows.not_varied if rows else "",
-            "validity": rows.validity if rows else "",
-        }
-    )

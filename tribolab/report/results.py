@@ -16,20 +16,26 @@ from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord
 from tribolab.records.parts import Notice, Row
 from tribolab.records.run_record import RunRecord
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.records.wording import plain_value
 from tribolab.report import decisions, model_records, tables
 from tribolab.report.curve_figures import draw_curves, plan_figures
-from tribolab.report.document import brief_run, labels, report_document, run_document, write_json
+from tribolab.report.document import brief_run, labels, report_document, report_head, write_json
 from tribolab.report.figure_choice import Wanted
 from tribolab.report.figures import Figures, FigureTask, planned
 from tribolab.report.live.gather import live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.model_figures import draw_model, plan_model_figures
 from tribolab.report.page import write_page
+from tribolab.report.reported import (
+    reported_curve,
+    reported_mode,
+    reported_model,
+    reported_surface,
+    run_document,
+)
 from tribolab.report.reviewing import review_data
 from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
 from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
-from tribolab.report.surface_records import surface_record, table
+from tribolab.report.surface_records import table
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
@@ -107,29 +113,27 @@ def write_report(
         tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
         sliding = plan_sliding_figures(known, modes, outcome)
         tasks += planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
-    drawn: dict[str, list[dict[str, str]]] = {section: [] for section in SECTIONS}
+    drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
     for section, record in perform(Figures(tasks, store), executor, tell):
         if isinstance(record, Notice):
             findings.append(record)
         elif record is not None:
-            drawn[section].append(_figure(record))
+            drawn[section].append(record)
 
     ordered = sorted(findings, key=lambda finding: tables.SEVERITIES.index(finding.severity))
     _write_tables(outcome, shown, surfaces, rows, ordered)
-    document = report_document(outcome, briefs, ordered)
-    named = {surface.outcome.name: surface for surface in surfaces}
-    document |= {
-        "curves": [_curve(curve) for curve in shown],
-        "surfaces": [
-            surface_record(one, named[one.name].rows if one.name in named else None)
-            for one in outcome.surfaces
-        ],
-        "sliding_mode": [_mode(modes[c.outcome.name], c) for c in shown if c.outcome.name in modes],
-        "models": [
-            model_records.model_record(model, rows.get(model.name)) for model in outcome.models
-        ],
-        **drawn,
-    }
+    named = {surface.outcome.name: surface.rows for surface in surfaces}
+    head = report_head(
+        outcome,
+        briefs,
+        ordered,
+        curves=map(reported_curve, shown),
+        surfaces=(reported_surface(one, named.get(one.name)) for one in outcome.surfaces),
+        modes=(reported_mode(modes[c.outcome.name], c) for c in shown if c.outcome.name in modes),
+        models=(reported_model(model, rows.get(model.name)) for model in outcome.models),
+        figures=drawn,
+    )
+    document = report_document(head)
     write_json(document, _documents(outcome), folder / "report.json")
     on_page = document | {"runs": briefs, "review": review_data(outcome.campaign, briefs)}
     write_page(on_page, folder, lambda: _documents(outcome), store, live)
@@ -227,48 +231,6 @@ def _modes(
             where = f"stick-slip {task.curve.name}"
             findings.append(Notice("error", members, where, answer))
     return modes, findings
-
-
-def _figure(record: FigureRecord) -> dict[str, str]:
-    names = ("file", "data", "caption", "alt", "kind")
-    return {name: getattr(record, name) for name in names}
-
-
-def _curve(curve: CurveRecord) -> Json:
-    """Return a curve for report.json."""
-    outcome = curve.outcome
-    facts = {
-        "runs": list(outcome.run_names),
-        "points": list(curve.points),
-        "points_as_found": list(curve.points_as_found),
-    }
-    return {"name": outcome.name, **labels(outcome), **facts}
-
-
-def _mode(mode: ModeRecord, curve: CurveRecord) -> Json:
-    """Return the sliding mode of a curve for report.json."""
-    return plain_value(
-        {
-            "curve": mode.curve,
-            "condition": mode.condition,
-            **labels(curve.outcome),
-            "verdict": mode.verdict,
-            "text": mode.text,
-            "paragraph": mode.paragraph,
-            "evidence": [
-                {"side": piece.side, "text": piece.text, "topic": piece.topic}
-                for piece in mode.evidence
-            ],
-            "decide": list(mode.decide),
-            "numbers": mode.numbers,
-            "segments": mode.segments,
-            "segments_oscillating": mode.segments_oscillating,
-            "scaling": mode.scaling,
-            "scaling_exponent": mode.scaling_exponent,
-            "scaling_error": mode.scaling_error,
-            "speeds": list(mode.speeds),
-        }
-    )
 
 
 def _write_tables(

@@ -3,7 +3,7 @@
 To add one: write ``templates/sections/<name>.html.j2`` (the body only: heading and place in the
 contents are made from the entry below; the whole report is its context, the helpers come with
 ``{% import "parts.html.j2" as part with context %}``), put what it shows into the document under
-one key (`tribolab.report.results.write_report`, and ``raw_data_schema/report.schema.json``), and
+one key (`tribolab.report.results.write_report` and `tribolab.report.schema.ReportHead`), and
 add an entry here. A section with a `key` appears once the document has something under that key.
 """
 

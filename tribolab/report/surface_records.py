@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tribolab.records.part_records import SurfaceRows
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
-    from tribolab.records.parts import Row, SurfaceOutcome
+    from tribolab.records.parts import Row
 
 
 def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.DataFrame:
@@ -26,25 +25,3 @@ def table(rows: Sequence[SurfaceRows], name: str, columns: Sequence[str]) -> pd.
         )
     ]
     return pd.DataFrame(parts, columns=["surface", "quality", *columns])
-
-
-def surface_record(surface: SurfaceOutcome, rows: SurfaceRows | None) -> Json:
-    """Return a surface for report.json."""
-    return {
-        "name": surface.name,
-        "status": surface.status,
-        "reason": surface.reason,
-        "error": surface.error,
-        "quality": surface.quality,
-        "checks": list(surface.checks),
-        "files": list(surface.files),
-        "data_file": surface.data_file,
-        "reused": surface.reused,
-        "kept": surface.kept,
-        "seconds": surface.seconds,
-        "roughness": rows.roughness if rows else None,
-        "contact": list(rows.contact) if rows else [],
-        "adhesion": list(rows.adhesion) if rows else [],
-        "modulus": rows.modulus if rows else "",
-        "validity": rows.validity if rows else "",
-    }
