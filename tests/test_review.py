@@ -1,12 +1,14 @@
 """A review file does in a campaign what `tl.decide` does in a notebook, and all of it is told."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from campaigns import RUNS, copied
 from report_pages import details_of
 from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, entry, rows_of
@@ -14,7 +16,9 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.app.run import run_campaign
+from tribolab.campaign.runs.analysis import analyse
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.settings.plan import planned_runs
 from tribolab.campaign.settings.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
 from tribolab.cli import app
 from tribolab.errors import ConfigError
@@ -86,6 +90,32 @@ def test_friction_with_decisions_and_without_are_both_kept(original, reviewed):
     assert abs(run[SLIP + 1] / sound - 1) > 0.2
     moved = now["findings"].query("where == @GLYCEROL").message.item()
     assert moved.startswith("decisions change µ by at most ") and "stribeck_as_found" in moved
+
+
+@pytest.mark.parametrize("action", ["note", "accept"])
+@pytest.mark.parametrize("name", [FROZEN, SLIPPED])
+def test_notes_and_acceptance_move_no_number_and_cost_no_second_analysis(
+    original, monkeypatch, name, action
+):
+    [planned] = [run for run in planned_runs(load_campaign(original)) if run.name == name]
+    bare = analyse(planned)
+    calls = []
+
+    def counted(*given, **options):
+        calls.append(given)
+        return friction_coefficient(*given, **options)
+
+    place = "tribolab.friction.coefficient.coefficient.friction_coefficient"
+    monkeypatch.setattr(place, counted)
+    decision = Decision(action, "humid day", "A. Person", "2026-11-20")
+    decided = analyse(replace(planned, decisions=(decision,)))
+    assert len(calls) == 1
+    for result in (decided.friction_as_found, bare.friction):
+        del result.attrs["history"]  # it says when
+    xr.testing.assert_identical(decided.friction_as_found, bare.friction)
+    assert decided.quality_as_found == bare.quality
+    settled = action == "accept" and bare.quality in ("suspect", "fail")
+    assert decided.quality == ("accepted" if settled else bare.quality)
 
 
 def test_every_decision_stands_in_a_table_with_what_came_of_it(reviewed):

@@ -41,6 +41,11 @@ class FindingRow(TypedDict):
     decision: NotRequired[str]
 
 
+def _gravest(statuses: Iterable[str]) -> str:
+    there = {*statuses} - {"skipped"}
+    return max(there, key=STATUSES.index, default="skipped")
+
+
 @dataclass(frozen=True, repr=False)
 class Findings:
     """What every check said about one run or one set of scans.
@@ -119,13 +124,12 @@ class Findings:
         Where a person decided on the run it is "accepted" or "rejected"; objections that a person
         settled do not count.
         """
-        if self.verdict:
-            return self.verdict
-        statuses = {result.status for _, result in self.results if not result.settled}
-        for status in reversed(STATUSES):
-            if status in statuses and status != "skipped":
-                return status
-        return "skipped"
+        return self.verdict or _gravest(r.status for _, r in self.results if not r.settled)
+
+    @property
+    def status_as_found(self) -> str:
+        """The gravest status, whatever a person accepted."""
+        return _gravest(result.status for _, result in self.results)
 
     def count(self) -> Mapping[str, int]:
         """Return how many results there are of each status."""

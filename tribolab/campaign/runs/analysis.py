@@ -60,17 +60,19 @@ def analyse(run: PlannedRun) -> Analysed:
     TribolabError
         If it cannot be read or analysed, or a decision finds no segment.
     """
-    from tribolab.friction.decisions.decide import decide
+    from tribolab.friction.decisions.decide import decide, without_decisions
     from tribolab.friction.segments.find import find_segments
 
     signals = _read(run)
     segments = find_segments(signals, **run.segments)
-    friction, slip, said = _examined(run, signals, segments)
     before: tuple[xr.Dataset | None, str] = (None, "")
-    if run.decisions:
+    if any(decision.moves_numbers for decision in run.decisions):
+        friction, _, said = _examined(run, signals, segments)
         before = friction, said.status
-        segments = decide(segments, run.decisions, signals)
-        friction, slip, said = _examined(run, signals, segments)
+    segments = decide(segments, run.decisions, signals)
+    friction, slip, said = _examined(run, signals, segments)
+    if run.decisions and before[0] is None:  # the numbers are the same
+        before = without_decisions(friction), said.status_as_found
     signals = said.marked
     signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
     found = Analysed(signals, segments, friction, slip, said.status, *before)

@@ -100,6 +100,16 @@ def decide(
     return stamp(result).assign_attrs({DECISIONS: rows})
 
 
+def without_decisions(data: xr.Dataset) -> xr.Dataset:
+    """Return segments, or a result on them, without what `decide` says of them.
+
+    It undoes notes and acceptance; what was rejected or bounded anew has other numbers.
+    """
+    bare = data.drop_vars([REJECTED, "decision"], errors="ignore")
+    bare.attrs = {name: value for name, value in data.attrs.items() if name != DECISIONS}
+    return bare
+
+
 def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
     """Return the places of the segments that a decision is about."""
     every = list(range(segments.sizes["segment"]))

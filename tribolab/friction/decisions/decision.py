@@ -72,6 +72,11 @@ class Decision:
         """Interval of the run's time that tells the segment [s]; None: the whole run."""
         return None if self.start is None or self.stop is None else (self.start, self.stop)
 
+    @property
+    def moves_numbers(self) -> bool:
+        """Whether friction may be another with it; notes and acceptance leave it as it is."""
+        return self.action in (REJECT, BOUNDS)
+
     def __str__(self) -> str:
         """Say in a few words which decision this is."""
         where = "the whole run"
