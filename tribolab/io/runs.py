@@ -17,6 +17,7 @@ from tribolab.io.clocks.clock import join_clocks, mended_time, set_time
 from tribolab.io.content.model import Content
 from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
+from tribolab.io.derived import add_derived
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike, companion_path
@@ -27,6 +28,7 @@ from tribolab.io.row_counts import (
     with_companion_rows,
 )
 from tribolab.provenance import CONVENTIONS, as_text, history_line
+from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 from tribolab.untyped import Json
@@ -238,6 +240,7 @@ def _run(logs: Logs) -> xr.Dataset:
         columns = {name: values[mended.keep] for name, values in columns.items()}
     origin = float(time[0])
     time -= origin
+    add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
     _add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
@@ -250,6 +253,16 @@ def _run(logs: Logs) -> xr.Dataset:
         attrs=attrs,
     )
     return stamp(data)
+
+
+def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
+    """SI units of what is no quantity, and there for formulas only."""
+    of_steps = {
+        value.name: value.si_unit
+        for value in dialect.value
+        if value.source == "step" and value.unit is not None and value.name not in QUANTITIES
+    }
+    return of_steps | {k: v for content in contents for k, v in content.symbols.items()}
 
 
 def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]:
@@ -313,6 +326,11 @@ def _check_normal_force(
     )
 
 
+def _speed_from(dialect: Dialect) -> str:
+    by_formula = any(rule.quantity == "sliding_velocity" for rule in dialect.derived)
+    return "formula" if by_formula else dialect.speed.source
+
+
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
     """Provenance, and what else the run should know of its files."""
     from tribolab.version import __version__
@@ -332,13 +350,13 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
         "time_source": {"column": "recorded", "rate": "sample rate", "none": "row number"}[
             dialect.time.source
         ],
-        "speed_from": dialect.speed.source,
+        "speed_from": _speed_from(dialect),
     }
     moment = contents[0].pieces[0].started
     if moment is not None:
         attrs["recorded_at"] = moment.isoformat()
     for column in dialect.column:
-        if column.quantity in labels:
+        if column.key in labels:
             attrs.update(column.attributes)
     for content in contents:
         attrs.update(content.notes)

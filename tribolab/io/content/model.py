@@ -31,3 +31,4 @@ class Content(NamedTuple):
     not_used: tuple[str, ...]
     left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
     notes: Mapping[str, str] = {}
+    symbols: Mapping[str, str] = {}  # SI units of columns that only formulas use

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import LARGEST, Content, Piece
 from tribolab.io.content.steps import last_match, started
-from tribolab.io.dialects.columns import resolve
+from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, peek
 from tribolab.provenance import sha256_of_file
 
+_T = TypeVar("_T")
 _PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
 
 
@@ -66,6 +69,7 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     hasher = Hasher() if whole else None
     pieces: list[Piece] = []
     labels: dict[str, str] = {}
+    own: dict[str, str] = {}
     unused: dict[str, None] = {}
     cut = 0
     for table in raw.tables:
@@ -75,6 +79,7 @@ def _read_text(file: File, dialect: Dialect) -> Content:
         cut += incomplete
         labels.update({s.quantity: f"{s.label} [{s.unit}]" for s in signals})
         unused.update(dict.fromkeys(not_used))
+        own.update(symbols(signals, dialect))
         step = last_match(dialect.header.step, table.before) if dialect.header.step else None
         if step is None and dialect.header.repeats:
             step = str(len(pieces) + 1)
@@ -90,7 +95,7 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     outside = rows_outside(raw, dialect.text.delimiter)
     left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
     left_out = {reason: count for reason, count in left_out.items() if count}
-    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out)
+    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out, symbols=own)
 
 
 def measurable(values: np.ndarray) -> np.ndarray:
@@ -113,11 +118,11 @@ def measurable(values: np.ndarray) -> np.ndarray:
 
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
-    content = _possible(content)
+    content = _chosen(_possible(content))
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
-    optional = {column.quantity for column in dialect.column if column.optional}
+    optional = {column.key for column in dialect.column if column.optional}
     present = dict.fromkeys(name for piece in content.pieces for name in piece.columns)
     empty = [
         name
@@ -139,6 +144,31 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     ]
     without = tuple(f"{content.labels[name]} (no values)" for name in empty)
     return content._replace(pieces=pieces, not_used=content.not_used + without)
+
+
+def _chosen(content: Content) -> Content:
+    """Of columns that may hold one quantity keep the first that is filled."""
+    keys = dict.fromkeys(key for piece in content.pieces for key in piece.columns)
+    parts = {
+        key: [piece.columns[key] for piece in content.pieces if key in piece.columns]
+        for key in keys
+    }
+    chosen = first_filled(parts)
+    if not chosen:
+        return content
+    pieces = [piece._replace(columns=_named(piece.columns, chosen)) for piece in content.pieces]
+    left = [key for key in keys if key.split(AGAIN)[0] in chosen and key not in chosen.values()]
+    unused = tuple(f"{content.labels[key]} (another column is filled)" for key in left)
+    labels = _named(content.labels, chosen)
+    return content._replace(pieces=pieces, labels=labels, not_used=content.not_used + unused)
+
+
+def _named(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, _T]:
+    """Give the chosen columns their quantities' names, and leave out the others."""
+    kept = {
+        key: value for key, value in columns.items() if chosen.get(key.split(AGAIN)[0], key) == key
+    }
+    return {key.split(AGAIN)[0]: value for key, value in kept.items()}
 
 
 def _possible(content: Content) -> Content:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
-from tribolab.io.dialects.columns import resolve
+from tribolab.io.dialects.columns import resolve, symbols
 from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.model import Dialect, Marks
 from tribolab.io.dialects.patterns import guarded
@@ -56,7 +56,9 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
         notes |= more
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
     piece = Piece(columns, before=text)
-    return Content(path, sha256_of_file(path), [piece], labels, tuple(unused), notes=notes)
+    own = symbols(signals, dialect)
+    sha256 = sha256_of_file(path)
+    return Content(path, sha256, [piece], labels, tuple(unused), notes=notes, symbols=own)
 
 
 def _incomplete(file: Any) -> dict[str, str]:

@@ -9,7 +9,6 @@ from tribolab.io.content.model import Content
 from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect, Value
 from tribolab.io.dialects.patterns import guarded
-from tribolab.quantities import QUANTITIES
 from tribolab.units import conversion
 
 
@@ -35,7 +34,10 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
 def step_values(
     contents: list[Content], dialect: Dialect
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Values that each step has: numbers as variables along time, texts as one attribute each."""
+    """Values that each step has: numbers as variables along time, texts as one attribute each.
+
+    A number whose name is no quantity is for formulas only.
+    """
     variables: dict[str, np.ndarray] = {}
     attrs: dict[str, str] = {}
     places = [(content, piece) for content in contents for piece in content.pieces]
@@ -47,7 +49,7 @@ def step_values(
             attrs[f"{value.name}s"] = "; ".join(
                 f"{piece.step}: {text}" for text, (_, piece) in zip(texts, places, strict=True)
             )
-        elif value.name in QUANTITIES:
+        else:
             numbers = [
                 _converted(text, value, content, dialect) if text else np.nan
                 for text, (content, _) in zip(texts, places, strict=True)

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from tribolab.errors import ReadError, UnitError, nearest, shown
 from tribolab.io.dialects.model import Column, Dialect
-from tribolab.quantities import quantity, unit_conversion
+from tribolab.units import conversion
+
+AGAIN = "~"  # between a quantity and the number of a further column that may hold it
 
 
 class ReadColumn(NamedTuple):
-    """A column that is read: its place (from 0), quantity, unit; ``si = scale * x + offset``."""
+    """A column that is read: its place (from 0), key; ``si = scale * x + offset``.
+
+    The key is its quantity or symbol; a further column for the same quantity has ``~2`` ... after
+    it, see `first_filled`.
+    """
 
     place: int
     quantity: str
+    si_unit: str
     label: str
     unit: str
     scale: float
@@ -50,13 +59,22 @@ def resolve(
     Raises
     ------
     ReadError
-        If a column is missing or has no usable unit.
+        If columns are missing or have no usable unit: all of them are told.
     """
-    signals = []
+    signals: list[ReadColumn] = []
+    refused: list[str] = []
     for column in dialect.column:
-        index = _index(where, column, names, width, dialect)
-        if index is not None:
-            signals.append(_signal(where, column, index, names, units, dialect))
+        try:
+            index = _index(column, names, width, dialect)
+            if index is not None:
+                signal = _signal(column, index, names, units, dialect)
+                before = sum(known.quantity.split(AGAIN)[0] == column.key for known in signals)
+                key = f"{column.key}{AGAIN}{before + 1}" if before else column.key
+                signals.append(signal._replace(quantity=key))
+        except ReadError as error:
+            refused.append(str(error))
+    if refused:
+        raise ReadError(f"{where}: {'; '.join(refused)} (instrument '{dialect.name}')")
     used = {signal.place for signal in signals}
     unused = [
         f"{name} [{unit}]" if unit else name
@@ -68,17 +86,47 @@ def resolve(
     return signals, unused
 
 
-def _index(
-    where: str, column: Column, names: Sequence[str], width: int, dialect: Dialect
-) -> int | None:
+def symbols(signals: Sequence[ReadColumn], dialect: Dialect) -> dict[str, str]:
+    """Return the SI units of those columns that only formulas use."""
+    own = {column.symbol for column in dialect.column if column.symbol}
+    return {signal.quantity: signal.si_unit for signal in signals if signal.quantity in own}
+
+
+def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
+    """Choose among columns that may hold one quantity the first that is filled.
+
+    Parameters
+    ----------
+    columns
+        Arrays of each piece by the keys of `ReadColumn`.
+
+    Returns
+    -------
+    dict
+        Key of the chosen column by quantity, of quantities with more than one. Filled is what
+        holds a number that is not zero; where none does, the first is taken.
+    """
+    keys: dict[str, list[str]] = {}
+    for key in columns:
+        keys.setdefault(key.split(AGAIN)[0], []).append(key)
+    chosen = {}
+    for name, options in keys.items():
+        if len(options) > 1:
+            filled = (
+                key for key in options if any(np.nan_to_num(part).any() for part in columns[key])
+            )
+            chosen[name] = next(filled, options[0])
+    return chosen
+
+
+def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -> int | None:
     if column.position is not None:
         if column.position <= width:
             return column.position - 1
         if column.optional:
             return None
         raise ReadError(
-            f"{where}: column {column.position} ({column.quantity}) is missing, the table has "
-            f"{width} columns (instrument '{dialect.name}')"
+            f"column {column.position} ({column.key}) is missing, the table has {width} columns"
         )
     places = [index for index, name in enumerate(names) if name == column.name]
     if len(places) >= column.occurrence:
@@ -87,53 +135,50 @@ def _index(
             return index
         if not column.optional:
             raise ReadError(
-                f"{where}: the header names {len(names)} columns, but the first row of numbers "
-                f"has {width}: column '{shown(column.name)}' ({column.quantity}) has no values"
+                f"the header names {len(names)} columns, but the first row of numbers "
+                f"has {width}: column '{shown(column.name)}' ({column.key}) has no values"
             )
         return None
     if column.optional:
         return None
     if places:
         raise ReadError(
-            f"{where}: column '{shown(column.name)}' ({column.quantity}) should stand there "
+            f"column '{shown(column.name)}' ({column.key}) should stand there "
             f"{column.occurrence} times, it stands {len(places)} times"
         )
     hint = nearest(column.name or "", [name for name in names if name])
     if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
         hint = ""  # no column of this instrument is there: what the file holds is not told
-    raise ReadError(
-        f"{where}: column '{shown(column.name)}' ({column.quantity}) is missing (instrument "
-        f"'{dialect.name}'){hint}"
-    )
+    raise ReadError(f"column '{shown(column.name)}' ({column.key}) is missing{hint}")
 
 
 def _signal(
-    where: str,
     column: Column,
     index: int,
     names: Sequence[str],
     units: Sequence[str | None],
     dialect: Dialect,
 ) -> ReadColumn:
-    wanted = quantity(column.quantity).unit
     label = names[index] if names else f"column {index + 1}"
     unit = column.unit if column.unit is not None else (units[index] if units else None)
-    if unit is None and wanted not in ("", "1"):
+    wanted = column.si_unit(unit)
+    if unit is None and (column.symbol or wanted not in ("", "1")):
         raise ReadError(
-            f"{where}: column '{shown(label)}' has no unit; say it in the dialect "
+            f"column '{shown(label)}' has no unit; say it in the dialect "
             f"'{dialect.name}' or a copy of it, e.g. unit = \"{wanted}\" in its [[column]]"
         )
     try:
-        scale, offset = unit_conversion(unit or "", column.quantity)
+        scale, offset = conversion(unit or "", wanted, column.bare)
     except UnitError as error:
         raise ReadError(
-            f"{where}: column '{shown(label)}' ({column.quantity}): {error}; the right unit can be "
-            f"given in the dialect '{dialect.name}'"
+            f"column '{shown(label)}' ({column.key}): {error}; the right unit can be "
+            "given in the dialect"
         ) from error
     # sign * (scale * x + offset), then the unit
     return ReadColumn(
         place=index,
-        quantity=column.quantity,
+        quantity=column.key,
+        si_unit=wanted,
         label=label,
         unit=unit or "1",
         scale=column.sign * column.scale * scale,

@@ -125,7 +125,7 @@ def is_scan(dialect: Dialect) -> bool:
     >>> is_scan(load_dialect("surftest_csv")), is_scan(load_dialect("linear_slider"))
     (True, False)
     """
-    return {"x", "height"} <= {column.quantity for column in dialect.column}
+    return {"x", "height"} <= {column.key for column in dialect.column}
 
 
 def scan_dialects() -> list[Dialect]:

@@ -22,6 +22,7 @@ from pydantic import (
 )
 
 from tribolab.errors import TribolabError, nearest, shown
+from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.patterns import PatternError, guarded
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
@@ -54,9 +55,19 @@ def _is_quantity(name: str) -> str:
     return name
 
 
+def _is_formula(text: str) -> str:
+    try:
+        parse_formula(text)
+    except TribolabError as error:
+        raise ValueError(str(error)) from error
+    return text
+
+
 Pattern = Annotated[str, AfterValidator(_is_pattern)]
 Encoding = Annotated[str, AfterValidator(_is_encoding)]
 QuantityName = Annotated[str, AfterValidator(_is_quantity)]
+Formula = Annotated[str, AfterValidator(_is_formula)]
+Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
 Sign = Literal[1, -1]
 FRICTION = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
 
@@ -178,7 +189,10 @@ class Rows(_Strict):
 class Column(_Strict):
     """Which column is which quantity: value in SI = sign * (scale * x + offset) * unit."""
 
-    quantity: QuantityName
+    quantity: QuantityName | None = None
+    symbol: Symbol | None = Field(
+        None, description="instead of a quantity: a name of your own, for formulas of [[derived]]"
+    )
     name: str | None = Field(None, description="name in the header without its unit")
     occurrence: PositiveInt = Field(1, description="which one, when a name is used twice")
     position: PositiveInt | None = Field(None, description="number of the column, from 1")
@@ -187,7 +201,11 @@ class Column(_Strict):
     scale: float = 1.0
     offset: float = 0.0
     sign: Sign = 1
-    optional: bool = Field(False, description="may be missing or empty in some files")
+    optional: bool = Field(
+        False,
+        description="may be missing or empty in some files; of several such columns for one "
+        "quantity the first that is filled is taken",
+    )
     zero_uncertainty: str | None = Field(
         None, description="standard uncertainty of its zero with unit, e.g. '0.2 N': friction only"
     )
@@ -197,27 +215,44 @@ class Column(_Strict):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
+        if (self.quantity is None) == (self.symbol is None):
+            raise ValueError("a column has either a quantity or a symbol")
+        if self.symbol in QUANTITIES:
+            raise ValueError(f"'{self.symbol}' is a quantity: say quantity = '{self.symbol}'")
         if (self.name is None) == (self.position is None):
-            raise ValueError(f"column '{self.quantity}': give either name or position")
+            raise ValueError(f"column '{self.key}': give either name or position")
         if self.unit is not None:
-            known = quantity(self.quantity)
-            _check_unit(self.unit, known.unit, known.bare)
+            _check_unit(self.unit, self.si_unit(self.unit), self.bare)
         stated = {"zero_uncertainty": self.zero_uncertainty, "rectified": self.rectified}
         for key, value in stated.items():
             if value is not None and self.quantity not in FRICTION:
-                raise ValueError(
-                    f"column '{self.quantity}': {key} is for {' and '.join(FRICTION)} only"
-                )
+                raise ValueError(f"column '{self.key}': {key} is for {' and '.join(FRICTION)} only")
         if self.zero_uncertainty is not None:
-            to_si(self.zero_uncertainty, quantity(self.quantity).unit, "zero_uncertainty")
+            to_si(self.zero_uncertainty, self.si_unit(None), "zero_uncertainty")
         return self
+
+    @property
+    def key(self) -> str:
+        """What the column is called here: its quantity, or its symbol."""
+        return self.quantity or str(self.symbol)
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it."""
+        return quantity(self.quantity).bare if self.quantity else None
+
+    def si_unit(self, unit: str | None) -> str:
+        """SI unit that numbers in a unit are turned into."""
+        if self.quantity:
+            return quantity(self.quantity).unit
+        return base_unit(unit) if unit not in (None, "", "1", "-", "%") else "1"
 
     @property
     def attributes(self) -> dict[str, float | bool]:
         """What is stated of its zero and sign, as attributes of the run."""
         attrs: dict[str, float | bool] = {}
         if self.zero_uncertainty is not None:
-            unit = quantity(self.quantity).unit
+            unit = self.si_unit(None)
             ending = "" if unit == "1" else f"_{unit}"
             value = abs(to_si(self.zero_uncertainty, unit, "zero_uncertainty"))
             attrs[f"{self.quantity}_zero_uncertainty{ending}"] = value
@@ -290,6 +325,16 @@ class Value(_Strict):
         return f"{self.name}_{re.sub(r'[^A-Za-z0-9]+', '_', self.si_unit)}"
 
 
+class Derived(_Strict):
+    """A quantity that no column holds: a formula of columns, values and quantities with units."""
+
+    quantity: QuantityName
+    formula: Formula = Field(
+        description="+ - * / ( ) of quantities and symbols of columns, names of values, pi, and "
+        "numbers with units in quotes: \"torque / (radius + '5 mm')\""
+    )
+
+
 class Speed(_Strict):
     """How the sliding speed comes about."""
 
@@ -339,13 +384,18 @@ class Dialect(_Strict):
     marks: Marks | None = None
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
+    derived: tuple[Derived, ...] = ()
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        names = [column.quantity for column in self.column]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise ValueError(f"quantity '{twice[0]}' is given by two columns")
+        names = [column.key for column in self.column]
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            if not all(column.optional for column in self.column if column.key == name):
+                raise ValueError(
+                    f"'{name}' is given by two columns; if each file fills one of them, say "
+                    "optional = true for all: the first that is filled is taken"
+                )
+        _check_formulas(self.derived, names, [v.name for v in self.value if v.unit is not None])
         if ("time" in names) != (self.time.source == "column"):
             raise ValueError("a column for 'time' and time.source = 'column' belong together")
         without_header = self.header.line is None and self.header.pattern is None
@@ -353,7 +403,7 @@ class Dialect(_Strict):
             for column in self.column:
                 if column.position is None or column.unit is None:
                     raise ValueError(
-                        f"column '{column.quantity}': in a file without a header it needs "
+                        f"column '{column.key}': in a file without a header it needs "
                         "position and unit"
                     )
         if self.speed.radius_value and self.speed.radius_value not in {v.name for v in self.value}:
@@ -361,6 +411,20 @@ class Dialect(_Strict):
                 f"speed.radius_value: there is no value '{shown(self.speed.radius_value)}'"
             )
         return self
+
+
+def _check_formulas(derived: tuple[Derived, ...], columns: list[str], values: list[str]) -> None:
+    """Each formula needs what there is: columns, values with a unit, results of those before it."""
+    known = {*columns, *values}
+    for one in derived:
+        for name in sorted(names_in(parse_formula(one.formula)) - known):
+            raise ValueError(
+                f"formula of '{one.quantity}': there is no column, value with a unit or derived "
+                f"quantity before it called '{shown(name)}'{nearest(name, known)}"
+            )
+        if one.quantity in columns:
+            raise ValueError(f"'{one.quantity}' is given by a column and by a formula")
+        known.add(one.quantity)
 
 
 def _check_unit(unit: str, si_unit: str, bare: Counted | None = None) -> None:

@@ -1,0 +1,117 @@
+"""Quantities of a run that no column holds: formulas of columns and of values beside the table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.errors import Cure, ReadError, UnitError
+from tribolab.io.content.read import measurable
+from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
+from tribolab.io.dialects.model import Derived, Dialect, Value
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.untyped import Json
+
+_NO_CONTACT = 0.02  # share of the greatest normal stress below which nothing is pressed
+
+
+def add_derived(
+    columns: dict[str, np.ndarray],
+    symbols: Mapping[str, str],
+    attrs: Json,
+    rows: int,
+    where: str,
+    dialect: Dialect,
+) -> None:
+    """Add the quantities that follow by formula, and take out what only formulas needed.
+
+    Parameters
+    ----------
+    columns
+        Arrays in SI by quantity or symbol (time); changed in place.
+    symbols
+        SI units of the symbols.
+    attrs
+        Attributes of the run, which hold the values beside the table; what each quantity follows
+        from is added as ``derived``.
+    rows
+        Number of rows.
+    where
+        The run, for messages.
+    dialect
+        The instrument's dialect.
+
+    Raises
+    ------
+    ReadError
+        If something that a formula needs is not in this file, or the units do not fit. All that is
+        missing is told at once.
+    """
+    known = _operands(columns, symbols, attrs, dialect)
+    missing, said = [], {}
+    for rule in dialect.derived:
+        lost = sorted(names_in(parse_formula(rule.formula)) - set(known))
+        if lost:
+            missing.append(f"{rule.quantity} = {rule.formula} needs {', '.join(lost)}")
+            continue
+        unit = quantity(rule.quantity).unit
+        values = _evaluated(rule, known, unit, where)
+        columns[rule.quantity] = measurable(np.broadcast_to(values, rows).astype(float))
+        known[rule.quantity] = in_base_units(columns[rule.quantity], unit)
+        said[rule.quantity] = rule.formula
+    if missing:
+        raise ReadError(
+            f"what a formula needs is not there: {'; '.join(missing)} (instrument "
+            f"'{dialect.name}')",
+            where=where,
+            cure=Cure(*["mend [[column]], [[value]] or [[derived]] in the dialect"] * 3),
+        )
+    _add_ratio_of_stresses(columns, said)
+    for name in symbols:
+        columns.pop(name, None)
+    if said:
+        attrs["derived"] = said
+
+
+def _add_ratio_of_stresses(columns: dict[str, np.ndarray], said: dict[str, str]) -> None:
+    """Where a run that slides has stresses in place of forces, their ratio is the coefficient."""
+    slides = {"sliding_velocity", "position", "rotation_speed", "set_speed"} & set(columns)
+    known = {"friction_force", "friction_coefficient"} & set(columns)
+    if known or not slides or not {"shear_stress", "normal_stress"} <= set(columns):
+        return
+    normal = columns["normal_stress"]
+    pressed = normal > _NO_CONTACT * np.nanmax(np.abs(normal), initial=0.0)
+    ratio = np.full(normal.size, np.nan)
+    np.divide(columns["shear_stress"], normal, out=ratio, where=pressed)
+    columns["friction_coefficient"] = ratio
+    said["friction_coefficient"] = "shear_stress / normal_stress"
+
+
+def _evaluated(
+    rule: Derived, known: Mapping[str, Operand], unit: str, where: str
+) -> np.ndarray | float:
+    try:
+        return evaluate(rule.formula, known, unit)
+    except UnitError as error:
+        raise ReadError(f"{rule.quantity}: {error}", where=where) from error
+
+
+def _operands(
+    columns: Mapping[str, np.ndarray], symbols: Mapping[str, str], attrs: Json, dialect: Dialect
+) -> dict[str, Operand]:
+    known = {}
+    for name, values in columns.items():
+        if name in symbols or name in QUANTITIES:
+            known[name] = in_base_units(values, symbols.get(name) or quantity(name).unit)
+    for value in dialect.value:
+        number = _number(value, attrs)
+        if number is not None:
+            known[value.name] = in_base_units(number, value.si_unit)
+    return known
+
+
+def _number(value: Value, attrs: Json) -> float | None:
+    """Return a value beside the table, if it was there and is a number."""
+    number = attrs.get(value.attribute) if value.unit is not None else None
+    return float(number) if isinstance(number, float | int) else None

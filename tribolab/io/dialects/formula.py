@@ -1,0 +1,277 @@
+"""The grammar of formulas for derived columns: parsed, never evaluated as code.
+
+    formula = term { ("+" | "-") term }
+    term    = factor { ("*" | "/") factor }
+    factor  = number | name | "'" number unit "'" | "-" factor | "(" formula ")"
+
+Names are those of columns, of values and ``pi``; a number with a unit stands in quotes. Every part
+has a dimension, and sums of different ones are refused.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import UnitError, nearest, shown
+from tribolab.units import base_unit, registry, to_si
+
+LONGEST = 300  # letters
+_DEEPEST = 20
+_QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
+    r"|(?P<quoted>'[^']*')|(?P<sign>[-+*/()]))"
+)
+
+Array = np.ndarray
+Dimension = tuple[tuple[str, float], ...]  # base dimensions and their powers, in order of name
+
+
+class Operand(NamedTuple):
+    """A number or an array in SI base units, and its dimension."""
+
+    value: Array | float
+    dimension: Dimension
+
+
+class Node(NamedTuple):
+    """Part of a formula: "number", "name" or an operator, with what it acts upon."""
+
+    kind: str
+    text: str = ""
+    operand: Operand | None = None
+    parts: tuple[Node, ...] = ()
+
+
+@functools.lru_cache(maxsize=256)
+def dimension_of(unit: str) -> Dimension:
+    """Return the dimension of a unit.
+
+    Examples
+    --------
+    >>> dimension_of("N/m") == dimension_of("kg/s2"), dimension_of("rad/s") == dimension_of("Hz")
+    (True, True)
+    """
+    if unit in ("", "1"):
+        return ()
+    powers = registry().Quantity(1.0, base_unit(unit)).dimensionality
+    return tuple(sorted((str(name), float(str(power))) for name, power in powers.items() if power))
+
+
+def in_base_units(value: Array | float, si_unit: str) -> Operand:
+    """Return a number or an array in an SI unit as an operand."""
+    return Operand(value, dimension_of(si_unit))
+
+
+@functools.lru_cache(maxsize=128)
+def parse_formula(text: str) -> Node:
+    """Parse a formula.
+
+    Parameters
+    ----------
+    text
+        For example ``"torque / (radius + '25 mm')"``.
+
+    Raises
+    ------
+    UnitError
+        If it does not follow the grammar, or a unit in it is unknown.
+
+    Examples
+    --------
+    >>> sorted(names_in(parse_formula("rotation_speed * (radius - '2 mm') / 2")))
+    ['radius', 'rotation_speed']
+    """
+    if len(text) > LONGEST:
+        raise UnitError(f"formula '{shown(text)}' is longer than {LONGEST} letters")
+    reader = _Reader(text)
+    node = reader.sum_of_terms(0)
+    if reader.kind:
+        raise reader.wrong("an operator or the end")
+    return node
+
+
+def names_in(node: Node) -> set[str]:
+    """Return the names that a formula needs, ``pi`` left out."""
+    if node.kind == "name":
+        return {node.text} - {"pi"}
+    return set().union(*(names_in(part) for part in node.parts))
+
+
+def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | float:
+    """Evaluate a formula.
+
+    Parameters
+    ----------
+    text
+        The formula.
+    known
+        What its names stand for: (time) or single numbers.
+    si_unit
+        SI unit of the result.
+
+    Returns
+    -------
+    numpy.ndarray or float
+        In `si_unit`; infinite or not a number where something is divided by zero.
+
+    Raises
+    ------
+    UnitError
+        If a name is not known, a sum has parts of different dimensions, or the result is of
+        another dimension than `si_unit`.
+
+    Examples
+    --------
+    >>> known = {"rotation_speed": in_base_units(np.array([1.0, 2.0]), "rad/s")}
+    >>> evaluate("rotation_speed * '25 mm'", known, "m/s").tolist()
+    [0.025, 0.05]
+    >>> evaluate("rotation_speed + '25 mm'", known, "m/s")
+    Traceback (most recent call last):
+    tribolab.errors.UnitError: formula 'rotation_speed + '25 mm'': 1/s and m cannot be added
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        result = _value(parse_formula(text), known, text)
+    if result.dimension != dimension_of(si_unit):
+        raise UnitError(
+            f"formula '{shown(text)}' gives {_written(result.dimension)}, and not {si_unit}"
+        )
+    return result.value
+
+
+def _value(node: Node, known: Mapping[str, Operand], text: str) -> Operand:
+    if node.operand is not None:
+        return node.operand
+    if node.kind == "name":
+        if node.text not in known:
+            hint = nearest(node.text, known)
+            raise UnitError(f"formula '{shown(text)}': there is no '{shown(node.text)}'{hint}")
+        return known[node.text]
+    left, *others = (_value(part, known, text) for part in node.parts)
+    if not others:
+        return left._replace(value=-left.value)
+    (right,) = others
+    if node.kind in "+-":
+        if left.dimension != right.dimension:
+            raise UnitError(
+                f"formula '{shown(text)}': {_written(left.dimension)} and "
+                f"{_written(right.dimension)} cannot be added"
+            )
+        value = left.value + right.value if node.kind == "+" else left.value - right.value
+        return left._replace(value=value)
+    power = 1.0 if node.kind == "*" else -1.0
+    value = left.value * right.value if node.kind == "*" else np.divide(left.value, right.value)
+    return Operand(value, _multiplied(left.dimension, right.dimension, power))
+
+
+def _multiplied(left: Dimension, right: Dimension, power: float) -> Dimension:
+    powers = dict(left)
+    for name, own in right:
+        powers[name] = powers.get(name, 0.0) + power * own
+    return tuple(sorted((name, own) for name, own in powers.items() if abs(own) > 1e-9))
+
+
+_BASE = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[temperature]": "K", "[current]": "A"}
+
+
+def _written(dimension: Dimension) -> str:
+    """Write a dimension by its SI base units."""
+
+    def product(parts: list[tuple[str, float]]) -> str:
+        return " ".join(f"{_BASE.get(n, n)}{'' if p == 1 else f'{p:g}'}" for n, p in parts)
+
+    above = [(name, power) for name, power in dimension if power > 0]
+    below = [(name, -power) for name, power in dimension if power < 0]
+    return (product(above) or "1") + (f"/{product(below)}" if below else "") if dimension else "1"
+
+
+class _Reader:
+    """Words of a formula, one after another."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.place = text, 0
+        self.kind, self.word = "", ""
+        self.next()
+
+    def next(self) -> str:
+        """Go to the next word and return the one before."""
+        passed = self.word
+        match = _TOKEN.match(self.text, self.place)
+        if match is None:
+            if rest := self.text[self.place :].strip():
+                self.word = rest
+                raise self.wrong("a name, a number or one of + - * / ( )")
+            self.kind, self.word = "", ""
+        else:
+            self.place = match.end()
+            self.kind, self.word = str(match.lastgroup), match[match.lastgroup or 0]
+        return passed
+
+    def wrong(self, wanted: str) -> UnitError:
+        """Say what should stand where something else does."""
+        there = f"'{shown(self.word, 20)}'" if self.word else "its end"
+        return UnitError(
+            f"formula '{shown(self.text)}': {there} stands where {wanted} should; a number with a "
+            "unit stands in quotes, e.g. \"rotation_speed * '25 mm'\""
+        )
+
+    def sum_of_terms(self, depth: int) -> Node:
+        """Read a formula up to its end or a closing bracket."""
+        if depth > _DEEPEST:
+            raise UnitError(f"formula '{shown(self.text)}' is nested deeper than {_DEEPEST}")
+        node = self.product(depth)
+        while self.word in ("+", "-"):
+            node = Node(self.next(), parts=(node, self.product(depth)))
+        return node
+
+    def product(self, depth: int) -> Node:
+        """Read factors that are multiplied and divided."""
+        node = self.factor(depth)
+        while self.word in ("*", "/"):
+            node = Node(self.next(), parts=(node, self.factor(depth)))
+        return node
+
+    def factor(self, depth: int) -> Node:
+        """Read a number, a name, a quantity or what stands in brackets."""
+        if depth > _DEEPEST:
+            raise UnitError(f"formula '{shown(self.text)}' is nested deeper than {_DEEPEST}")
+        if self.kind == "number":
+            return Node("number", operand=Operand(float(self.next()), ()))
+        if self.kind == "quoted":
+            return Node("number", operand=_quantity(self.next()[1:-1], self.text))
+        if self.kind == "name":
+            name = self.next()
+            return Node("name", name, Operand(np.pi, ()) if name == "pi" else None)
+        if self.word == "-":
+            self.next()
+            return Node("-", parts=(self.factor(depth + 1),))
+        if self.word == "(":
+            self.next()
+            node = self.sum_of_terms(depth + 1)
+            if self.word != ")":
+                raise self.wrong("')'")
+            self.next()
+            return node
+        raise self.wrong("a name, a number or '('")
+
+
+def _quantity(text: str, formula: str) -> Operand:
+    match = _QUANTITY.match(text)
+    if match is None:
+        raise UnitError(f"formula '{shown(formula)}': '{shown(text)}' has no number")
+    unit = match["unit"]
+    try:
+        si_unit = _si_unit(unit)
+        return Operand(to_si(text, si_unit, "a quantity"), dimension_of(si_unit))
+    except UnitError as error:
+        raise UnitError(f"formula '{shown(formula)}': {error}") from error
+
+
+def _si_unit(unit: str) -> str:
+    """Return SI base units of a unit as they are written for conversions."""
+    return base_unit(unit).replace("**", "^") if unit not in ("", "1") else "1"
