@@ -1,4 +1,4 @@
-"""Quantities that no column holds follow by formulas, with their units, and nothing is evaluated."""
+"""Quantities that no column holds follow by formulas; nothing in a formula is evaluated."""
 
 from __future__ import annotations
 

@@ -22,6 +22,7 @@ def read(
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
+    zero: str | None = None,
 ) -> Any: ...  # one run, or a list: a type checker does not know patterns from names
 
 
@@ -32,6 +33,7 @@ def read(
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
+    zero: str | None = None,
 ) -> xr.Dataset: ...
 
 
@@ -41,6 +43,7 @@ def read(
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
+    zero: str | None = None,
 ) -> xr.Dataset | list[xr.Dataset]:
     r"""Read one run from its raw file or files, or all the runs that a pattern names.
 
@@ -58,6 +61,9 @@ def read(
     clock_shift
         What has to be added to the companion's clock to get this log's clock [s]; estimated from
         the signals when not given.
+    zero
+        Where the zero of the friction signal is read: ``"first 200 samples"``, ``"first 2 s"``,
+        ``"1.5 s to 3 s"``, or ``"file blank.csv"``, a run without contact beside the file.
 
     Returns
     -------
@@ -96,7 +102,7 @@ def read(
     >>> [run.attrs["source"] for run in read(folder / "*_force.csv")]
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
-    settings: Arguments = {"pair": pair, "clock_shift": clock_shift}
+    settings: Arguments = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
     if not isinstance(path, str | Path) or not is_pattern(path):
         return read_run(path, instrument, **settings)
     files = [file for file in matching(path) if file.is_file()]

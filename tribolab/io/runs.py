@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypedDict
 
@@ -19,6 +19,7 @@ from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.derived import add_derived
 from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
+from tribolab.io.dialects.model import FRICTION
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike, companion_path
 from tribolab.io.row_counts import (
@@ -27,6 +28,7 @@ from tribolab.io.row_counts import (
     rows_in_words,
     with_companion_rows,
 )
+from tribolab.io.zero_reading import take_zeros
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
@@ -40,12 +42,13 @@ def read_run(
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
+    zero: str | None = None,
 ) -> xr.Dataset:
     """Read one run from its raw file or files, whose names are taken as they are.
 
     Parameters
     ----------
-    path, instrument, pair, clock_shift
+    path, instrument, pair, clock_shift, zero
         As for `tribolab.read`, but for patterns.
 
     Returns
@@ -76,7 +79,7 @@ def read_run(
     main, companions = _sorted_out(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
-    run = _run(main)
+    run = _run(main, zero)
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
@@ -215,7 +218,7 @@ def _companion(path: Path, dialect: Dialect) -> Logs:
     return [(other, load_dialect(dialect.pair.instrument))]
 
 
-def _run(logs: Logs) -> xr.Dataset:
+def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
     """Make one run of the files of one instrument."""
     dialect = logs[0][1]
     contents = [read_content(path, dialect) for path, _ in logs]
@@ -240,6 +243,14 @@ def _run(logs: Logs) -> xr.Dataset:
         columns = {name: values[mended.keep] for name, values in columns.items()}
     origin = float(time[0])
     time -= origin
+    rules = {column.key: column.zero for column in dialect.column if column.zero}
+    if zero is not None:
+        rules |= {name: zero for name in FRICTION if name in columns}
+
+    def blank(name: str) -> Mapping[str, np.ndarray]:
+        return _blank(contents[0].path.parent / name, dialect)
+
+    attrs |= take_zeros(columns, time, rules, blank, where)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
     _add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
@@ -253,6 +264,13 @@ def _run(logs: Logs) -> xr.Dataset:
         attrs=attrs,
     )
     return stamp(data)
+
+
+def _blank(path: Path, dialect: Dialect) -> dict[str, np.ndarray]:
+    """Return the columns of a blank run."""
+    content = read_content(path, dialect)
+    set_time(content, dialect)
+    return _columns([content], dialect)
 
 
 def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:

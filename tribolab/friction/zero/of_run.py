@@ -118,7 +118,8 @@ def zero_of_run(
         number=_numbers(segments),
         unit="" if unit == "1" else f" {unit}",
     )
-    known = Known(rests, stated, tuple(settings.other_zeros), settings.pair_tolerance)
+    others = tuple(settings.other_zeros)
+    known = Known(rests, stated, others, settings.pair_tolerance, *_read(run, name))
     source = str(run.attrs.get("source", "run"))
     reference = find_reference(strokes, known, settings.offset, fold, source)
     if _lost(fold):
@@ -131,6 +132,14 @@ def zero_of_run(
 
 def _lost(fold: Fold) -> bool:
     return fold.kind in ("rectified", "undecided: alike")
+
+
+def _read(run: xr.Dataset, name: str) -> tuple[float, str]:
+    """Return the error of a zero that was read and taken off when the file was, and where."""
+    unit = quantity(name).unit
+    ending = "" if unit == "1" else f"_{unit}"
+    error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
+    return error, str(dict(run.attrs.get("zeros_read", {})).get(name, ""))
 
 
 def _stated(run: xr.Dataset, name: str, given: str | float | None) -> float:

@@ -63,12 +63,18 @@ class Known:
         Zeros of other runs on the same instrument [u].
     tolerance
         Relative difference of speed up to which somebody says that friction is alike.
+    read
+        Standard error of a zero that was read at one place of the file, and taken off [u].
+    read_from
+        Where that was.
     """
 
     rests: Zeros | None = None
     stated: float = float("nan")
     others: tuple[float, ...] = ()
     tolerance: float = 0.25
+    read: float = float("nan")
+    read_from: str = ""
 
 
 class Doubt(TypedDict):

@@ -41,7 +41,8 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     Reference
         With "auto": the middles of the loops where strokes pair; rests without load where they
         do not, or where they contradict the middles; else a stated uncertainty of the zero; else
-        the zeros of other runs; else nothing, and that is a doubt.
+        a zero that was read at one place, which is in doubt; else the zeros of other runs; else
+        nothing, and that is a doubt.
 
     Raises
     ------
@@ -241,7 +242,23 @@ def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
     """Zero that the run itself does not tell: stated, from other runs, or nothing."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"
-        return _constant(strokes, 0.0, known.stated, words, "stated")
+        if known.read_from:
+            words += f", read from {known.read_from}"
+        error = float(np.hypot(known.stated, np.nan_to_num(known.read)))
+        return _constant(strokes, 0.0, error, words, "stated")
+    if known.read_from:
+        words = f"read from {known.read_from}"
+        result = _constant(strokes, 0.0, known.read, words, "read zero")
+        text = (
+            f"the zero was read from {known.read_from} only: what it drifted from there to the "
+            "strokes is in the friction and not in its error"
+        )
+        cure = (
+            f'State `zero_uncertainty` (e.g. "{"0.2 N" if strokes.unit else "1 %"}"), by how much '
+            "the zero drifts, in the [[run]] or of the column in the dialect; or measure strokes "
+            "both ways, or rests without load before and after."
+        )
+        return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
     others = np.asarray(known.others, float)
     if others.size > 1 and fold.kind == "signed":
         # of so few, the next one scatters as Student's t with size - 1 degrees of freedom

@@ -24,6 +24,7 @@ from pydantic import (
 from tribolab.errors import TribolabError, nearest, shown
 from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.patterns import PatternError, guarded
+from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
 from tribolab.units import base_unit, conversion, positive, to_si
@@ -63,10 +64,19 @@ def _is_formula(text: str) -> str:
     return text
 
 
+def _is_zero(text: str) -> str:
+    try:
+        parse_zero(text)
+    except TribolabError as error:
+        raise ValueError(str(error)) from error
+    return text
+
+
 Pattern = Annotated[str, AfterValidator(_is_pattern)]
 Encoding = Annotated[str, AfterValidator(_is_encoding)]
 QuantityName = Annotated[str, AfterValidator(_is_quantity)]
 Formula = Annotated[str, AfterValidator(_is_formula)]
+ZeroText = Annotated[str, AfterValidator(_is_zero)]
 Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
 Sign = Literal[1, -1]
 FRICTION = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
@@ -209,6 +219,11 @@ class Column(_Strict):
     zero_uncertainty: str | None = Field(
         None, description="standard uncertainty of its zero with unit, e.g. '0.2 N': friction only"
     )
+    zero: ZeroText | None = Field(
+        None,
+        description="where its zero is read and taken off: 'first 200 samples', 'first 2 s', "
+        "'1.5 s to 3 s', or 'file blank.csv' for a run without contact beside it",
+    )
     rectified: bool | None = Field(
         None, description="recorded without sign (true) or surely with it (false): friction only"
     )
@@ -227,6 +242,8 @@ class Column(_Strict):
         for key, value in stated.items():
             if value is not None and self.quantity not in FRICTION:
                 raise ValueError(f"column '{self.key}': {key} is for {' and '.join(FRICTION)} only")
+        if self.zero is not None and (self.symbol or self.quantity in ("time", "x", "y")):
+            raise ValueError(f"column '{self.key}': only a signal has a zero")
         if self.zero_uncertainty is not None:
             to_si(self.zero_uncertainty, self.si_unit(None), "zero_uncertainty")
         return self
