@@ -360,7 +360,7 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
         ModelOutcome(name=f"m{load:g}", curve="c", normal_force=load, parts=parts, **labels)
         for load in (31.0, 91.0)
     ]
-    rows = [ModelRow(one, {"shear_stress_Pa": -1.0}, (), (), "", None, "") for one in models]
+    rows = [ModelRow(model=one, fit={"shear_stress_Pa": -1.0}, curve=()) for one in models]
     outcome = SimpleNamespace(curves=(), folder=tmp_path)
     planned = {one.name: draw_model(one, tmp_path) for one in plan_model_figures(outcome, rows)}
     assert set(planned) == {"m31", "m91", "model_surface_1"}  # and no figure of shear stresses

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 from campaigns import simulated
 
-from tribolab.app.truth import compare_run, summary, write_truth
+from tribolab.app.truth import compare_run, compare_with_truth, summary
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 
@@ -78,9 +78,9 @@ def test_shares_count_the_segments_that_were_found():
 def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
     campaign = simulated(tmp_path)
     outcome = process(load_campaign(campaign), tmp_path / "results")
-    result = write_truth(outcome, campaign.parent)
+    result = compare_with_truth(outcome, campaign.parent)
     assert (result.true, result.missed, result.extra) == (24, 0, 0)
-    table = pd.read_csv(tmp_path / "results" / "tables" / "truth.csv")
+    table = result.table
     speed = table["sliding_speed_m_s"] / table["true_sliding_speed_m_s"]
     np.testing.assert_allclose(speed, 1, atol=0.02)
     np.testing.assert_allclose(table["start_s"], table["true_start_s"], atol=0.5)

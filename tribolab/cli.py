@@ -309,8 +309,7 @@ def info(
         from tribolab.campaign.engine.stage import perform
 
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
-            tell = progress or (lambda stage, done, total: None)
-            described = perform(Descriptions(files, instrument), pool, tell)
+            described = perform(Descriptions(files, instrument), pool, progress)
         for description in described:
             if description.error:
                 say(f"tribolab: {description.error}", to_stderr=True)

@@ -134,3 +134,12 @@ def provenance(
         source_sha256="; ".join(sha256_of_file(path) for path in paths),
         config_sha256="" if config is None else sha256_of(config),
     )
+
+
+def named_sources(sources: Iterable[tuple[str, str, int]]) -> dict[str, str]:
+    """Return ``source`` and ``source_sha256`` of files, given by label, checksum and size."""
+    labels, sums = [], []
+    for label, checksum, _ in sources:
+        labels.append(label)
+        sums.append(checksum)
+    return {"source": "; ".join(labels), "source_sha256": "; ".join(sums)}

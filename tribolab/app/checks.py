@@ -173,7 +173,7 @@ def check_files(
         If there is no such instrument.
     """
     stage = Checks(paths, instrument, repeats)
-    done = perform(stage, executor, progress or (lambda stage, done, total: None))
+    done = perform(stage, executor, progress)
     place = {file: number for number, group in enumerate(stage.groups) for file in group}
     return sorted((c for part in done for c in part), key=lambda c: place[c.files[0]])
 

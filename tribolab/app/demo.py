@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from tribolab.app.truth import Comparison, compare_with_truth, write_truth
-from tribolab.app.truth_shear_stress import compare_shear_stress, write_truth_shear_stress
-from tribolab.app.truth_surfaces import compare_surfaces, write_truth_surfaces
+from tribolab.app.truth import Comparison, compare_with_truth
+from tribolab.app.truth_shear_stress import compare_shear_stress
+from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.engine.executor import workers
 from tribolab.report import tables
 
@@ -63,7 +63,13 @@ def run_demo(
     from tribolab.studies.comparison import compare_with_paper
 
     campaign = folder / "campaign.toml"
-    compared = []
+    compared: list[DemoComparison] = []
+
+    def finish(outcome: Outcome) -> None:
+        known = paper.result() if paper else compare_with_paper()
+        compared.append(_compared(outcome, folder, known))
+        _write(outcome, compared[0])
+
     with workers(jobs) as pool:
         if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
             simulate_campaign(folder, executor=pool, progress=progress)
@@ -74,30 +80,29 @@ def run_demo(
             executor=pool,
             jobs=None if pool else 1,
             progress=progress,
-            finish=lambda outcome: compared.append(
-                _write(outcome, folder, paper.result() if paper else compare_with_paper())
-            ),
+            finish=finish,
         )
-    return outcome, compared[0] if compared else compare(outcome, folder)
+    if not compared:  # nothing has changed: the paper's table is taken as it lies there
+        there = _paper_file(outcome)
+        known = tables.read(there) if there.is_file() else compare_with_paper()
+        compared.append(_compared(outcome, folder, known))
+    return outcome, compared[0]
 
 
-def _write(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
-    """Compare, and write ``truth*.csv`` and ``paper.csv``."""
-    runs, surfaces = write_truth(outcome, folder), write_truth_surfaces(outcome, folder)
-    tables.write_csv(paper, _paper_file(outcome), digits=6)
-    stresses = write_truth_shear_stress(outcome, folder)
-    return DemoComparison(folder, runs, surfaces, stresses, paper)
-
-
-def compare(outcome: Outcome, folder: Path) -> DemoComparison:
-    """Compare results that are complete; the paper's table is taken as it lies there."""
-    from tribolab.studies.comparison import compare_with_paper
-
-    there = _paper_file(outcome)
-    paper = tables.read(there) if there.is_file() else compare_with_paper()
+def _compared(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
     runs, surfaces = compare_with_truth(outcome, folder), compare_surfaces(outcome, folder)
-    stresses = compare_shear_stress(outcome, folder)
-    return DemoComparison(folder, runs, surfaces, stresses, paper)
+    return DemoComparison(folder, runs, surfaces, compare_shear_stress(outcome, folder), paper)
+
+
+def _write(outcome: Outcome, compared: DemoComparison) -> None:
+    """Write ``truth*.csv`` and ``paper.csv``."""
+    for name, table in (
+        ("truth", compared.runs.table),
+        ("truth_surfaces", compared.surfaces),
+        ("truth_shear_stress", compared.shear_stress),
+    ):
+        tables.write_csv(table, Path(outcome.folder) / "tables" / f"{name}.csv", digits=9)
+    tables.write_csv(compared.paper, _paper_file(outcome), digits=6)
 
 
 def _paper_file(outcome: Outcome) -> Path:

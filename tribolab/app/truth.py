@@ -11,7 +11,6 @@ import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import AnalysisError
-from tribolab.report import tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,15 +78,6 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
             origin = float(found.attrs["time_origin_s"])
         tables.append(compare_run(run.name, true, found, origin))
     return summary(pd.concat(tables, ignore_index=True))
-
-
-def write_truth(outcome: Outcome, folder: str | Path) -> Comparison:
-    """Compare with the truth, as `compare_with_truth`, and write ``tables/truth.csv``."""
-    comparison = compare_with_truth(outcome, folder)
-    place = outcome.folder / "tables"
-    place.mkdir(exist_ok=True)
-    tables.write_csv(comparison.table, place / "truth.csv", digits=9)
-    return comparison
 
 
 def compare_run(

@@ -64,11 +64,3 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
             }
         )
     return pd.DataFrame(rows, columns=COLUMNS)
-
-
-def write_truth_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
-    """Compare as `compare_shear_stress`, and write ``tables/truth_shear_stress.csv``."""
-    table = compare_shear_stress(outcome, folder)
-    place = Path(outcome.folder) / "tables" / "truth_shear_stress.csv"
-    tables.write_csv(table, place, digits=9)
-    return table

@@ -9,7 +9,6 @@ import pandas as pd
 
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Row, number_of
-from tribolab.report import tables
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -94,11 +93,3 @@ def _known(row: Row, column: str) -> float:
     """Return a number of a row; NaN, which lies within no bounds, where it is not known."""
     value = number_of(row, column)
     return float("nan") if value is None else value
-
-
-def write_truth_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
-    """Compare as `compare_surfaces`, and write ``tables/truth_surfaces.csv``."""
-    table = compare_surfaces(outcome, folder)
-    place = outcome.folder / "tables" / "truth_surfaces.csv"
-    tables.write_csv(table, place, digits=9)
-    return table

@@ -107,15 +107,12 @@ class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
     def known(self, task: CurveTask, place: int) -> CurveRecord | None:
         """Take over a curve whose runs are the same."""
         name = task.curve.name
-        entry = self._store.before.get(KIND, name, CurveRecord)
-        if entry is None or entry.fingerprint != task.fingerprint:
+        record = self._store.same(KIND, name, task.fingerprint, CurveRecord)
+        if record is None or record.outcome != task.curve:
             return None
-        if entry.record.outcome != task.curve:
-            return None
-        if not self._store.link(KIND, name, task.curve.data_file, task.curve.data_file):
-            return None
-        self._store.put(KIND, name, place, task.fingerprint, entry.record)
-        return entry.record
+        data_file = task.curve.data_file
+        taken = self._store.take(KIND, name, place, task.fingerprint, record, data_file)
+        return record if taken else None
 
     @staticmethod
     def work(task: CurveTask) -> CurveRecord:
@@ -149,7 +146,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_groups
-    from tribolab.records.frames import curve_table
+    from tribolab.records.frames import curve_table, plain_rows
     from tribolab.records.wording import plain_value
 
     with NETCDF:
@@ -168,10 +165,10 @@ def process_curve(task: CurveTask) -> CurveRecord:
         reason = explain(error)[0]
     shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
-    points = tuple(plain_value(curve_table(curve).to_dict("records")))
+    points = plain_rows(curve_table(curve))
     points_found: tuple[Row, ...] = ()
     if (found := _as_found(task)) is not None:
-        points_found = tuple(plain_value(curve_table(found).to_dict("records")))
+        points_found = plain_rows(curve_table(found))
         if points_found == points:  # e.g. a note
             points_found = ()
         else:

@@ -106,11 +106,11 @@ class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
 
     def known(self, task: ModeTask, place: int) -> ModeRecord | None:
         """Take over the verdict on a curve whose data are the same."""
-        entry = self._store.before.get(KIND, task.curve.name, ModeRecord)
-        if entry is None or entry.fingerprint != task.fingerprint:
-            return None
-        self._store.put(KIND, task.curve.name, place, task.fingerprint, entry.record)
-        return entry.record
+        name, mark = task.curve.name, task.fingerprint
+        record = self._store.same(KIND, name, mark, ModeRecord)
+        if record is not None:
+            self._store.put(KIND, name, place, mark, record)
+        return record
 
     @staticmethod
     def work(task: ModeTask) -> ModeRecord:

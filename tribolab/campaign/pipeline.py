@@ -74,16 +74,15 @@ def process(
     """
     runs = planned_runs(campaign) if runs is None else runs
     (staging / "data").mkdir(parents=True, exist_ok=True)
-    tell = progress or (lambda stage, done, total: None)
     store = Store(staging, previous, verify=verify)
 
-    came = perform(Runs(runs, store), executor, tell)
+    came = perform(Runs(runs, store), executor, progress)
     _refuse_if_all_died(came)
     came = keep_runs(campaign, store, _with_lent_zeros(runs, came, store, executor))
     outcomes = tuple(run.outcome for run in came)
-    surfaces = perform(Surfaces(campaign, outcomes, store), executor, tell)
-    curves = perform(Curves(came, store), executor, tell)
-    models = perform(Models(campaign, curves, surfaces, store), executor, tell)
+    surfaces = perform(Surfaces(campaign, outcomes, store), executor, progress)
+    curves = perform(Curves(came, store), executor, progress)
+    models = perform(Models(campaign, curves, surfaces, store), executor, progress)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
         part.unlink()
     sources = [source for run in came for source in run.sources]
@@ -119,7 +118,7 @@ def _with_lent_zeros(
         if run.name in again
     ]
     stage = Runs(runs, store).again(lent)
-    done = dict(zip(again, perform(stage, executor, lambda *_: None), strict=True))
+    done = dict(zip(again, perform(stage, executor), strict=True))
     return [done.get(run.name, before) for run, before in zip(runs, came, strict=True)]
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.campaign.engine.stage import Progress
 from tribolab.errors import AnalysisError
 from tribolab.studies import xu2026
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
     from tribolab.campaign.surfaces.plan import PlannedSurface
 
-Progress = Callable[[str, int, int], None]
 FOLDER = "simulated"
 
 

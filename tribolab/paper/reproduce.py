@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tribolab.campaign.engine.executor import completed, workers
+from tribolab.campaign.engine.stage import Progress, silent
 from tribolab.campaign.store.staging import staged
 from tribolab.paper import laboratory as lab
 from tribolab.paper.data import SURFACES, PaperData
@@ -26,8 +27,6 @@ from tribolab.untyped import Json
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
     from tribolab.campaign.surfaces.plan import PlannedSurface
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def reproduce(
     """
     laboratory = laboratory or lab.Laboratory()
     place = Path(output).resolve()
-    tell = progress or (lambda stage, done, total: None)
+    tell = progress or silent
     with staged(place) as folder:
         (folder / "figures").mkdir()
         with workers(jobs) as pool:

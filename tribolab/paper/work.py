@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.errors import AnalysisError
-from tribolab.provenance import made, sha256_of
+from tribolab.provenance import made, named_sources, sha256_of
 from tribolab.records.parts import Row
 from tribolab.studies import xu2026
 
@@ -78,10 +78,10 @@ def _origin(task: Task) -> dict[str, str]:
     There is no checksum of a file where there is no file; the settings are then the constants.
     """
     if task.scans is not None:
-        from tribolab.campaign.surfaces.stage import named, sources_of
+        from tribolab.campaign.surfaces.stage import sources_of
 
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
-        return named(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
+        return named_sources(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
     constants = (xu2026.system, xu2026.surface(task.surface))
     config = {"constants": [asdict(one) for one in constants], "forces": task.forces}
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}

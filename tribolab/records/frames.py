@@ -11,6 +11,7 @@ import pandas as pd
 from tribolab.friction.coefficient.steadiness import WORDS
 from tribolab.plot.labels import column
 from tribolab.records.parts import Row
+from tribolab.records.wording import plain_value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,6 +87,11 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
     [{'medium': 'dry', 'normal_force_N': 31.0}]
     """
     return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+
+
+def plain_rows(table: pd.DataFrame) -> tuple[Row, ...]:
+    """Return the rows of a table as a record keeps them: plain numbers, None where not known."""
+    return tuple(plain_value(rows_of(table)))
 
 
 def friction_table(friction: xr.Dataset) -> pd.DataFrame:

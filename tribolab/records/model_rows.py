@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.records.frames import frame
+from tribolab.records.frames import frame, plain_rows
 from tribolab.records.model_words import judgement
 from tribolab.records.part_records import ModelRows
 from tribolab.records.parts import Row
@@ -68,9 +68,7 @@ def model_rows(
     from tribolab.fit.spectrum_error import shear_stress_shift
 
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
-    rows = ModelRows(
-        None, tuple(plain_value(curve.to_dict("records"))), validity=validity_of(groups.values())
-    )
+    rows = ModelRows(None, plain_rows(curve), validity=validity_of(groups.values()))
     if "fit" in groups:
         attrs = groups["fit"].attrs
         fit = {key: attrs[key] for key in FITTED}

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.decision_rows import decision_rows
-from tribolab.records.frames import friction_table
+from tribolab.records.frames import friction_table, plain_rows
 from tribolab.records.judgement import SURE, not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.traces import flagged_spans
@@ -48,7 +48,7 @@ def facts_of(
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
         omitted=tuple(left_out(segments)),
-        segments=tuple(plain_value(friction_table(friction).to_dict("records"))),
+        segments=plain_rows(friction_table(friction)),
         flagged=tuple(flagged_spans(run)),
     )
 

@@ -91,11 +91,8 @@ class Figures(Stage[FigureTask, Figured, tuple[str, Figured]]):
 
     def known(self, task: FigureTask, place: int) -> tuple[str, Figured] | None:
         """Take over a figure whose data are the same."""
-        entry = self._store.before.get(KIND, task.file, FigureRecord)
-        if entry is None or entry.fingerprint != task.fingerprint:
-            return None
-        record = entry.record
-        if not self._store.link(KIND, task.file, record.file, record.file):
+        record = self._store.same(KIND, task.file, task.fingerprint, FigureRecord)
+        if record is None or not self._store.link(KIND, task.file, record.file, record.file):
             return None
         beside = [record.data] if record.data else []
         beside += [str(Path(record.file).with_suffix(".pdf"))] if task.pdf else []

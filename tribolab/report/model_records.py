@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.records.model_rows import FITTED, LABELS
+from tribolab.records.part_records import ModelRows
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
@@ -65,20 +66,12 @@ SENSITIVE = {  # columns of a variation, and what they mean
 SENSITIVITY = ["curve", *LABELS, *SENSITIVE]
 
 
-@dataclass
-class ModelRow:
-    """A model in work for the tables: its fit gets what only several models tell.
-
-    `fit` is None where no shear stress could be fitted.
-    """
+@dataclass(frozen=True, kw_only=True)
+class ModelRow(ModelRows):
+    """A model in work for the tables: its fit gets what only several models tell."""
 
     model: ModelOutcome
     fit: Json | None
-    curve: tuple[Row, ...]
-    sensitivity: tuple[Row, ...]
-    not_varied: str
-    shift: tuple[float, float] | None
-    validity: str
 
     @property
     def labels(self) -> Row:
@@ -97,15 +90,8 @@ def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
         fit = None
         if record.rows.fit is not None:
             fit = {k: math.nan if v is None else v for k, v in record.rows.fit.items()}
-        rows[record.outcome.name] = ModelRow(
-            record.outcome,
-            fit,
-            record.rows.curve,
-            record.rows.sensitivity,
-            record.rows.not_varied,
-            record.rows.shift,
-            record.rows.validity,
-        )
+        known = vars(record.rows) | {"fit": fit}
+        rows[record.outcome.name] = ModelRow(model=record.outcome, **known)
     complete(list(rows.values()))
     return rows
 

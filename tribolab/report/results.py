@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from tribolab.campaign.engine.stage import Progress, perform
+from tribolab.campaign.engine.stage import Progress, perform, silent
 from tribolab.campaign.modes import Modes
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
@@ -79,7 +79,7 @@ def write_report(
     folder, store = Path(outcome.folder), outcome.store
     for name in ("figures", "tables"):
         (folder / name).mkdir(parents=True, exist_ok=True)
-    tell = progress or (lambda stage, done, total: None)
+    tell = progress or silent
 
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
@@ -221,7 +221,7 @@ def _modes(
 ) -> tuple[dict[str, ModeRecord], list[Notice]]:
     """Judge how the contacts slide; what could not be judged is a finding."""
     stage = Modes(outcome.campaign, curves, surfaces, models, outcome.store)
-    answers = perform(stage, executor, lambda *_: None)
+    answers = perform(stage, executor)
     modes, findings = {}, []
     for task, answer in zip(stage.plan(), answers, strict=True):
         if isinstance(answer, ModeRecord):

@@ -62,8 +62,12 @@ class Stage(ABC, Generic[Task, Record, Came]):
         """Write a record down; return the little that the next stages have to know of it."""
 
 
+def silent(stage: str, done: int, total: int) -> None:
+    """Say nothing of the progress."""
+
+
 def perform(
-    stage: Stage[Task, Record, Came], executor: Executor | None, tell: Progress
+    stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
 ) -> list[Came]:
     """Do the work of a stage, and return what each task came to, in the order of the plan.
 
@@ -74,7 +78,7 @@ def perform(
     executor
         Where; None does it here, task by task.
     tell
-        Called as ``tell(stage, done, total)``.
+        Called as ``tell(stage, done, total)``; None says nothing.
 
     Raises
     ------
@@ -82,6 +86,7 @@ def perform(
         If results cannot be written. What else goes wrong is in the records.
     """
     tasks = stage.plan()
+    tell = tell or silent
     came: dict[int, Came] = {}
     left = []
     for place, task in enumerate(tasks):

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.store.kept import VERDICTS, kept_text
+from tribolab.campaign.store.kept import VERDICTS, kept_outcome, kept_text
 from tribolab.records.part_records import ModelRecord
-from tribolab.records.parts import Finding
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Store
@@ -32,6 +31,4 @@ def kept_model(store: Store, record: ModelRecord) -> tuple[ModelRecord, bool]:
     text = kept_text(path, f"the model cannot be computed now ({now.reason})")
     if not store.link("model", now.name, before.data_file, before.data_file):
         return record, False
-    said = [f for f in before.findings if f.message != before.kept]
-    outcome = replace(before, findings=(*said, Finding("fail", text)), reused=False, kept=text)
-    return replace(known.record, outcome=outcome), True
+    return replace(known.record, outcome=kept_outcome(before, text)), True

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.provenance import joined_sources, sha256_of
+from tribolab.provenance import joined_sources, named_sources, sha256_of
 from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
@@ -157,11 +157,7 @@ def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
 
 def _sealed(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> PlannedModel:
     """Add what the data are made from, and the checksum of all that shapes the model."""
-    scans = {
-        "source": "; ".join(label for label, _, _ in surface.sources),
-        "source_sha256": "; ".join(checksum for _, checksum, _ in surface.sources),
-    }
-    joined = joined_sources([asdict(curve.origin), scans])
+    joined = joined_sources([asdict(curve.origin), named_sources(surface.sources)])
     model = replace(
         model,
         source=joined.get("source", ""),

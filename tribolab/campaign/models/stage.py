@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.models.kept import kept_model
 from tribolab.campaign.models.plan import PlannedModel, plan_models
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import optional_data, write_data
 from tribolab.errors import OutputError
-from tribolab.provenance import made, sha256_of
+from tribolab.provenance import made
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding, ModelOutcome
 from tribolab.untyped import Json
@@ -68,18 +68,13 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
     def known(self, task: ModelTask, place: int) -> ModelOutcome | None:
         """Take over a model whose data, settings and version are the same."""
         model = task.model
-        entry = None if model.missing else self._store.before.get(KIND, model.name, ModelRecord)
-        if entry is None or entry.fingerprint != fingerprint(model):
+        mark = fingerprint_of(model.config_sha256)
+        record = self._store.same(KIND, model.name, mark, ModelRecord)
+        if model.missing or record is None or not record.outcome.done or record.outcome.kept:
             return None
-        before = entry.record.outcome
-        if not before.done or before.kept:
-            return None
-        if not self._store.link(KIND, model.name, before.data_file, model.data_file):
-            return None
-        outcome = replace(before, reused=True)
-        record = replace(entry.record, outcome=outcome)
-        self._store.put(KIND, model.name, place, entry.fingerprint, record)
-        return outcome
+        record = replace(record, outcome=replace(record.outcome, reused=True))
+        taken = self._store.take(KIND, model.name, place, mark, record, model.data_file)
+        return record.outcome if taken else None
 
     def order(self, tasks: Sequence[tuple[int, ModelTask]]) -> list[tuple[int, ModelTask]]:
         """Return what takes longest first."""
@@ -98,16 +93,9 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
         """Write down what came of a model, or the earlier one where it could not be computed."""
         model = task.model
         record, is_kept = kept_model(self._store, record)
-        mark = "" if is_kept or not record.outcome.done else fingerprint(model)
+        mark = "" if is_kept or not record.outcome.done else fingerprint_of(model.config_sha256)
         self._store.put(KIND, model.name, place, mark, record)
         return record.outcome
-
-
-def fingerprint(model: PlannedModel) -> str:
-    """Return the checksum of all that shapes a model, the data included."""
-    from tribolab.version import __version__
-
-    return sha256_of([__version__, model.config_sha256])
 
 
 def process_model(task: ModelTask) -> ModelRecord:

@@ -12,10 +12,10 @@ from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse, labels_of
 from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
-from tribolab.campaign.store.catalogue import Entry, Store
+from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
 from tribolab.errors import AnalysisError, OutputError, told
-from tribolab.provenance import as_text, made, sha256_of, sha256_of_file
+from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
@@ -104,10 +104,10 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         if self._lent is not None:
             return None
         run = task.run
-        entry = self._store.before.get(KIND, run.name, RunRecord)
-        if entry is None or entry.fingerprint != fingerprint(run) or not entry.record.outcome.done:
+        mark = fingerprint_of(run.config_sha256)
+        record = self._store.same(KIND, run.name, mark, RunRecord)
+        if record is None or not record.outcome.done:
             return None
-        record = entry.record
         sources = self._store.sources(zip(run.files, run.labels, strict=True))
         if sorted(s[1] for s in sources) != sorted(s[1] for s in record.sources):
             return None
@@ -120,12 +120,10 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
             reused=True,
             kept="",
         )
-        if not self._store.link(KIND, entry.name, record.outcome.data_file, task.data_file):
+        taken = replace(record, outcome=outcome, sources=sources)
+        if not self._store.take(KIND, run.name, place, mark, taken, record.outcome.data_file):
             return None
-        record = replace(record, outcome=outcome, sources=sources)
-        self._store.put(KIND, run.name, place, entry.fingerprint, record)
-        self._store.take_trace(KIND, entry.name, run.name)
-        return RunCame(outcome, sources, record.zero, entry.fingerprint)
+        return RunCame(outcome, sources, record.zero, mark)
 
     @staticmethod
     def work(task: RunTask) -> RunAnswer:
@@ -144,19 +142,12 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
                 f"{run.outcome.data_file}: written by a worker, but not to be seen in "
                 f"{task.folder}; do the workers share this folder?"
             )
-        mark = fingerprint(task.run)
+        mark = fingerprint_of(task.run.config_sha256)
         if self._lent is not None:  # it stands where it stood
             place = next(k for k, run in enumerate(self._runs) if run.name == task.run.name)
         self._store.put(KIND, task.run.name, place, mark, run, record.trace)
         self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
         return RunCame(run.outcome, run.sources, run.zero, mark)
-
-
-def fingerprint(run: PlannedRun) -> str:
-    """Return the checksum of all that shapes a run's results, but of its files and lent zeros."""
-    from tribolab.version import __version__
-
-    return sha256_of([__version__, run.config_sha256])
 
 
 def keep_earlier(
@@ -167,10 +158,9 @@ def keep_earlier(
     None if its data file is not as it was written.
     """
     record = replace(entry.record, outcome=outcome)
-    if not store.link(KIND, entry.name, entry.record.outcome.data_file, outcome.data_file):
+    data_file = entry.record.outcome.data_file
+    if not store.take(KIND, entry.name, place, entry.fingerprint, record, data_file):
         return None
-    store.put(KIND, outcome.name, place, entry.fingerprint, record)
-    store.take_trace(KIND, entry.name, outcome.name)
     return RunCame(outcome, record.sources, record.zero, entry.fingerprint)
 
 
@@ -186,10 +176,9 @@ def process_run(task: RunTask) -> RunAnswer:
     """
     from tribolab.friction.decisions.rejected import rejected
     from tribolab.records.decision_rows import not_applied
-    from tribolab.records.frames import stick_slip_table
+    from tribolab.records.frames import plain_rows, stick_slip_table
     from tribolab.records.notices import notices_of
     from tribolab.records.run_facts import facts_of
-    from tribolab.records.wording import plain_value
 
     began = time.monotonic()
     run = task.run
@@ -206,7 +195,7 @@ def process_run(task: RunTask) -> RunAnswer:
         facts = facts_of(signals, segments, friction, slip, found.friction_as_found)
         notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
-        rows = plain_value(stick_slip_table(slip).to_dict("records"))
+        rows = plain_rows(stick_slip_table(slip))
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others
@@ -234,7 +223,7 @@ def process_run(task: RunTask) -> RunAnswer:
     )
     zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
     sources = sources_of(run, signals.attrs)
-    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), tuple(rows))
+    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows)
     return RunAnswer(record, trace)
 
 

@@ -22,8 +22,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from tribolab.campaign.store.data_files import link
-from tribolab.provenance import sha256_of_file
+from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import PageTrace, Source
+from tribolab.records.run_record import RunRecord
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"
@@ -38,6 +40,14 @@ CREATE TABLE file (path BLOB PRIMARY KEY, size INTEGER, modified INTEGER, inode 
 CREATE TABLE fact (name TEXT PRIMARY KEY, value TEXT);
 """
 Kept = TypeVar("Kept")
+Made = RunRecord | CurveRecord | SurfaceRecord | ModelRecord  # what has a data file
+
+
+def fingerprint_of(config_sha256: str) -> str:
+    """Return the checksum of all that shapes a part, but of its files: settings and version."""
+    from tribolab.version import __version__
+
+    return sha256_of([__version__, config_sha256])
 
 
 class Entry(NamedTuple, Generic[Kept]):
@@ -183,6 +193,35 @@ class Store(Catalogue):
         _, size, modified = self.identity(file) if file else ("", 0, 0)
         row = (kind, name, place, fingerprint, small, text, coarse, fine, size, modified)
         self._new.execute("INSERT OR REPLACE INTO part VALUES (?,?,?,?,?,?,?,?,?,?)", row)
+
+    def same(self, kind: str, name: str, fingerprint: str, record: type[Kept]) -> Kept | None:
+        """Return an earlier part that is made of the same; None if there is none."""
+        entry = self.before.get(kind, name, record)
+        return entry.record if entry and entry.fingerprint == fingerprint else None
+
+    def take(
+        self, kind: str, earlier: str, place: int, fingerprint: str, record: Made, data_file: str
+    ) -> bool:
+        """Take over an earlier part with its data file and its trace.
+
+        Parameters
+        ----------
+        kind, earlier, data_file
+            Where it stood.
+        place, fingerprint, record
+            How it is written down now; the record says how part and data file are called.
+
+        Returns
+        -------
+        bool
+            False if the data file is not as it was written: then nothing is taken over.
+        """
+        outcome = record.outcome
+        if not self.link(kind, earlier, data_file, outcome.data_file):
+            return False
+        self.put(kind, outcome.name, place, fingerprint, record)
+        self.take_trace(kind, earlier, outcome.name)
+        return True
 
     def take_trace(self, kind: str, earlier: str, name: str) -> None:
         """Give a part the trace that an earlier one has."""

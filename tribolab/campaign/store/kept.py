@@ -6,7 +6,14 @@ says so, and since when; it is dropped when the campaign no longer names its fil
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
+
+from tribolab.records.parts import Finding, ModelOutcome, SurfaceOutcome
+
+Part = TypeVar("Part", SurfaceOutcome, ModelOutcome)
 
 # The files were read, and the answer is about what is in them: it stands.
 VERDICTS = ("AnalysisError",)
@@ -23,3 +30,13 @@ def kept_text(path: Path, why: str) -> str:
     except (OSError, RuntimeError):
         when = ""
     return f"kept from {when or 'before'}: {why}"
+
+
+def kept_outcome(before: Part, text: str) -> Part:
+    """Return an earlier outcome with a finding that it is kept, and why."""
+    findings = (*_others(before.findings, before.kept), Finding("fail", text))
+    return replace(before, findings=findings, reused=False, kept=text)
+
+
+def _others(findings: Iterable[Finding], kept: str) -> list[Finding]:
+    return [finding for finding in findings if finding.message != kept]

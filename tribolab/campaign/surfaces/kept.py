@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.named import is_named
-from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
+from tribolab.campaign.store.kept import GONE, VERDICTS, kept_outcome, kept_text
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding
 
@@ -64,14 +64,7 @@ def kept_surface(
     text = kept_text(store.previous / before.data_file, f"{what} cannot be read now ({why[0]})")
     if not store.link("surface", now.name, before.data_file, planned.data_file):
         return record, False
-    said = [f for f in before.findings if f.message != before.kept]
-    outcome = replace(
-        before,
-        data_file=planned.data_file,
-        findings=(*said, Finding("fail", text)),
-        reused=False,
-        kept=text,
-    )
+    outcome = replace(kept_outcome(before, text), data_file=planned.data_file)
     return replace(known.record, outcome=outcome), True
 
 

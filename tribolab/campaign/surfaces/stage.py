@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.stage import source_of
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.campaign.surfaces.kept import kept_surface
 from tribolab.campaign.surfaces.plan import PlannedSurface, plan_surfaces
 from tribolab.errors import OutputError
-from tribolab.provenance import made, sha256_of
+from tribolab.provenance import made, named_sources
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding, RunOutcome, Source, SurfaceOutcome
 from tribolab.words import explain
@@ -67,21 +67,18 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
     def known(self, task: SurfaceTask, place: int) -> SurfaceRecord | None:
         """Take over a surface whose settings, version and files (by checksums) are the same."""
         surface = task.surface
-        entry = self._store.before.get(KIND, surface.name, SurfaceRecord)
-        if entry is None or entry.fingerprint != fingerprint(surface) or not surface.files:
+        mark = fingerprint_of(surface.config_sha256)
+        known = self._store.same(KIND, surface.name, mark, SurfaceRecord)
+        if known is None or not surface.files:
             return None
+        before = known.outcome
         sources = self._store.sources(_files(surface))
-        before = entry.record.outcome
-        if not before.done or before.kept or sources != entry.record.sources:
+        if not before.done or before.kept or sources != known.sources:
             return None
-        if not self._store.link(KIND, surface.name, before.data_file, surface.data_file):
-            return None
-        outcome = replace(
-            before, files=surface.labels, data_file=surface.data_file, reused=True, kept=""
-        )
-        record = replace(entry.record, outcome=outcome)
-        self._store.put(KIND, surface.name, place, entry.fingerprint, record)
-        return record
+        outcome = replace(before, files=surface.labels, data_file=surface.data_file, reused=True)
+        record = replace(known, outcome=outcome)
+        taken = self._store.take(KIND, surface.name, place, mark, record, before.data_file)
+        return record if taken else None
 
     @staticmethod
     def work(task: SurfaceTask) -> SurfaceRecord:
@@ -95,19 +92,12 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
     def keep(self, task: SurfaceTask, place: int, record: SurfaceRecord) -> SurfaceRecord:
         """Write down what came of a surface; earlier results stay where scans cannot be read."""
         surface = task.surface
-        mark = fingerprint(surface)
+        mark = fingerprint_of(surface.config_sha256)
         record, is_kept = kept_surface(self._campaign, surface, self._store, record)
         self._store.put(KIND, surface.name, place, "" if is_kept else mark, record)
         files = [path for path, _ in _files(surface)]
         self._store.note_sources(zip(files, record.sources, strict=False), self._began)
         return record
-
-
-def fingerprint(surface: PlannedSurface) -> str:
-    """Return the checksum of all that shapes a surface's results, but of its files."""
-    from tribolab.version import __version__
-
-    return sha256_of([__version__, surface.config_sha256])
 
 
 def process_surface(task: SurfaceTask) -> SurfaceRecord:
@@ -213,18 +203,10 @@ def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
     return tuple(source_of(path, label) for path, label in _files(surface))
 
 
-def named(sources: Sequence[Source]) -> dict[str, str]:
-    """Return ``source`` and ``source_sha256`` of files."""
-    return {
-        "source": "; ".join(label for label, _, _ in sources),
-        "source_sha256": "; ".join(checksum for _, checksum, _ in sources),
-    }
-
-
 def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) -> xr.Dataset:
     """Attributes of the whole file; checksums also of what could not be used."""
     import xarray as xr
 
     what = f"spectrum and contact of {surface.name}"
-    origin = made(what, **named(sources), config_sha256=surface.config_sha256)
+    origin = made(what, **named_sources(sources), config_sha256=surface.config_sha256)
     return xr.Dataset(attrs={"surface": surface.name, "quality": quality} | origin)
