@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from tribolab.app.run import run_campaign
 from tribolab.app.truth import Comparison, compare_with_truth
 from tribolab.app.truth_shear_stress import compare_shear_stress
 from tribolab.app.truth_surfaces import compare_surfaces
 from tribolab.campaign.engine.executor import workers
 from tribolab.report import tables
+from tribolab.rig import simulate_campaign
+from tribolab.studies.comparison import compare_with_paper
 
 if TYPE_CHECKING:
     from tribolab.campaign.engine.stage import Progress
@@ -58,10 +61,6 @@ def run_demo(
     progress
         Called as ``progress(stage, done, total)``.
     """
-    from tribolab.app.run import run_campaign
-    from tribolab.rig import simulate_campaign
-    from tribolab.studies.comparison import compare_with_paper
-
     campaign = folder / "campaign.toml"
     compared: list[DemoComparison] = []
 

@@ -11,6 +11,8 @@ import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import AnalysisError
+from tribolab.io.netcdf import read_netcdf
+from tribolab.rig import read_truth
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,9 +65,6 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
     AnalysisError
         If the truth knows nothing of a run.
     """
-    from tribolab.io.netcdf import read_netcdf
-    from tribolab.rig import read_truth
-
     truth = read_truth(folder)
     tables = []
     for run in outcome.runs:

@@ -9,6 +9,7 @@ import pandas as pd
 
 from tribolab.records.parts import Row
 from tribolab.report import tables
+from tribolab.rig import read_truth
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -36,8 +37,6 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         A row per fit whose curve follows the model in the rig: found with its 95 % interval, true,
         relative difference, and 1 where the truth lies within the interval.
     """
-    from tribolab.rig import read_truth
-
     path = Path(outcome.folder) / "tables" / "shear_stress.csv"
     if not path.is_file():
         return pd.DataFrame(columns=COLUMNS)

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from tribolab.contact.persson import contact_area_ratio
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Row, number_of
+from tribolab.rig import read_truth
+from tribolab.surface.self_affine import SelfAffine, rms_roughness, rms_slope, tabulate
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -43,10 +46,6 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
         contact_area_ratio without adhesion at each load; `found` with its bounds, `true`, the
         relative difference, and 1 where the truth lies within the bounds.
     """
-    from tribolab.contact.persson import contact_area_ratio
-    from tribolab.rig import read_truth
-    from tribolab.surface.self_affine import SelfAffine, rms_roughness, rms_slope, tabulate
-
     facts = read_truth(folder).facts
     rows: list[Row] = []
 

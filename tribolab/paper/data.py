@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.io.netcdf import read_netcdf
 from tribolab.paper.work import data_file
+from tribolab.plot import Trace
+from tribolab.report.curve_figures import read_curve
 from tribolab.studies import xu2026
 from tribolab.words import speed_text
 
@@ -66,8 +69,6 @@ class PaperData:
 
     def measured(self, surface: str, medium: str, force: float | None = None) -> xr.Dataset:
         """Read a simulated measured curve, by default that at the lowest force [N]."""
-        from tribolab.report.curve_figures import read_curve
-
         force = self.forces[0] if force is None else force
         key = surface, medium, force
         for curve in self.curves:
@@ -77,8 +78,6 @@ class PaperData:
 
     def trace(self, surface: str, medium: str, speed: float) -> Trace:
         """Read the forward stroke at the lowest force whose speed is nearest to a speed [m/s]."""
-        from tribolab.plot import Trace
-
         run = next(
             run
             for run in self.runs
@@ -96,6 +95,4 @@ class PaperData:
 
 @functools.lru_cache(_KEPT)
 def _read(path: Path, group: str) -> xr.Dataset:
-    from tribolab.io.netcdf import read_netcdf
-
     return read_netcdf(path, group=group)

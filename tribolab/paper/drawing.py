@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from tribolab import plot
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
 from tribolab.records.wording import with_error
+from tribolab.studies.tables import MEDIA, modulus_table
+from tribolab.surface.moments import rms_roughness, rms_slope
 from tribolab.words import force_text, number, span, speed_text, speeds
 
 if TYPE_CHECKING:
@@ -25,9 +28,6 @@ def _listed(parts: Iterable[str]) -> str:
 
 def spectra(data: PaperData) -> Drawn:
     """Stand-in spectra."""
-    from tribolab import plot
-    from tribolab.surface.moments import rms_roughness, rms_slope
-
     psds = data.dry("psd")
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.4g} µm, slope {rms_slope(psd):.3g}"
@@ -38,9 +38,6 @@ def spectra(data: PaperData) -> Drawn:
 
 def scanned_spectra(data: PaperData) -> Drawn:
     """Spectra that the analysis makes of the simulated profiles."""
-    from tribolab import plot
-    from tribolab.surface.moments import rms_roughness
-
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"
@@ -51,8 +48,6 @@ def scanned_spectra(data: PaperData) -> Drawn:
 
 def contact_area(data: PaperData) -> Drawn:
     """A/A0 over pressure without adhesion."""
-    from tribolab import plot
-
     loads = data.dry("loads")
     said = _listed(
         f"{name}: A/A0 {float(contact.contact_area_ratio_no_adhesion[0, 0]):.3g} at "
@@ -65,9 +60,6 @@ def contact_area(data: PaperData) -> Drawn:
 
 def effective_work(data: PaperData) -> Drawn:
     """gamma_eff/gamma_0 over magnification."""
-    from tribolab import plot
-    from tribolab.studies.tables import MEDIA
-
     works = data.dry("effective_work")
     said = _listed(
         f"{name}: "
@@ -87,8 +79,6 @@ def _ends(line: xr.DataArray) -> str:
 
 def adhesive_area(data: PaperData) -> Drawn:
     """A/A0 over pressure with adhesion."""
-    from tribolab import plot
-
     loads = data.dry("loads")
     said = _listed(
         f"{name}: "
@@ -115,17 +105,12 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
 
 def dry_friction(data: PaperData) -> Drawn:
     """Dry mu(v)."""
-    from tribolab import plot
-
     measured = [data.measured(name, "dry") for name in SURFACES]
     return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured)
 
 
 def modulus(data: PaperData) -> Drawn:
     """Stand-in modulus."""
-    from tribolab import plot
-    from tribolab.studies.tables import modulus_table
-
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
@@ -133,8 +118,6 @@ def modulus(data: PaperData) -> Drawn:
 
 def viscoelastic(data: PaperData) -> Drawn:
     """mu_visc(v)."""
-    from tribolab import plot
-
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
     said = _listed(
@@ -146,8 +129,6 @@ def viscoelastic(data: PaperData) -> Drawn:
 
 def dry_shear_stress(data: PaperData) -> Drawn:
     """sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
-    from tribolab import plot
-
     stresses = {}
     for name in SURFACES:
         loads = data.read("dry", name, "loads").isel(load=0)
@@ -170,8 +151,6 @@ def dry_shear_stress(data: PaperData) -> Drawn:
 
 
 def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
-    from tribolab import plot
-
     traces = [data.trace(*stroke) for stroke in wanted]
     said = []
     for trace in traces:
@@ -211,8 +190,6 @@ def smooth_dry_and_wet(data: PaperData) -> Drawn:
 
 def both_rough(data: PaperData) -> Drawn:
     """Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
-    from tribolab import plot
-
     force = data.forces[0]
     measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
     models = [data.model(name, force) for name in ROUGH]
@@ -220,8 +197,6 @@ def both_rough(data: PaperData) -> Drawn:
 
 
 def _all_loads(data: PaperData, name: str) -> Drawn:
-    from tribolab import plot
-
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
     off = [
@@ -249,8 +224,6 @@ def loads_rough(data: PaperData) -> Drawn:
 
 def shear_stress(data: PaperData) -> Drawn:
     """sigma_f over load, as fitted and corrected."""
-    from tribolab import plot
-
     said = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
         f"{fit['shear_stress_Pa'] / 1e6:.3g} MPa, "
@@ -262,8 +235,6 @@ def shear_stress(data: PaperData) -> Drawn:
 
 def smooth_and_theory(data: PaperData) -> Drawn:
     """Smooth at all loads, and the theory at the lowest."""
-    from tribolab import plot
-
     measured = [data.measured("Smooth", "glycerol", force) for force in data.forces]
     force = data.forces[0]
     model = data.read("wet", "Smooth", f"curve_{force:g}N")
@@ -276,8 +247,6 @@ def smooth_and_theory(data: PaperData) -> Drawn:
 
 def separation(data: PaperData) -> Drawn:
     """p_cont over separation."""
-    from tribolab import plot
-
     tables = data.dry("separation")
     said = _listed(
         f"{name}: falls by a factor e in "
@@ -290,8 +259,6 @@ def separation(data: PaperData) -> Drawn:
 
 def factors(data: PaperData) -> Drawn:
     """Flow and friction factors."""
-    from tribolab import plot
-
     factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
         d.attrs["percolation_separation_m"] / d.attrs["rms_roughness_m"] for d in factors.values()
@@ -302,8 +269,6 @@ def factors(data: PaperData) -> Drawn:
 
 def friction_factor_effect(data: PaperData) -> Drawn:
     """mu(v) at the highest load with and without friction factors."""
-    from tribolab import plot
-
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
     said = _listed(
@@ -322,8 +287,6 @@ def _largest_rise(curve: xr.Dataset) -> str:
 
 
 def _profiles(data: PaperData, name: str) -> Drawn:
-    from tribolab import plot
-
     profiles = data.read("wet", name, "profiles")
     said = _listed(
         f"{speed_text(float(v))}: smallest separation "
@@ -350,8 +313,6 @@ def profiles_rough(data: PaperData) -> Drawn:
 
 
 def _bars(data: PaperData, name: str) -> Drawn:
-    from tribolab import plot
-
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)

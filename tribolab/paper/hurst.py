@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, replace
 
+from scipy.optimize import brentq
+
 from tribolab.records.hurst_words import hurst_verdict
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
@@ -69,7 +71,6 @@ def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
 
 def _half(spectrum: SelfAffine, whole: float) -> float:
     """Wavenumber [1/m] up to which half of the mean square slope is gathered."""
-    from scipy.optimize import brentq
 
     def missing(log_q: float) -> float:
         return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5

@@ -8,7 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Progress
+from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.surfaces.plan import plan_surfaces
 from tribolab.errors import AnalysisError
+from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
@@ -45,9 +49,6 @@ def simulate(
     laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
 ) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
-    from tribolab.campaign.settings.load import load_campaign
-    from tribolab.rig import Protocol, Rig, simulate_campaign
-
     file = simulate_campaign(
         folder / FOLDER,
         laboratory.seed,
@@ -77,9 +78,6 @@ def analyse(
     AnalysisError
         If a run failed.
     """
-    from tribolab.campaign.pipeline import process
-    from tribolab.campaign.surfaces.plan import plan_surfaces
-
     runs_only = campaign.model_copy(
         update={"surface": (), "model": campaign.model.model_copy(update={"compute": False})}
     )

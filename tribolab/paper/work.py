@@ -6,10 +6,21 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import xarray as xr
+
+from tribolab.campaign.store.data_files import write_data
+from tribolab.campaign.surfaces.scans import spectra, usable_scans
+from tribolab.campaign.surfaces.stage import sources_of
 from tribolab.errors import AnalysisError
+from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.io.netcdf import read_netcdf
 from tribolab.provenance import made, named_sources, sha256_of
+from tribolab.records.frames import rows_of
 from tribolab.records.parts import Row
+from tribolab.rig import Scatter
 from tribolab.studies import xu2026
+from tribolab.studies.comparison import compare_with_paper
+from tribolab.studies.tables import dry_contact, lubricated
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,16 +67,12 @@ def compute(task: Task) -> list[Row]:
     """Compute a task, write its data file, and return its rows if it has any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
-        from tribolab.campaign.store.data_files import write_data
-
         root = _root(task)
         write_data({None: root} | groups, data_file(task.folder, task.kind, task.surface))
     return rows
 
 
 def _root(task: Task) -> xr.Dataset:
-    import xarray as xr
-
     return xr.Dataset(
         attrs={"surface": task.surface, "references": xu2026.CITATION}
         | made(f"reproduce: {task.kind} {task.surface}", **_origin(task))
@@ -78,8 +85,6 @@ def _origin(task: Task) -> dict[str, str]:
     There is no checksum of a file where there is no file; the settings are then the constants.
     """
     if task.scans is not None:
-        from tribolab.campaign.surfaces.stage import sources_of
-
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return named_sources(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
     constants = (xu2026.system, xu2026.surface(task.surface))
@@ -88,22 +93,15 @@ def _origin(task: Task) -> dict[str, str]:
 
 
 def _published(task: Task) -> Computed:
-    from tribolab.records.frames import rows_of
-    from tribolab.studies.comparison import compare_with_paper
-
     return {}, rows_of(compare_with_paper())
 
 
 def _dry(task: Task) -> Computed:
-    from tribolab.studies.tables import dry_contact
-
     return dry_contact(task.surface), []
 
 
 def _spectrum(task: Task) -> Computed:
     """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
-    from tribolab.campaign.surfaces.scans import spectra, usable_scans
-
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
@@ -111,8 +109,6 @@ def _spectrum(task: Task) -> Computed:
 
 
 def _wet(task: Task) -> Computed:
-    from tribolab.studies.tables import lubricated
-
     known = dict(xu2026.surface(task.surface).shear_stress)
     groups = lubricated(task.surface, task.forces)
     fitted = [] if task.surface == "Smooth" else [(c, c.normal_force) for c in task.curves]
@@ -126,10 +122,6 @@ def _wet(task: Task) -> Computed:
 
 def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> Row:
     """Fit the shear stress to a simulated curve, as the authors did to theirs."""
-    from tribolab.fit.shear_stress import fit_shear_stress
-    from tribolab.io.netcdf import read_netcdf
-    from tribolab.rig import Scatter
-
     fit = fit_shear_stress(
         read_netcdf(task.folder / curve.data_file),
         xu2026.contact,

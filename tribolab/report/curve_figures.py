@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab import plot
+from tribolab.io.netcdf import read_netcdf
 from tribolab.report.figure_files import Drawn
 from tribolab.words import force_text, many, span, speeds
 
@@ -47,8 +49,6 @@ def surface_of(curve: CurveOutcome) -> str:
 
 def read_curve(folder: Path, curve: CurveOutcome) -> xr.Dataset:
     """Open a measured curve, labelled for `tribolab.plot.stribeck`."""
-    from tribolab.io.netcdf import read_netcdf
-
     data = read_netcdf(folder / curve.data_file)
     data.attrs |= {"surface": surface_of(curve), "medium": curve.medium}
     if curve.normal_force is not None:
@@ -86,8 +86,6 @@ def _parts(curves: list[CurveOutcome]) -> list[tuple[CurveOutcome, ...]]:
 
 def draw_curves(what: CurveFigure, folder: Path) -> Drawn:
     """Draw one figure of measured curves."""
-    from tribolab import plot
-
     data = [read_curve(folder, curve) for curve in what.curves]
     values = [v for curve in data for v in curve["friction_coefficient"].values.tolist()]
     speed = [v for curve in data for v in curve["sliding_speed"].values.tolist()]

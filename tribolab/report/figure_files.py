@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab import plot
 from tribolab.records.part_records import FigureRecord
 from tribolab.report import tables
 
@@ -42,8 +43,6 @@ def save_figure(drawn: Drawn, folder: Path, file: str, *, pdf: bool = False) -> 
     pdf
         Whether it is written as PDF, too.
     """
-    from tribolab import plot
-
     plot.save(drawn.figure, folder / file)
     if pdf:
         plot.save(drawn.figure, (folder / file).with_suffix(".pdf"))

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pandas as pd
 
+from tribolab import plot
+from tribolab.io.netcdf import read_netcdf
 from tribolab.records.model_words import has_shear_stress
 from tribolab.records.parts import Row
 from tribolab.report.figure_files import Drawn
 from tribolab.report.model_records import SHEAR_STRESS, ModelRow
-from tribolab.words import force_text, span
+from tribolab.words import force_text, is_dry, span
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,8 +133,6 @@ def _title(model: ModelOutcome) -> str:
 
 def _dry(outcome: Outcome, model: ModelOutcome) -> str:
     """Return the data file of the dry curve of the same surface and load."""
-    from tribolab.words import is_dry
-
     for curve in outcome.curves:
         same = (curve.surface, curve.normal_force) == (model.surface, model.normal_force)
         if curve.done and same and is_dry(curve.medium):
@@ -158,15 +158,7 @@ class _Opened(NamedTuple):
 
 
 def _read(task: _Opened, model: ShownModel, group: str) -> xr.Dataset:
-    from tribolab.io.netcdf import read_netcdf
-
     return read_netcdf(task.folder / model.data_file, group=group)
-
-
-def _plot() -> Any:
-    from tribolab import plot
-
-    return plot
 
 
 def _by_surface(task: _Opened, group: str) -> dict[str, xr.Dataset]:
@@ -174,13 +166,11 @@ def _by_surface(task: _Opened, group: str) -> dict[str, xr.Dataset]:
 
 
 def _curve(task: _Opened) -> tuple[Figure, str]:
-    from tribolab.io.netcdf import read_netcdf
-
     (model,) = task.figure.models
     fit = _read(task, model, "fit")
     spread = _read(task, model, "uncertainty") if "uncertainty" in model.parts else None
     dry = read_netcdf(task.folder / task.figure.dry) if task.figure.dry else None
-    figure = _plot().mixed_curve(
+    figure = plot.mixed_curve(
         fit,
         _read(task, model, "curve"),
         uncertainty=spread,
@@ -207,39 +197,37 @@ def _loads(task: _Opened) -> tuple[Figure, str]:
         measured.append(fit.assign_attrs(labels))
         if has_shear_stress(fit):
             models.append(curve.assign_attrs(labels))
-    figure = _plot().stribeck(
-        measured, models, surfaces=task.figure.surfaces, title=task.figure.title
-    )
+    figure = plot.stribeck(measured, models, surfaces=task.figure.surfaces, title=task.figure.title)
     return figure, f"Measured and computed at {len(task.figure.models)} loads."
 
 
 def _shear_stress(task: _Opened) -> tuple[Figure, str]:
     table = pd.DataFrame(list(task.figure.table), columns=SHEAR_STRESS)
-    figure = _plot().shear_stress(table, surfaces=task.figure.surfaces)
+    figure = plot.shear_stress(table, surfaces=task.figure.surfaces)
     words = span((table["shear_stress_Pa"] / 1e6).tolist(), " MPa")
     return figure, f"As fitted {words}."
 
 
 def _effect(task: _Opened) -> tuple[Figure, str]:
     curves = _by_surface(task, "curve")
-    return _plot().friction_factor_effect(curves, surfaces=task.figure.surfaces), ""
+    return plot.friction_factor_effect(curves, surfaces=task.figure.surfaces), ""
 
 
 def _factors(task: _Opened) -> tuple[Figure, str]:
     factors = _by_surface(task, "factors")
-    return _plot().lubrication_factors(factors, surfaces=task.figure.surfaces), ""
+    return plot.lubrication_factors(factors, surfaces=task.figure.surfaces), ""
 
 
 def _profiles(task: _Opened) -> tuple[Figure, str]:
     profiles = _read(task, task.figure.models[0], "profiles")
-    return _plot().film_profiles(profiles, title=task.figure.title), ""
+    return plot.film_profiles(profiles, title=task.figure.title), ""
 
 
 def _sensitivity(task: _Opened) -> tuple[Figure, str]:
     (model,) = task.figure.models
     found = _read(task, model, "uncertainty")
     most = str(found["variation"].values[int(found["largest_change"].values.argmax())])
-    figure = _plot().model_sensitivity(
+    figure = plot.model_sensitivity(
         found, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
     )
     return figure, f"Moved most by: {most}."

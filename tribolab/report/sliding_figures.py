@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tribolab import plot
 from tribolab.campaign.curves import SLIP
 from tribolab.friction.decisions.rejected import kept
+from tribolab.io.netcdf import read_groups, read_netcdf
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.records.parts import number_of
 from tribolab.records.run_record import RunRecord
@@ -190,15 +192,10 @@ Made = tuple["Figure", str, list[str]]
 
 
 def _slips(what: SlipFigure, folder: Path, group: str = "stick_slip") -> list[xr.Dataset]:
-    from tribolab.io.netcdf import read_netcdf
-
     return [read_netcdf(folder / trace.data_file, group=group) for trace in what.shown]
 
 
 def _traces(what: SlipFigure, folder: Path) -> Made:
-    from tribolab import plot
-    from tribolab.io.netcdf import read_groups
-
     stack: list[Trace] = []
     opened: dict[str, list[xr.Dataset]] = {}
     surface = what.title.partition(":")[0]
@@ -226,8 +223,6 @@ def _in_words(trace: Trace) -> str:
 
 
 def _spectra(what: SlipFigure, folder: Path) -> Made:
-    from tribolab import plot
-
     shown = [(trace, slip) for trace, slip in zip(what.shown, _slips(what, folder), strict=True)]
     figure = plot.slip_spectra({trace.label: (slip, trace.segment) for trace, slip in shown})
     said = [f"{trace.label}: {_strongest(slip, trace.segment)}" for trace, slip in shown]
@@ -247,8 +242,6 @@ def _with(what: SlipFigure, slips: Sequence[xr.Dataset], dim: str) -> dict[str, 
 
 
 def _spectrogram(what: SlipFigure, folder: Path) -> Made | None:
-    from tribolab import plot
-
     shown = dict(list(_with(what, _slips(what, folder), "frequency").items())[:_MOST_SPECTRA])
     if not shown:
         return None
@@ -261,8 +254,6 @@ def _spectrogram(what: SlipFigure, folder: Path) -> Made | None:
 
 
 def _events(what: SlipFigure, folder: Path) -> Made | None:
-    from tribolab import plot
-
     shown = _with(what, _slips(what, folder), "event")
     if not shown:
         return None
@@ -275,8 +266,6 @@ def _events(what: SlipFigure, folder: Path) -> Made | None:
 
 
 def _map(what: SlipFigure, folder: Path) -> Made | None:
-    from tribolab import plot
-
     shown = _with(what, _slips(what, folder, SLIP), "sliding_speed")
     if not shown:
         return None

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tribolab import plot
+from tribolab.errors import ReadError
+from tribolab.io.netcdf import read_netcdf
 from tribolab.report.figure_files import Drawn
 from tribolab.words import force_text, many
 
@@ -95,15 +98,10 @@ class _Opened(NamedTuple):
 
 
 def _read(task: _Opened, group: str) -> dict[str, xr.Dataset]:
-    from tribolab.io.netcdf import read_netcdf
-
     return {name: read_netcdf(task.folder / file, group=group) for name, file in task.figure.shown}
 
 
 def _optional(task: _Opened, group: str) -> dict[str, xr.Dataset]:
-    from tribolab.errors import ReadError
-    from tribolab.io.netcdf import read_netcdf
-
     opened = {}
     for name, file in task.figure.shown:
         try:
@@ -141,31 +139,25 @@ def _modulus(data: dict[str, xr.Dataset]) -> str:
     return next((str(d.attrs["modulus"]) for d in data.values() if "modulus" in d.attrs), "")
 
 
-def _plot() -> Any:
-    from tribolab import plot
-
-    return plot
-
-
 def _spectra(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().spectra(data, surfaces=task.surfaces)
+    return plot.spectra(data, surfaces=task.surfaces)
 
 
 def _area(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().contact_area(data, _loads(task), surfaces=task.surfaces)
+    return plot.contact_area(data, _loads(task), surfaces=task.surfaces)
 
 
 def _adhesive_area(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
     without = _optional(task, "contact")
-    return _plot().adhesive_area(without, data, _loads(task), surfaces=task.surfaces)
+    return plot.adhesive_area(without, data, _loads(task), surfaces=task.surfaces)
 
 
 def _effective_work(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().effective_work(_at_lowest(_with_loads(data)), surfaces=task.surfaces)
+    return plot.effective_work(_at_lowest(_with_loads(data)), surfaces=task.surfaces)
 
 
 def _gaps(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().gaps(_at_lowest(data), surfaces=task.surfaces)
+    return plot.gaps(_at_lowest(data), surfaces=task.surfaces)
 
 
 def _lines(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
@@ -177,15 +169,15 @@ def _lines(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
         half, top = float(first.contact_width) / 2, float(first.max_pressure)
         x = half * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
         hertz = x, top * np.sqrt(np.maximum(1 - (x / half) ** 2, 0))
-    return _plot().line_pressure(_at_lowest(data), hertz, surfaces=task.surfaces)
+    return plot.line_pressure(_at_lowest(data), hertz, surfaces=task.surfaces)
 
 
 def _modulus_figure(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().modulus(next(iter(data.values())))
+    return plot.modulus(next(iter(data.values())))
 
 
 def _viscoelastic(task: _Opened, data: dict[str, xr.Dataset]) -> Figure:
-    return _plot().viscoelastic(_at_lowest(data), surfaces=task.surfaces)
+    return plot.viscoelastic(_at_lowest(data), surfaces=task.surfaces)
 
 
 _KINDS = {

@@ -9,10 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.errors import AnalysisError, TribolabError
-from tribolab.io.scans.read import stacked
+from tribolab.io.scans.read import read_scans, stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan_sets import check_scan_set
 from tribolab.records.parts import Finding, Row
+from tribolab.surface.extrapolation import extrapolate
+from tribolab.surface.form import fill_dropouts, remove_form
+from tribolab.surface.moments import band, rms_roughness, rms_slope
+from tribolab.surface.psd import psd_1d, psd_2d
+from tribolab.surface.roughness import roughness_parameters, spectral_roughness
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,8 +65,6 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
     AnalysisError
         If no scan is left.
     """
-    from tribolab.surface.form import fill_dropouts
-
     scans, findings = _read(surface)
     if not scans:
         raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
@@ -110,9 +113,6 @@ def _as_row(scan: str, said: FindingRow) -> Row:
 
 def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding]]:
     """Read each scan alone; a finding for each that cannot be read."""
-    from tribolab.io.scans.read import read_scans
-    from tribolab.surface.form import fill_dropouts
-
     scans, findings = {}, []
     for path, label in zip(surface.files, surface.labels, strict=True):
         try:
@@ -178,12 +178,6 @@ def spectra(
     tuple
         ``psd_1d`` (of profiles), ``psd`` (extrapolated) and ``roughness``, and the findings.
     """
-    from tribolab.surface.extrapolation import extrapolate
-    from tribolab.surface.form import remove_form
-    from tribolab.surface.moments import band, rms_roughness, rms_slope
-    from tribolab.surface.psd import psd_1d, psd_2d
-    from tribolab.surface.roughness import roughness_parameters, spectral_roughness
-
     options, groups, findings = dict(surface.roughness), {}, []
     form = options.get("form", "auto")
     is_map = "y" in scans.height.dims
