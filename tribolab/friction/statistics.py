@@ -127,12 +127,14 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    plain, sem = (float(width[0]) for width in error_of_mean(blocks[None, :]))
+    line, centred = _line_of(blocks), blocks - blocks.mean()
+    # of both at once: it is the calls that take the time
+    power, floor = model_spectra(np.stack([centred, line.rest]))
+    plain, sem = (float(w[0]) for w in _errors_of_mean(centred[None, :], power[:1], floor[:1]))
     effective = float(np.clip((std / plain) ** 2, 1.0, n))
-    slow = 0.0 if _oscillates(blocks) else error_with_memory(blocks)
+    slow = 0.0 if _oscillates(power[0], blocks.size) else error_with_memory(blocks)
     error = max(sem, plain * student_widening(effective), slow)
-    slope, p_value = trend(blocks)
-    change = slope * blocks.size
+    change = line.slope * blocks.size
     return Estimate(
         mean,
         std,
@@ -142,15 +144,14 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
         duration / (2 * effective),
         change / duration,
         change,
-        p_value,
+        _p_value(line, power[1:]),
     )
 
 
-def _oscillates(record: np.ndarray) -> bool:
+def _oscillates(power: np.ndarray, samples: int) -> bool:
     """Whether most of a record goes to and fro: its periods cancel, and no wander is left."""
-    power, _ = model_spectra((record - record.mean())[None, :])
-    cycles = np.arange(power.shape[1]) * record.size / GRID
-    return bool(power[0, cycles > 2.5].max(initial=0.0) > HUMP * power[0, 0])
+    cycles = np.arange(power.size) * samples / GRID
+    return bool(power[cycles > 2.5].max(initial=0.0) > HUMP * power[0])
 
 
 def student_widening(effective: float) -> float:
@@ -237,26 +238,23 @@ def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndar
     """
     count, n = records.shape
     forward, backward = records, records
-    a = np.zeros((count, order + 1))
-    a[:, 0] = 1
-    sigma = np.mean(records**2, axis=1)
-    models, variances = [a], [sigma]
+    models = np.zeros((order + 1, count, order + 1))
+    models[:, :, 0] = 1
+    variances = np.empty((order + 1, count))
+    variances[0] = np.mean(records**2, axis=1)
     for p in range(1, order + 1):
         f, b = forward[:, 1:], backward[:, :-1]
         power = np.maximum((f * f + b * b).sum(axis=1), 1e-300)
         k = -2 * (f * b).sum(axis=1) / power
         forward, backward = f + k[:, None] * b, b + k[:, None] * f
-        a = a.copy()
-        a[:, 1 : p + 1] += k[:, None] * models[-1][:, p - 1 :: -1][:, :p]
-        sigma = sigma * (1 - k * k)
-        models.append(a)
-        variances.append(sigma)
-    chosen = np.stack(variances)
+        models[p] = models[p - 1]
+        models[p, :, 1 : p + 1] += k[:, None] * models[p - 1, :, p - 1 :: -1]
+        variances[p] = variances[p - 1] * (1 - k * k)
     price = PENALTY * np.arange(order + 1)[:, None]
-    best = np.argmin(n * np.log(np.maximum(chosen, 1e-300)) + price, axis=0)
+    best = np.argmin(n * np.log(np.maximum(variances, 1e-300)) + price, axis=0)
     rows = np.arange(count)
-    sigma = chosen[best, rows] * n / np.maximum(n - best - 1, 1)
-    return np.stack(models)[best, rows], sigma, best
+    sigma = variances[best, rows] * n / np.maximum(n - best - 1, 1)
+    return models[best, rows], sigma, best
 
 
 def model_spectra(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -304,9 +302,15 @@ def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     tuple
         Plain and widened standard error (records). Quote the widened one.
     """
-    n = records.shape[1]
     centred = records - records.mean(axis=1, keepdims=True)
-    power, floor = model_spectra(centred)
+    return _errors_of_mean(centred, *model_spectra(centred))
+
+
+def _errors_of_mean(
+    centred: np.ndarray, power: np.ndarray, floor: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `error_of_mean`, of records without their means and their model spectra."""
+    n = centred.shape[1]
     plain = np.sqrt(variance_of_sum(power, np.full(n, 1 / n)))
     effective = np.mean(centred**2, axis=1) / np.maximum(plain**2, 1e-300)
     student = special.stdtrit(n - 1, 0.995) / special.ndtri(0.995)
@@ -329,17 +333,36 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     The error of the slope comes from the spectrum of what the line leaves, so that a slow
     wander is not taken for a trend.
     """
+    line = _line_of(record)
+    return line.slope, _p_value(line, model_spectra(line.rest[None, :])[0])
+
+
+class _Line(NamedTuple):
+    """Slope per sample, the samples' weights in it, what it leaves of the record; if nothing."""
+
+    slope: float
+    weights: np.ndarray
+    rest: np.ndarray
+    exact: bool
+
+
+def _line_of(record: np.ndarray) -> _Line:
     n = record.size
     place = np.arange(n) - (n - 1) / 2
     weights = place / (place @ place)
     slope = float(weights @ record)
     rest = record - record.mean() - slope * place
-    if not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()):
-        return slope, 0.0 if slope else 1.0
-    power, _ = model_spectra(rest[None, :])
-    error = float(np.sqrt(variance_of_sum(power, weights)[0]))
+    return _Line(slope, weights, rest, not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()))
+
+
+def _p_value(line: _Line, power: np.ndarray) -> float:
+    """Two-sided p value of a slope, from the model spectrum (1, frequency) of what is left."""
+    if line.exact:
+        return 0.0 if line.slope else 1.0
+    n = line.rest.size
+    error = float(np.sqrt(variance_of_sum(power, line.weights)[0]))
     plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
-    effective = min(float(np.mean(rest**2)) / max(plain, 1e-300), n)
+    effective = min(float(np.mean(line.rest**2)) / max(plain, 1e-300), n)
     error *= _widening(effective, n)
     freedom = max(effective - 2, 2.0)
-    return slope, float(2 * special.stdtr(freedom, -abs(slope) / error))
+    return float(2 * special.stdtr(freedom, -abs(line.slope) / error))

@@ -151,11 +151,7 @@ class Classes:
 
     def explained(self, shift: float) -> float:
         """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""
-        _, number, total = self._parts(shift)
-        full = number > 0
-        if not full.any():  # the logs do not overlap
-            return 0.0
-        return float((total[full] ** 2 / number[full]).sum() - total.sum() ** 2 / number.sum())
+        return _explained(*self._parts(shift)[1:])
 
     def _residual(self, shift: float) -> Array:
         at, number, total = self._parts(shift)
@@ -166,10 +162,10 @@ class Classes:
 
     def ratio(self, shift: float) -> float:
         """Part of the variance that is explained."""
-        at, _, total = self._parts(shift)
+        at, number, total = self._parts(shift)
         squares = np.diff(np.interp(at[[0, -1]], self._edges, self._square))[0]
         whole = squares - total.sum() ** 2 / max(at[-1] - at[0], 1e-9)
-        return float(self.explained(shift) / max(whole, 1e-12))
+        return float(_explained(number, total) / max(whole, 1e-12))
 
     def significance(self, shift: float) -> float:
         """F ratio: variance explained per class against the residual's, correlation allowed for."""
@@ -195,6 +191,14 @@ class Classes:
                 return step
             step *= 1.25
         return step
+
+
+def _explained(number: Array, total: Array) -> float:
+    """Sum of squares that classes explain, from number and sum of the samples of each."""
+    full = number > 0
+    if not full.any():  # the logs do not overlap
+        return 0.0
+    return float((total[full] ** 2 / number[full]).sum() - total.sum() ** 2 / number.sum())
 
 
 def _correlated(residual: Array) -> float:

@@ -235,13 +235,21 @@ class _Fit:
     def residual(self, shift: float) -> tuple[Array, float]:
         at = self.time - shift
         i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.motion_time) - 2)
-        part = (at - self.motion_time[i]) / (self.motion_time[i + 1] - self.motion_time[i])
+        start = self.motion_time[i]
+        part = (at - start) / (self.motion_time[i + 1] - start)
         part = np.clip(part, 0.0, 1.0)[:, None]
-        columns = self.table[i] * (1.0 - part) + self.table[i + 1] * part
+        # in place: this is done hundreds of times a run, and half of its time would go into copies
+        columns = self.table.take(i, axis=0)
+        columns *= 1.0 - part
+        after = self.table.take(i + 1, axis=0)
+        after *= part
+        columns += after
         columns -= self.basis @ (self.basis.T @ columns)
         normal = columns.T @ columns
-        ridge = _RIDGE * np.diag(np.diag(normal)) + 1e-12 * np.trace(normal) * np.eye(len(normal))
-        amplitudes = np.linalg.solve(normal + ridge, columns.T @ self.force)
+        own = normal.diagonal()
+        ridged = normal.copy()
+        np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * own.sum()))
+        amplitudes = np.linalg.solve(ridged, columns.T @ self.force)
         inertia = np.sqrt(normal[-1, -1]) * abs(amplitudes[-1])
         return self.force - columns @ amplitudes, float(inertia / np.linalg.norm(self.force))
 
