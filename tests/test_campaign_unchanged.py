@@ -99,7 +99,7 @@ def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
 
     analyse = runs_module.analyse
 
-    def out_of_memory(task):
+    def out_of_memory(*given):
         raise MemoryError("for now")
 
     monkeypatch.setattr(runs_module, "analyse", out_of_memory)

@@ -148,7 +148,7 @@ def test_a_file_that_vanishes_on_the_way_costs_its_own_run_only(campaign, tmp_pa
 
 
 def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monkeypatch):
-    def broken(run):
+    def broken(*given):
         raise ZeroDivisionError("float division by zero")
 
     monkeypatch.setattr(stage, "analyse", broken)

@@ -49,6 +49,10 @@ class Stage(ABC, Generic[Task, Record, Came]):
         """Take over what is known, and return what it came to; None if it has to be done."""
         return None
 
+    def prepared(self, task: Task) -> Task:
+        """Return a task as a worker gets it, with what is known of a part of it."""
+        return task
+
     def order(self, tasks: Sequence[tuple[int, Task]]) -> list[tuple[int, Task]]:
         """Return tasks in the order in which they should begin."""
         return list(tasks)
@@ -92,7 +96,7 @@ def perform(
     for place, task in enumerate(tasks):
         known = stage.known(task, place)
         if known is None:
-            left.append((place, task))
+            left.append((place, stage.prepared(task)))
         else:
             came[place] = known
     if came:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from tribolab.campaign.runs.reading import Earlier, earlier_signals, note_reading
 from tribolab.campaign.runs.zeros import attributes
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.errors import ConfigError
@@ -52,8 +53,15 @@ class Analysed(NamedTuple):
         return found
 
 
-def analyse(run: PlannedRun) -> Analysed:
+def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     """Read a run, find its segments and its friction, and check it, with what was decided on it.
+
+    Parameters
+    ----------
+    run
+        What is to be done.
+    earlier
+        Where its signals are found without reading its raw files.
 
     Raises
     ------
@@ -63,7 +71,9 @@ def analyse(run: PlannedRun) -> Analysed:
     from tribolab.friction.decisions.decide import decide, without_decisions
     from tribolab.friction.segments.find import find_segments
 
-    signals = _read(run)
+    read = earlier and earlier_signals(earlier)
+    read = _read(run) if read is None else read
+    signals = _with_set_points(run, read)
     segments = find_segments(signals, **run.segments)
     before: tuple[xr.Dataset | None, str] = (None, "")
     if any(decision.moves_numbers for decision in run.decisions):
@@ -78,6 +88,7 @@ def analyse(run: PlannedRun) -> Analysed:
     found = Analysed(signals, segments, friction, slip, said.status, *before)
     for data in found.groups.values():
         data.attrs.update(labels_of(run), config_sha256=run.config_sha256)
+    note_reading(run, read, signals)
     return found
 
 
@@ -105,9 +116,14 @@ def _read(run: PlannedRun) -> xr.Dataset:
     from tribolab.io.runs import read_run
 
     files = list(run.files)
-    signals = read_run(
+    return read_run(
         files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
     )
+
+
+def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
+    """Return the signals with what the campaign file says of them."""
+    signals = read.copy()
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
         missing = signals.attrs.get("companion_missing", "")
         raise ConfigError(

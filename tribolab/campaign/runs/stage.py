@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse, labels_of
+from tribolab.campaign.runs.reading import Earlier, mark_of
+from tribolab.campaign.runs.sources import source_of, sources_of
 from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
 from tribolab.errors import AnalysisError, OutputError, told
-from tribolab.provenance import as_text, made, sha256_of_file
+from tribolab.provenance import made
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
@@ -33,13 +35,14 @@ class RunTask:
     """A run to process, the folder for its data file, and what its traces may have.
 
     `points` of each signal are shown at once; the finer trace, into which the page zooms, may
-    have `fine_size` characters.
+    have `fine_size` characters. `earlier` results may hold its signals.
     """
 
     run: PlannedRun
     folder: Path
     points: int = 2000
     fine_size: int = 0
+    earlier: Earlier | None = None
 
     @property
     def data_file(self) -> str:
@@ -108,8 +111,8 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         record = self._store.same(KIND, run.name, mark, RunRecord)
         if record is None or not record.outcome.done:
             return None
-        sources = self._store.sources(zip(run.files, run.labels, strict=True))
-        if sorted(s[1] for s in sources) != sorted(s[1] for s in record.sources):
+        sources = self._unchanged(run, record)
+        if sources is None:
             return None
         outcome = replace(
             record.outcome,
@@ -124,6 +127,24 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         if not self._store.take(KIND, run.name, place, mark, taken, record.outcome.data_file):
             return None
         return RunCame(outcome, sources, record.zero, mark)
+
+    def prepared(self, task: RunTask) -> RunTask:
+        """Say where the signals are, if the raw files and how they are read are the same."""
+        run = task.run
+        entry = self._store.before.get(KIND, run.name, RunRecord)
+        if entry is None or not entry.record.outcome.done:
+            return task
+        file = self._store.intact(KIND, entry.name, entry.record.outcome.data_file)
+        sources = self._unchanged(run, entry.record)
+        if file is None or sources is None:
+            return task
+        return replace(task, earlier=Earlier(file, mark_of(run, sources)))
+
+    def _unchanged(self, run: PlannedRun, record: RunRecord) -> tuple[Source, ...] | None:
+        """Return the raw files of a run; None if they are not those of its record."""
+        sources = self._store.sources(zip(run.files, run.labels, strict=True))
+        same = sorted(s[1] for s in sources) == sorted(s[1] for s in record.sources)
+        return sources if same else None
 
     @staticmethod
     def work(task: RunTask) -> RunAnswer:
@@ -183,7 +204,7 @@ def process_run(task: RunTask) -> RunAnswer:
     began = time.monotonic()
     run = task.run
     try:
-        found = analyse(run)
+        found = analyse(run, task.earlier)
         signals, segments, friction, slip = (
             found.signals,
             found.segments,
@@ -201,7 +222,7 @@ def process_run(task: RunTask) -> RunAnswer:
     except Exception as error:  # recorded: one bad file must not stop the others
         reason, name = explain(error)
         outcome = failed_run(run, reason, name, time.monotonic() - began)
-        sources = tuple(source_of(*pair) for pair in _files(run))
+        sources = tuple(map(source_of, run.files, run.labels))
         facts = RunFacts(decisions=not_applied(run.decisions))
         return RunAnswer(RunRecord(outcome, sources, facts=facts))
     load = run.normal_force
@@ -240,30 +261,6 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
         error=error,
         seconds=seconds,
     )
-
-
-def sources_of(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
-    """Return the files of a run with the checksums that were taken while reading."""
-    names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
-    known = dict(zip(names, sums, strict=False))
-    return tuple(
-        (label, known[as_text(file.name)], file.stat().st_size)
-        if as_text(file.name) in known
-        else source_of(file, label)
-        for file, label in _files(run)
-    )
-
-
-def source_of(file: Path, label: str) -> Source:
-    """Return label, checksum and size of a file; no checksum if it cannot be read."""
-    try:
-        return label, sha256_of_file(file), file.stat().st_size
-    except OSError:  # vanished or unreadable: the outcome of its part says so
-        return label, "", 0
-
-
-def _files(run: PlannedRun) -> list[tuple[Path, str]]:
-    return list(zip(run.files, run.labels, strict=True))
 
 
 def _trace(

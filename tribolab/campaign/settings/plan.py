@@ -50,6 +50,8 @@ class PlannedRun:
         Arguments of `check_run`: limits, skip, contact_width.
     config_sha256
         Checksum of all of these, and of the dialect's content.
+    reading_sha256
+        Checksum of those of them that reading the files depends on.
     decisions
         What a person decided on it.
     """
@@ -67,6 +69,7 @@ class PlannedRun:
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
     config_sha256: str = ""
+    reading_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
 
 
@@ -258,12 +261,17 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
     }
-    shaping = settings | {
+    reading = {
         "instrument": entry.instrument,
         "dialect": instrument and sha256_of_dialect(instrument),
         "cycles": entry.cycles,
+        "clock_shift": entry.clock_shift,
     }
-    return settings | {"instrument": instrument, "config_sha256": sha256_of(shaping)}
+    return settings | {
+        "instrument": instrument,
+        "config_sha256": sha256_of(settings | reading),
+        "reading_sha256": sha256_of(reading),
+    }
 
 
 def sha256_of_dialect(instrument: str) -> str:

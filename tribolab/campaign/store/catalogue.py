@@ -238,15 +238,18 @@ class Store(Catalogue):
         bool
             False if it is not there, or not as it was written: then the part is done anew.
         """
+        return self.intact(kind, name, old) is not None and self.link_beside(old, new)
+
+    def intact(self, kind: str, name: str, file: str) -> Path | None:
+        """Return the data file of an earlier part; None if it is not there as it was written."""
         if self.previous is None:
-            return False
+            return None
         try:
-            state = (self.previous / old).stat()
-            if (state.st_size, state.st_mtime_ns) != self.before.state(kind, name):
-                return False
+            state = (self.previous / file).stat()
         except OSError:  # gone
-            return False
-        return self.link_beside(old, new)
+            return None
+        same = (state.st_size, state.st_mtime_ns) == self.before.state(kind, name)
+        return self.previous / file if same else None
 
     def link_beside(self, old: str, new: str = "") -> bool:
         """Have a file of the earlier results among the new ones; False if it is not there."""

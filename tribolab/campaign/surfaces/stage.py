@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Stage
-from tribolab.campaign.runs.stage import source_of
+from tribolab.campaign.runs.sources import source_of
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.campaign.surfaces.kept import kept_surface

@@ -248,7 +248,7 @@ class _Fit:
         normal = columns.T @ columns
         own = normal.diagonal()
         ridged = normal.copy()
-        np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * own.sum()))
+        np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * np.trace(normal)))
         amplitudes = np.linalg.solve(ridged, columns.T @ self.force)
         inertia = np.sqrt(normal[-1, -1]) * abs(amplitudes[-1])
         return self.force - columns @ amplitudes, float(inertia / np.linalg.norm(self.force))

@@ -1,0 +1,118 @@
+"""Signals of a run, as its raw files gave them, from the data file that was made of them before.
+
+To read the raw files of a run and to set its two clocks right takes as long as all the rest. A
+data file holds the same signals, with what the checks said of them: it keeps beside them what the
+analysis changed, so that this can be taken back, and a mark of all that reading depends on.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.campaign.runs.sources import sources_of
+from tribolab.campaign.store.catalogue import fingerprint_of
+from tribolab.campaign.store.data_files import read_data
+from tribolab.errors import ReadError
+from tribolab.provenance import as_text, sha256_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.campaign.settings.plan import PlannedRun
+    from tribolab.records.parts import Source
+    from tribolab.untyped import Json
+
+READING = "reading"  # attribute of a data file's run: its mark, and what the analysis changed
+
+
+class Earlier(NamedTuple):
+    """A data file of earlier results, and the mark of the reading that is wanted of it."""
+
+    file: Path
+    mark: str
+
+
+def mark_of(run: PlannedRun, sources: Sequence[Source]) -> str:
+    """Return the checksum of all that shapes the signals of a run; "" if a file is not known."""
+    sums = [checksum for _, checksum, _ in sources]
+    if not all(sums):
+        return ""
+    names = [as_text(file.name) for file in run.files]
+    return fingerprint_of(sha256_of([run.reading_sha256, names, sums]))
+
+
+def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
+    """Note on the signals that the analysis marked how they were read; in place.
+
+    Parameters
+    ----------
+    run
+        What was asked for.
+    read
+        The signals as they were read (time).
+    marked
+        The same with what the analysis added.
+    """
+    attrs = read.attrs
+    # a log that lies beside the files but is not named among them may come, go and change
+    alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
+    if not alone or "companion_missing" in attrs:
+        return
+    mark = mark_of(run, sources_of(run, attrs))
+    changed = {"attrs": _changed(attrs, marked.attrs)} | {
+        "variables": {
+            str(name): _changed(variable.attrs, marked.variables[name].attrs)
+            for name, variable in read.variables.items()
+        }
+    }
+    if mark and _is_plain(changed):
+        marked.attrs[READING] = {"mark": mark} | changed
+
+
+def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
+    """Return the signals of a run as they were read before; None if they cannot be had.
+
+    Parameters
+    ----------
+    earlier
+        Where they are.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        What reading the raw files would give (time).
+    """
+    try:
+        marked = read_data(earlier.file, "run")
+    except ReadError:  # gone or damaged: the raw files are there
+        return None
+    noted = marked.attrs.get(READING)
+    if not earlier.mark or not isinstance(noted, dict) or noted.get("mark") != earlier.mark:
+        return None
+    signals = marked[[name for name in noted["variables"] if name not in marked.coords]]
+    signals.attrs = _before(marked.attrs, noted["attrs"])
+    for name, changed in noted["variables"].items():
+        signals.variables[name].attrs = _before(marked.variables[name].attrs, changed)
+    return signals
+
+
+def _changed(before: Mapping[object, object], after: Mapping[object, object]) -> Json:
+    """Return what has to be done to attributes to have those of before."""
+    was = {str(k): v for k, v in before.items() if k not in after or after[k] is not v}
+    return {"was": was, "new": [str(k) for k in after if k not in before]}
+
+
+def _before(after: Mapping[object, object], changed: Json) -> Json:
+    kept = {str(k): v for k, v in after.items() if k not in changed["new"] and k != READING}
+    return kept | changed["was"]
+
+
+def _is_plain(changed: Json) -> bool:
+    """Whether JSON gives the same again."""
+    try:
+        return bool(json.loads(json.dumps(changed)) == changed)
+    except (TypeError, ValueError):
+        return False
