@@ -212,6 +212,8 @@ def _estimated(
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
     if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
+        if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
+            combined = _late(combined, ways["motion"])
     elif sharp_fit:
         known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
         first = ways["classes"]
@@ -263,14 +265,14 @@ def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
     return _agree(starts, classes) or abs(starts.shift - classes.shift) < _LATE * stroke
 
 
-def _late(starts: Told, classes: Told) -> Told:
-    """Widen what starts tell that no sharp fit confirms: half of their advance may be wrong.
+def _late(starts: Told, other: Told) -> Told:
+    """Widen what starts tell by half of what lies between them and another way.
 
     Where friction takes its time to follow the speed, classes of speed are late, and the starts
-    may be.
+    may be; where the stage sticks, a fit may be nearer to the truth.
     """
-    advance = 0.5 * (starts.shift - classes.shift)
-    return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, advance)))
+    apart = 0.5 * (starts.shift - other.shift)
+    return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, apart)))
 
 
 def _refined(fit: Classes, shift: float, around: float) -> float:
