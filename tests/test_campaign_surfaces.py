@@ -345,7 +345,7 @@ def test_a_part_that_crashes_costs_only_itself(tmp_path, profiles, monkeypatch):
     def crash(*args, **kwargs):
         raise ZeroDivisionError("no gap")
 
-    monkeypatch.setattr("tribolab.contact.gap.gap_distribution", crash)
+    monkeypatch.setattr("tribolab.campaign.surfaces.contact.gap_distribution", crash)
     surface = processed(tmp_path, profiles[:1])
     assert surface.done and "gap" not in surface.parts and "line" in surface.parts
     [message] = said(surface, "error")

@@ -15,6 +15,7 @@ from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.kinds import kind_of
 from tribolab.io.runs import describe, read_run
+from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
 from tribolab.words import Count, explain
@@ -87,7 +88,6 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
     """Read a scan; what turns out to be none is told about as a run would be."""
-    from tribolab.io.scans.formats import NotSaidError
     from tribolab.io.scans.read import read_scans
 
     try:

@@ -18,6 +18,7 @@ from tribolab.errors import TribolabError
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
+from tribolab.records.wording import plain_value
 from tribolab.stamping import stamp
 from tribolab.words import explain
 
@@ -147,7 +148,6 @@ def process_curve(task: CurveTask) -> CurveRecord:
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_groups
     from tribolab.records.frames import curve_table, plain_rows
-    from tribolab.records.wording import plain_value
 
     with NETCDF:
         parts = [read_groups(task.folder / n, ("friction", SLIP)) for n in task.data_files]

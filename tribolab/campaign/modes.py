@@ -18,6 +18,7 @@ from tribolab.provenance import sha256_of
 from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, number_of
+from tribolab.records.wording import plain_value
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -138,7 +139,6 @@ def judge(task: ModeTask) -> ModeRecord:
     """
     from tribolab.friction.oscillation.waveform import oscillating
     from tribolab.mode.verdict import sliding_mode
-    from tribolab.records.wording import plain_value
 
     curve = task.curve
     measured = read_data(task.folder / curve.data_file)

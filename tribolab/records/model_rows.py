@@ -13,6 +13,7 @@ from tribolab.records.model_words import judgement
 from tribolab.records.part_records import ModelRows
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value, validity_of
+from tribolab.words import is_dry
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,8 +89,6 @@ def model_rows(
 
 def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
     """Real contact area dry over that in the medium, at the same load; None if not known."""
-    from tribolab.words import is_dry
-
     if adhesion is None:
         return None
     dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]

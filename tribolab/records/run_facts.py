@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_table, plain_rows
@@ -150,7 +151,6 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
         From `tribolab.friction.oscillation.stick_slip.stick_slip`.
     """
     from tribolab.friction.oscillation.slip_curve import STEADY, stick_slip_curve
-    from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 
     curve = stick_slip_curve([slip])
     over_speed = bool(curve.sizes["sliding_speed"])

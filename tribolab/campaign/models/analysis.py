@@ -10,7 +10,12 @@ import xarray as xr
 
 from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
+from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError
+from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.lubrication.factors import flow_factors
+from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp
 from tribolab.untyped import Arguments
@@ -38,9 +43,6 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     TribolabError
         If the curve cannot be computed.
     """
-    from tribolab.contact.geometry import LineContact
-    from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
-
     measured = read_data(folder / model.curve.data_file)
     psd = read_data(folder / model.surface_file, "psd")
     contact = LineContact(**model.contact)
@@ -92,8 +94,6 @@ def _fit(
     computed: xr.Dataset,
     folder: Path,
 ) -> ShearStressFit:
-    from tribolab.fit.shear_stress import fit_shear_stress
-
     enhancement, low, high = _enhancement(model, folder)
     runs = float(np.median(measured["runs"].values))
     return fit_shear_stress(
@@ -129,8 +129,6 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
 
     Where the fitted shear stress is negative, the model is the one with none.
     """
-    from tribolab.lubrication.stribeck import with_shear_stress
-
     curve = fit.curve
     if fit.shear_stress < 0:
         curve = with_shear_stress(curve, -fit.shear_stress)
@@ -175,8 +173,6 @@ def _profiles(
     model: PlannedModel, points: np.ndarray, contact: LineContact, psd: xr.Dataset, load: float
 ) -> xr.Dataset:
     """Profiles at a few speeds from the slowest to the fastest that was measured."""
-    from tribolab.lubrication.stribeck import film_profile
-
     moving = points[points > 0]
     body = model.settings["rough_body"]
     begins = model.settings["inlet_length"] or np.inf
@@ -192,8 +188,6 @@ def _profiles(
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
-    from tribolab.lubrication.factors import flow_factors
-
     factors = flow_factors(psd, rough_body)
     return factors.dataset(_SEPARATIONS * factors.rms_roughness)
 
@@ -201,8 +195,6 @@ def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
 def _uncertain(
     contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: Arguments
 ) -> xr.Dataset:
-    from tribolab.fit.model_uncertainty import model_uncertainty
-
     return model_uncertainty(
         contact,
         psd,

@@ -8,7 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tribolab.campaign.settings.plan import PlannedRun, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.settings.plan import (
+    PlannedRun,
+    instrument_of,
+    label_of,
+    scans_of,
+    sha256_of_dialect,
+)
 from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
 from tribolab.campaign.store.catalogue import Catalogue, Identity
 from tribolab.campaign.store.ledger import Ledger
@@ -133,8 +139,6 @@ def _as_before(parts: Sequence[Part]) -> tuple[Part, ...]:
 
 
 def _dialect(campaign: Campaign, instrument: str) -> str:
-    from tribolab.campaign.settings.plan import instrument_of
-
     return sha256_of_dialect(instrument_of(campaign, instrument))
 
 

@@ -3,14 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import PchipInterpolator
 
+from tribolab.contact.adhesion import adhesion
+from tribolab.contact.gap import gap_distribution
+from tribolab.contact.geometry import LineContact
+from tribolab.contact.hertz import (
+    hertz_half_width,
+    hertz_max_pressure,
+    hertz_mean_pressure,
+    jkr_half_width,
+)
+from tribolab.contact.limits import line_limits
+from tribolab.contact.line import rough_line_contact
+from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.errors import ReadError, TribolabError
 from tribolab.records.parts import Finding, beyond_limits
-from tribolab.stamping import stamp
+from tribolab.rubber.friction import viscoelastic_friction
+from tribolab.rubber.modulus import PDMS_STAND_IN, Modulus, read_modulus
+from tribolab.stamping import labelled, stamp
 from tribolab.validity import together
 from tribolab.words import explain
 
@@ -29,16 +45,12 @@ _ENDINGS = ("", "_low", "_high")
 
 def line_contact(surface: PlannedSurface) -> LineContact | None:
     """Return the line contact, if the campaign file knows all of it."""
-    from tribolab.contact.geometry import LineContact
-
     known = all(value is not None for value in surface.contact.values())
     return LineContact(**surface.contact) if known else None
 
 
 def lowest_wavenumber(surface: PlannedSurface) -> float | None:
     """Return q0 = pi / (width of the Hertz contact at the lowest load) [1/m], if it is known."""
-    from tribolab.contact.hertz import hertz_half_width
-
     contact = line_contact(surface)
     if contact is None or surface.lowest_force is None:
         return None
@@ -120,8 +132,6 @@ def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
 
 
 def _areas(pressure: xr.DataArray, psd: xr.Dataset, modulus: float) -> dict[str, xr.DataArray]:
-    from tribolab.contact.persson import contact_area_ratio
-
     return {
         f"contact_area_ratio{ending}": contact_area_ratio(pressure, spectrum, modulus)
         for ending, spectrum in _bounds(psd).items()
@@ -129,9 +139,6 @@ def _areas(pressure: xr.DataArray, psd: xr.Dataset, modulus: float) -> dict[str,
 
 
 def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
-    from tribolab.contact.persson import mean_separation
-    from tribolab.stamping import labelled
-
     pressure = labelled(grid, "pressure")
     data = _areas(pressure, psd, modulus)
     data["separation"] = mean_separation(pressure, psd, modulus)
@@ -141,10 +148,6 @@ def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
 
 def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
     """Hertz contact at each load, and the rough contact at its mean pressure."""
-    from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure, hertz_mean_pressure
-    from tribolab.contact.limits import line_limits
-    from tribolab.contact.persson import mean_separation
-
     load = forces / contact.length
     coords = {"load": load}
 
@@ -167,8 +170,6 @@ def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
 
 def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
     """Dry rough line contact at each load; every load has its own x."""
-    from tribolab.contact.line import rough_line_contact
-
     parts = []
     for force in forces:
         line = rough_line_contact(contact.load(float(force)), contact, psd)
@@ -179,8 +180,6 @@ def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
 
 
 def _gaps(loads: xr.Dataset, psd: xr.Dataset, modulus: float) -> xr.Dataset:
-    from tribolab.contact.gap import gap_distribution
-
     gaps = gap_distribution(loads.pressure, psd, modulus)
     return gaps.assign(normal_force=loads.normal_force)
 
@@ -197,11 +196,6 @@ def _adhesion(
 
     Zero pressure is the limit of vanishing load, in which gamma_eff(1) tells of a pull-off force.
     """
-    from scipy.interpolate import PchipInterpolator
-
-    from tribolab.contact.adhesion import adhesion
-    from tribolab.contact.hertz import jkr_half_width
-
     at_loads = np.array([]) if loads is None else loads.pressure.values
     pressures = np.concatenate([[0.0], at_loads, grid])
     # a band is smooth, so a third of the grid tells it
@@ -290,11 +284,6 @@ def _rubber(
     attempt: Attempt,
 ) -> None:
     """Viscoelastic friction with the measured modulus, else with a stand-in for a rubber."""
-    from dataclasses import replace
-
-    from tribolab.rubber.friction import viscoelastic_friction
-    from tribolab.rubber.modulus import PDMS_STAND_IN, Modulus, read_modulus
-
     stiffness = surface.contact["youngs_modulus"]
     if surface.modulus_file is None and stiffness > _STIFFEST_RUBBER:
         text = (

@@ -18,6 +18,7 @@ from tribolab.errors import OutputError
 from tribolab.provenance import made, named_sources
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding, RunOutcome, Source, SurfaceOutcome
+from tribolab.records.wording import plain_value
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -111,7 +112,6 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         If the results cannot be written: that is no fault of the surface.
     """
     from tribolab.records.surface_rows import surface_rows
-    from tribolab.records.wording import plain_value
 
     began = time.monotonic()
     surface = task.surface
