@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab.friction.oscillation import noise
+from tribolab.pieces import pieces
 from tribolab.qc import signals, timing
 from tribolab.qc.flags import (
     FAIL,
@@ -19,7 +20,6 @@ from tribolab.qc.flags import (
     is_uniform,
     uniform,
 )
-from tribolab.qc.pieces import pieces
 from tribolab.qc.run_checks import check_run
 
 SEVERITIES = (GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING)
@@ -74,10 +74,7 @@ def test_where_a_record_is_cut_does_not_show(monkeypatch, seed, size):
 
     whole = found()
     for piece in (1, 64, 1000):
-        for module in (signals, timing):
-            monkeypatch.setattr(module, "PIECE", piece)
-            monkeypatch.setattr(module, "pieces", lambda a, b, length=piece: pieces(a, b, length))
-        monkeypatch.setattr(noise, "_PIECE", piece)
+        monkeypatch.setattr("tribolab.pieces.PIECE", piece)
         assert found() == whole
 
 

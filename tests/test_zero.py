@@ -14,7 +14,7 @@ from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.middles import middles
 from tribolab.friction.zero.offsets import wander
-from tribolab.friction.zero.rectified import ForceTrace, folded
+from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
 from tribolab.io.read import read
@@ -429,8 +429,9 @@ def test_turns_within_a_sample_do_not_prove_a_sign(lost, kind):
         force = np.abs(force)
     parts = [slice(101 * i + 5, 101 * i + 95) for i in range(8)]
     mean = np.array([force[part].mean() for part in parts])
-    loaded = np.ones(force.size, dtype=bool)
-    trace = ForceTrace(force, loaded, parts, mean, np.full(8, 1e-3), sign, np.nan)
+    trace = ForceTrace(
+        force, Pressed(None, parts, 0.5), parts, mean, np.full(8, 1e-3), sign, np.nan
+    )
     assert folded(trace).kind.startswith(kind)
 
 

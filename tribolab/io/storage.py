@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.io.attributes import encoded
+from tribolab.pieces import pieces
 from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
@@ -57,8 +58,8 @@ def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -
     for target, values in waiting:
         target.set_auto_maskandscale(False)
         if values.ndim == 1:
-            for start in range(0, values.size, _PIECE):
-                target[start : start + _PIECE] = values[start : start + _PIECE]
+            for start, stop in pieces(0, values.size, _PIECE):
+                target[start:stop] = values[start:stop]
         else:
             target[...] = values
     for name, data in left.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-_PIECE = 1 << 17  # points that are worked on at a time
+from tribolab.pieces import pieces, whole_blocks
 
 
 def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarray, np.ndarray]:
@@ -63,13 +63,10 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
         return np.arange(x.size)
     starts = _starts(x, columns)
     edges = np.r_[starts, x.size]
-    kept, first = [], 0
-    while first < starts.size:  # some columns at a time
-        last = int(np.searchsorted(edges, edges[first] + _PIECE, "right")) - 1
-        last = min(max(last, first + 1), starts.size)
+    kept = []
+    for first, last in whole_blocks(edges):
         begin = edges[first]
         kept.append(begin + _extremes(y[begin : edges[last]], starts[first:last] - begin))
-        first = last
     return np.concatenate(kept)
 
 
@@ -77,8 +74,8 @@ def _starts(x: np.ndarray, columns: int) -> np.ndarray:
     """Index of the first point of each column that has any."""
     span = x[-1] - x[0]
     found = [np.zeros(1, int)]
-    for begin in range(0, x.size - 1, _PIECE):
-        part = x[begin : begin + _PIECE + 1]
+    for begin, end in pieces(0, x.size - 1):
+        part = x[begin : end + 1]
         if span > 0:
             # dividing before the product keeps the ratio finite for any span
             place = (part - x[0]) / span

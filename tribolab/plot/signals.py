@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab.errors import AnalysisError
+from tribolab.pieces import pieces
+from tribolab.room import room
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +36,12 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
 
 def _without(data: xr.DataArray, offset: float) -> np.ndarray:
     values = np.asarray(data, float)
-    return values - offset if offset else values  # a long record is not copied for nothing
+    if not offset:
+        return values  # a long record is not copied for nothing
+    moved = room(values.size)
+    for first, last in pieces(0, values.size):
+        moved[first:last] = values[first:last] - offset
+    return moved
 
 
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
@@ -59,26 +66,42 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
     """
     if "friction_force" in run and "normal_force" in run:
         zero = offset_of(friction, "friction_force_offset")
-        load = _without(run["normal_force"], offset_of(friction, "normal_force_offset"))
-        force = _without(run["friction_force"], zero)
-        finite = load[np.isfinite(load)]
-        # of what is a copy already
-        usual = np.percentile(finite, 95, overwrite_input=True) if finite.size else np.inf
-        del finite
-        pressed = load > _LOADED * usual
-        pressed &= load > 0
-        ratio = np.divide(force, load, out=np.full(load.size, np.nan), where=pressed)
+        load, force = (np.asarray(run[n], float) for n in ("normal_force", "friction_force"))
+        ratio = _ratio(force, zero, load, offset_of(friction, "normal_force_offset"))
         return Signal("friction_coefficient", ratio, "offset removed" if zero else "")
     for name in ("friction_coefficient", "friction_force"):
         if name in run:
             zero = offset_of(friction, f"{name}_offset")
-            values = np.asarray(run[name], float) - zero
-            return Signal(name, values, "offset removed" if zero else "")
+            return Signal(name, _without(run[name], zero), "offset removed" if zero else "")
     known = ", ".join(map(str, run.data_vars)) or "nothing"
     raise AnalysisError(
         "the run has neither 'friction_force' nor 'friction_coefficient', so there is no trace to "
         f"draw; it has {known}"
     )
+
+
+def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: float) -> np.ndarray:
+    """Return the ratio of two signals without their zeros, where there is a load."""
+    ratio = room(load.size)
+    least = _LOADED * _usual(load, load_zero, ratio)
+    for first, last in pieces(0, load.size):
+        pressing = load[first:last] - load_zero
+        pressed = (pressing > least) & (pressing > 0)
+        own = ratio[first:last]
+        own[:] = np.nan
+        np.divide(force[first:last] - force_zero, pressing, out=own, where=pressed)
+    return ratio
+
+
+def _usual(load: np.ndarray, zero: float, scratch: np.ndarray) -> float:
+    """Return what 95 % of the readings above a zero do not exceed."""
+    count = 0
+    for first, last in pieces(0, load.size):
+        some = load[first:last] - zero
+        some = some[np.isfinite(some)]
+        scratch[count : count + some.size] = some
+        count += some.size
+    return float(np.percentile(scratch[:count], 95, overwrite_input=True)) if count else np.inf
 
 
 class Stroke(NamedTuple):

@@ -23,6 +23,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.pieces import anywhere, pieces
+from tribolab.room import filled, room
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -63,10 +66,14 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
     single = [f for f in (first, *others) if not is_uniform(f)]
     if not single:
         return uniform(shape, int(_BY_PRECEDENCE[grave]))
-    worst = np.full(shape, grave, np.int8)
-    for other in single:
-        np.maximum(worst, _PRECEDENCE.take(other), out=worst)
-    return _BY_PRECEDENCE.take(worst)
+    combined = room(int(np.prod(shape)), np.int8)
+    flat = [other.reshape(-1) for other in single]
+    for start, stop in pieces(0, combined.size):
+        worst = np.full(stop - start, grave, np.int8)
+        for other in flat:
+            np.maximum(worst, _PRECEDENCE.take(other[start:stop]), out=worst)
+        _BY_PRECEDENCE.take(worst, out=combined[start:stop], mode="clip")
+    return combined.reshape(shape)
 
 
 def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
@@ -109,15 +116,9 @@ def attach(
     result = data.copy()
     shape, dims = data[name].shape, data[name].dims
     severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
-    unknown = np.isnan(data[name].values)
-    if unknown.any():
-        severity = np.where(unknown, np.int8(MISSING), severity)
-    tests = np.broadcast_to(np.int32(0), shape)
-    for check, values in flags.items():
-        # suspect, fail and missing are the largest numbers
-        bad = values[:1] >= SUSPECT if is_uniform(values) else values >= SUSPECT
-        if bad.any():
-            tests = tests | np.where(bad, np.int32(1 << bits[check]), np.int32(0))
+    if anywhere(np.isnan, data[name].values):
+        severity = np.where(np.isnan(data[name].values), np.int8(MISSING), severity)
+    tests = _objecting(shape, {1 << bits[check]: values for check, values in flags.items()})
     known = sorted(bits, key=bits.__getitem__)
     result[f"{name}_qc"] = (
         dims,
@@ -140,6 +141,24 @@ def attach(
     )
     result[name].attrs["ancillary_variables"] = f"{name}_qc {name}_qc_tests"
     return result
+
+
+def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.ndarray:
+    """Which checks, each a bit, objected to each sample."""
+    # suspect, fail and missing are the largest numbers
+    flat = {bit: values.reshape(-1) for bit, values in flags.items()}
+    flat = {bit: values for bit, values in flat.items() if anywhere(_is_bad, values)}
+    if not flat:
+        return np.broadcast_to(np.int32(0), shape)
+    tests = filled(int(np.prod(shape)), 0, np.int32)
+    for start, stop in pieces(0, tests.size):
+        for bit, values in flat.items():
+            tests[start:stop] |= np.where(_is_bad(values[start:stop]), np.int32(bit), np.int32(0))
+    return tests.reshape(shape)
+
+
+def _is_bad(flags: np.ndarray) -> np.ndarray:
+    return flags >= SUSPECT
 
 
 def severity_of(flags: np.ndarray) -> int:

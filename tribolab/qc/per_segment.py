@@ -37,9 +37,7 @@ def by_segment(
     flags = grade(values, limits["suspect"], limits.get("fail", np.inf))
     if (flags == NOT_EVALUATED).all():
         raise Skip(f"{what}: nothing to compare with")
-    samples = np.full(subject.time.size, NOT_EVALUATED, np.int8)
-    for part, flag in zip(subject.slices, flags, strict=True):
-        samples[part] = flag
+    samples = subject.on_samples(flags)
     bad = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     worst = int(np.nanargmax(np.abs(values)))
     if bad.size == 0:

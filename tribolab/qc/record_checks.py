@@ -8,10 +8,12 @@ import numpy as np
 
 from tribolab.errors import shown
 from tribolab.friction.oscillation.noise import quantisation_step
+from tribolab.pieces import anywhere, one_by_one
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT, uniform
 from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
+from tribolab.room import filled
 from tribolab.words import Count
 
 _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
@@ -22,7 +24,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
     for name, unit in schema.wrong_units(run).items():
         results.append(Result("fail", name, f"{name} is in '{shown(unit)}', not in SI"))
-    for name, span in schema.ranges().items():
+    for name, span in one_by_one(schema.ranges().items()):
         if name not in run:
             continue
         flags = schema.in_range(run[name].values, span)
@@ -46,10 +48,10 @@ def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     time = subject.time
     flags = timing.time_gaps(time, limits["intervals"], _step_changes(subject))
-    if not (flags == SUSPECT).any():
+    if not anywhere(lambda part: part == SUSPECT, flags):
         return [sample_result("time", flags, time, "")]
     lost = timing.lost_time(time, flags)
-    longest = float(np.diff(time)[flags[1:] == SUSPECT].max())
+    longest = float(timing.gaps(time, flags).max())
     text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
     if lost > limits["lost"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
@@ -70,7 +72,7 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
         if cut is not None:
             cuts.append(part.start + cut)
     if cuts:
-        flags = np.full(time.size, GOOD, np.int8)
+        flags = filled(time.size, GOOD, np.int8)
         flags[cuts] = SUSPECT
         text = "the sampling rate changes within a segment {count:time|times}, {where}"
         return [sample_result("time", flags, time, text)]
@@ -111,7 +113,7 @@ def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
-    for name, values in subject.signals.items():
+    for name, values in one_by_one(subject.signals.items()):
         flags = signals.missing(values)
         count = int(np.isnan(values).sum())
         share = count / values.size
@@ -138,13 +140,13 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
             text,
             fail_share=limits["fail"],
         )
-        for name, values in subject.force_signals.items()
+        for name, values in one_by_one(subject.force_signals.items())
     ]
 
 
 def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
-    for name, values in subject.force_signals.items():
+    for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.saturation(values)
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
         text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
@@ -155,14 +157,13 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 
 def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
-    for name, values in subject.force_signals.items():
+    for name, values in one_by_one(subject.force_signals.items()):
         step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:
             text = "values do not repeat: no step to be seen"
             results.append(Result("pass", name, text, 0.0))
             continue
-        loaded = np.abs(values[subject.in_segments] if subject.in_segments.any() else values)
-        typical = float(np.nanmedian(loaded, overwrite_input=True))
+        typical = subject.typical_size(name)
         ratio = step / typical if typical > 0 else float("inf")
         coarse = step > limits["steps"] * max(noise, 1e-300) and ratio > limits["share"]
         text = (
@@ -175,7 +176,7 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 
 def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
-    for name, values in subject.force_signals.items():
+    for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
         text = "{count:single sample stands|single samples stand} out from both neighbours, {where}"
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))

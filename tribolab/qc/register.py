@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.errors import ConfigError, nearest, shown
+from tribolab.pieces import one_by_one
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.units import to_si
 from tribolab.words import Count
@@ -137,7 +138,7 @@ def results_of_checks(
         The results by name of the check, at least one for each check.
     """
     results: dict[str, list[Result]] = {}
-    for name, check in checks.items():
+    for name, check in one_by_one(checks.items()):
         if name in skip:
             results[name] = [Result("skipped", "", "switched off in the settings")]
             continue

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.pieces import one_by_one
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject
@@ -70,7 +71,9 @@ def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not {"sliding_velocity", "position"} <= set(subject.run):
         raise Skip("velocity and position were not both recorded")
-    slopes, scatter, spread = np.array([_slope(subject, part) for part in subject.slices]).T
+    slopes, scatter, spread = np.array(
+        [_slope(subject, part) for part in one_by_one(subject.slices)]
+    ).T
     if not np.isfinite(slopes).any():
         raise Skip("no position within the segments")
     # readings that repeat one value do not scatter, and yet are no more exact than the others
@@ -90,9 +93,13 @@ def _slope(subject: RunSubject, part: slice) -> tuple[float, float, float]:
     good = np.isfinite(position)
     if good.sum() < 3:
         return float("nan"), float("nan"), float("nan")
-    t, x = time[good] - time[good].mean(), position[good] - position[good].mean()
-    slope = float(t @ x) / float(t @ t)
-    return slope, float(np.std(x - slope * t)), float(np.sqrt(t @ t))
+    if not good.all():
+        time, position = time[good], position[good]
+    t, x = time - time.mean(), position - position.mean()
+    slope, spread = float(t @ x) / float(t @ t), float(np.sqrt(t @ t))
+    t *= slope
+    x -= t
+    return slope, float(np.std(x)), spread
 
 
 def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.oscillation.noise import quantisation_step
+from tribolab.pieces import anywhere, pieces
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.qc.pieces import PIECE, pieces
+from tribolab.room import filled, let_go, room
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -21,10 +22,9 @@ def missing(values: np.ndarray) -> np.ndarray:
     >>> missing(np.array([1.0, np.nan]))
     array([1, 9], dtype=int8)
     """
-    unknown = np.isnan(values)
-    if not unknown.any():
+    if not anywhere(np.isnan, values):
         return uniform(values.shape, GOOD)
-    return np.where(unknown, np.int8(MISSING), np.int8(GOOD))
+    return np.where(np.isnan(values), np.int8(MISSING), np.int8(GOOD))
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
@@ -49,7 +49,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
     steps are therefore none, and neither is a peak behind which the signal stays elsewhere: the
     neighbours have to agree within half the height.
     """
-    flags = np.full(values.size, NOT_EVALUATED, np.int8)
+    flags = filled(values.size, NOT_EVALUATED, np.int8)
     if values.size < 16:
         return flags
     levels, length = _noise_levels(values)
@@ -84,7 +84,7 @@ def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int
     blocks = max(1, values.size // block)
     length = values.size // blocks
     levels = np.empty(blocks)
-    for first, last in pieces(0, blocks, max(1, PIECE // length)):
+    for first, last in pieces(0, blocks, block=length):
         start, stop = first * length, last * length
         part = values[max(start - 1, 0) : stop + 1]
         ends = {"prepend": values[:1]} if start == 0 else {}
@@ -97,11 +97,17 @@ def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int
 def _runs_of_equal(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First index and length of every stretch of identical values."""
     kind = np.int32 if values.size < 2**31 else np.int64
-    change = np.flatnonzero(values[1:] != values[:-1]).astype(kind)
-    edges = np.empty(change.size + 2, kind)
-    edges[0], edges[-1] = 0, values.size
-    np.add(change, 1, out=edges[1:-1])
-    return edges[:-1], np.diff(edges)
+    starts = room(values.size + 1, kind)
+    starts[0], count = 0, 1
+    for first, last in pieces(1, values.size):
+        change = np.flatnonzero(values[first:last] != values[first - 1 : last - 1])
+        np.add(change, first, out=starts[count : count + change.size], casting="same_kind")
+        count += change.size
+    starts[count] = values.size
+    length = room(count, kind)
+    for first, last in pieces(0, count):
+        np.subtract(starts[first + 1 : last + 1], starts[first:last], out=length[first:last])
+    return starts[:count], length
 
 
 def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
@@ -137,12 +143,13 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     # a signal quantised more coarsely than its noise repeats values in health, too: what most
     # stretches do sets what is usual
     usual = float(np.quantile(length, 0.99))
+    let_go()
     repeat = max((others - (length.size - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
     bad = np.flatnonzero(length >= max(shortest, allowed))
     if not bad.size:
         return uniform(values.size, GOOD)
-    flags = np.full(values.size, GOOD, np.int8)
+    flags = filled(values.size, GOOD, np.int8)
     for index in bad:  # a loop over stuck stretches, few by their definition
         flags[first[index] : first[index] + length[index]] = SUSPECT
     return flags

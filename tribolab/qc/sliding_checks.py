@@ -14,7 +14,7 @@ from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
-from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED
+from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.subject import RunSubject
@@ -98,9 +98,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     least = limits["share"] * float(np.nanmean(np.abs(values)))
     clear = np.maximum(limits["errors"] * error, least)
     wrong, right = values < -clear, values > clear
-    samples = np.full(subject.time.size, NOT_EVALUATED, np.int8)
-    for part, bad in zip(subject.slices, wrong, strict=True):
-        samples[part] = FAIL if bad else GOOD
+    samples = subject.on_samples(np.where(wrong, FAIL, GOOD))
     if not wrong.any():
         return [Result("pass", signal, "friction opposes the motion everywhere", flags=samples)]
     first = int(np.flatnonzero(wrong)[0])

@@ -13,7 +13,10 @@ from tribolab.friction.oscillation.lines import Line, segment_lines
 from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments, why_no_segment
+from tribolab.pieces import one_by_one, pieces, stretches
+from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
+from tribolab.room import filled, room
 from tribolab.words import number as number_text
 from tribolab.words import speed_text
 
@@ -128,6 +131,25 @@ class RunSubject:
             inside[part] = True
         return inside
 
+    def typical_size(self, name: str) -> float:
+        """Return the median magnitude of a signal within the segments, else of all of it."""
+        values = self.signals[name]
+        inside = self.in_segments if self.in_segments.any() else np.ones(values.size, dtype=bool)
+        sizes = room(int(np.count_nonzero(inside)))
+        end = 0
+        for first, last in pieces(0, values.size):
+            some = values[first:last][inside[first:last]]
+            begin, end = end, end + some.size
+            np.abs(some, out=sizes[begin:end])
+        return float(np.nanmedian(sizes, overwrite_input=True))
+
+    def on_samples(self, flags: np.ndarray) -> np.ndarray:
+        """Return one flag for each segment as flags of its samples (time)."""
+        samples = filled(self.time.size, NOT_EVALUATED, np.int8)
+        for part, flag in one_by_one(zip(self.slices, flags, strict=True)):
+            samples[part] = flag
+        return samples
+
     @cached_property
     def durations(self) -> np.ndarray:
         """Duration of each segment [s]."""
@@ -153,11 +175,11 @@ class RunSubject:
         """Mean of a signal over each trimmed segment; the check is skipped without the signal."""
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
-        return np.array([_mean(self.signals[name][part]) for part in self.slices])
+        return np.array([_mean(self.signals[name][part]) for part in one_by_one(self.slices)])
 
     def segment_stds(self, name: str) -> np.ndarray:
         """Return the standard deviation of a signal over each trimmed segment."""
-        parts = (self.signals[name][part] for part in self.slices)
+        parts = (self.signals[name][part] for part in one_by_one(self.slices))
         return np.array([_std(values) for values in parts])
 
     @cached_property
@@ -199,10 +221,9 @@ class RunSubject:
         if "normal_force" not in self.signals:
             raise Skip("no normal force was recorded that would show a rest without load")
         force, light = self.signals["normal_force"], 0.10 * self.typical_normal_force
-        low = (force < light) & (force > -light)
-        low &= ~self.in_segments
-        edges = np.flatnonzero(np.diff(low.astype(np.int8), prepend=0, append=0))
-        parts = [self.signals[name][a:b] for a, b in edges.reshape(-1, 2) if b - a >= 20]
+        inside = self.in_segments
+        rests = stretches(lambda a, b: (np.abs(force[a:b]) < light) & ~inside[a:b], force.size)
+        parts = [self.signals[name][a:b] for a, b in rests if b - a >= 20]
         return [float(np.nanmedian(part)) for part in parts if np.isfinite(part).any()]
 
     def speed_of(self, number: int) -> float:
@@ -260,7 +281,7 @@ class RunSubject:
         values = self.signals[self.friction_signal]
         significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
-            for number, part in enumerate(self.slices)
+            for number, part in enumerate(one_by_one(self.slices))
         ]
         if all(lines is None for lines in significant):
             raise Skip("sampled too slowly or too shortly for a spectrum")
@@ -276,11 +297,16 @@ class RunSubject:
         return noise_level(self.signals[name])
 
 
+def _known(values: np.ndarray) -> np.ndarray:
+    good = np.isfinite(values)
+    return values if good.all() else values[good]  # a long stretch is not copied for nothing
+
+
 def _mean(values: np.ndarray) -> float:
-    known = values[np.isfinite(values)]
+    known = _known(values)
     return float(known.mean()) if known.size else float("nan")
 
 
 def _std(values: np.ndarray) -> float:
-    known = values[np.isfinite(values)]
+    known = _known(values)
     return float(known.std()) if known.size else float("nan")

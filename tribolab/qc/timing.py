@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.pieces import pieces
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.qc.pieces import PIECE, pieces
+from tribolab.room import filled
 
 _BLOCK = 64  # samples over which a sampling interval is called local
 
@@ -31,11 +32,15 @@ def time_order(time: np.ndarray) -> np.ndarray:
     >>> time_order(np.array([0.0, 1.0, 1.0, 2.0]))
     array([1, 1, 4, 1], dtype=int8)
     """
-    forward = time[1:] > time[:-1]
-    if forward.all():
+    back = [
+        start + np.flatnonzero(~(time[start:stop] > time[start - 1 : stop - 1]))
+        for start, stop in pieces(1, time.size)
+    ]
+    rows = np.concatenate([np.zeros(0, int), *back])
+    if not rows.size:
         return uniform(time.size, GOOD)
-    flags = np.full(time.size, GOOD, np.int8)
-    flags[1:][~forward] = FAIL
+    flags = filled(time.size, GOOD, np.int8)
+    flags[rows] = FAIL
     return flags
 
 
@@ -73,7 +78,7 @@ def time_gaps(
     after = np.concatenate(late) + 1
     if not after.size:
         return uniform(time.size, GOOD)
-    flags = np.full(time.size, GOOD, np.int8)
+    flags = filled(time.size, GOOD, np.int8)
     flags[after] = SUSPECT
     if pauses is not None:
         flags[pauses] = GOOD
@@ -100,8 +105,13 @@ def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
     """Share of the record's duration that lies in gaps [1]."""
-    interval = np.diff(time)
-    return float(interval[flags[1:] == SUSPECT].sum() / (time[-1] - time[0]))
+    return float(gaps(time, flags).sum() / (time[-1] - time[0]))
+
+
+def gaps(time: np.ndarray, flags: np.ndarray) -> np.ndarray:
+    """Return the lengths of the gaps before flagged samples [s]."""
+    after = np.flatnonzero(flags[1:] == SUSPECT) + 1
+    return time[after] - time[after - 1]
 
 
 def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
@@ -133,7 +143,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     edges = np.linspace(0, changes, blocks + 1).astype(int)
     length = changes // blocks
     scatter = np.empty(blocks)
-    for first, last in pieces(0, blocks, max(1, PIECE // length)):
+    for first, last in pieces(0, blocks, block=length):
         start = edges[first]
         odd = _odd(time[start : edges[last - 1] + length + 2])
         whole = np.lib.stride_tricks.sliding_window_view(odd, length)[edges[first:last] - start]
@@ -141,7 +151,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     bad = scatter / (0.6745 * np.sqrt(2)) > suspect
     if not bad.any():
         return uniform(time.size, GOOD)
-    flags = np.full(time.size, GOOD, np.int8)
+    flags = filled(time.size, GOOD, np.int8)
     flags[1:-1][np.repeat(bad, np.diff(edges))] = SUSPECT
     return flags
 
@@ -211,7 +221,7 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
         return np.zeros(0, dtype=int)
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
-    for begin, end in pieces(0, blocks, max(1, PIECE // stretch)):
+    for begin, end in pieces(0, blocks, block=stretch):
         interval = np.diff(time[begin * stretch : end * stretch + 1])
         level[begin:end] = np.median(interval.reshape(-1, stretch), axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribolab.pieces import pieces
 from tribolab.untyped import Json
 
 _TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept
 _MOST_KNOTS = 1000
-_PIECE = 1 << 18  # samples that are worked on at a time
 _FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of a clock without any order
 
 
@@ -73,7 +73,7 @@ def clock_of(time: np.ndarray) -> Clock:
     >>> clock_of(np.array([0.0, 0.0, 1.0, 5.0])).ticks.tolist()
     [0, 0, 16, 80]
     """
-    since = time - time[0] if time.size else time
+    since = time if not time.size or time[0] == 0 else time - time[0]
     length = float(since[-1]) if time.size else 0.0
     knots = None if length > 0 and not _rises(since) else _knots(since)
     if knots is not None:
@@ -85,8 +85,7 @@ def clock_of(time: np.ndarray) -> Clock:
 
 
 def _rises(since: np.ndarray) -> bool:
-    pieces = range(0, max(since.size - 1, 1), _PIECE)
-    return all((np.diff(since[k : k + _PIECE + 1]) > 0).all() for k in pieces)
+    return all((np.diff(since[a : b + 1]) > 0).all() for a, b in pieces(0, since.size - 1))
 
 
 def _knots(since: np.ndarray) -> list[int] | None:
@@ -114,8 +113,7 @@ def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
     """Sample between two that is least where even steps would put it, and how far, of its share."""
     worst, most = first + 1, -np.inf
     rate = (since[last] - since[first]) / (last - first)
-    for a in range(first + 1, last, _PIECE):  # a long record is not copied as a whole
-        b = min(a + _PIECE, last)
+    for a, b in pieces(first + 1, last):  # a long record is not copied as a whole
         steps = np.diff(since[a - 1 : b + 1])
         even = since[first] + rate * np.arange(a - first, b - first)
         off = np.abs(since[a:b] - even) / (_WITHIN * np.minimum(steps[:-1], steps[1:]))

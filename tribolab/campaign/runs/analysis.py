@@ -9,6 +9,7 @@ from tribolab.campaign.runs.reading import Earlier, earlier_signals, note_readin
 from tribolab.campaign.runs.zeros import attributes
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.errors import ConfigError
+from tribolab.room import let_go
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,6 +75,7 @@ def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     read = earlier and earlier_signals(earlier)
     read = _read(run) if read is None else read
     signals = _with_set_points(run, read)
+    let_go()
     segments = find_segments(signals, **run.segments)
     before: tuple[xr.Dataset | None, str] = (None, "")
     if any(decision.moves_numbers for decision in run.decisions):
@@ -106,9 +108,12 @@ def _examined(
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.qc.run_checks import check_run
 
+    let_go()
     friction = friction_coefficient(signals, segments, **run.friction)
+    let_go()
     friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
+    let_go()
     return friction, slip, check_run(signals, segments, friction, slip, **run.quality)
 
 

@@ -14,6 +14,7 @@ from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 
@@ -174,7 +175,8 @@ def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.n
     """Mean moment of the samples of each segment: that is when a drifting signal has its mean."""
     ends = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     means = [
-        time[s].mean() if s.stop > s.start else end for s, end in zip(parts, ends, strict=True)
+        time[s].mean() if s.stop > s.start else end
+        for s, end in one_by_one(zip(parts, ends, strict=True))
     ]
     return np.array(means, dtype=float)
 
@@ -186,12 +188,12 @@ def _column(estimates: list[Estimate], name: str) -> np.ndarray:
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
-    forces = [estimate_of(time[s], force[s]) for s in parts]
+    forces = [estimate_of(time[s], force[s]) for s in one_by_one(parts)]
     means = _column(forces, "mean")
     loads, load = [], np.nan
     if "normal_force" in run:
         normal = run["normal_force"].values
-        loads = [estimate_of(time[s], normal[s]) for s in parts]
+        loads = [estimate_of(time[s], normal[s]) for s in one_by_one(parts)]
         pressed = _column(loads, "mean")
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
@@ -223,9 +225,12 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         return _table(data, told, zero)
 
     ratios, remarks = [], []
-    for i, s in enumerate(parts):
-        drift = zero.slope[i] * (time[s] - middle[i])
-        own = turn[i] * force[s] - signs.sign[i] * (zero.value[i] + drift)
+    for i, s in enumerate(one_by_one(parts)):
+        own = time[s] - middle[i]
+        own *= zero.slope[i]
+        own += zero.value[i]
+        own *= signs.sign[i]
+        np.subtract(turn[i] * force[s], own, out=own)
         ratio, remark = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
         ratios.append(ratio)
         remarks.append(remark)
@@ -260,20 +265,23 @@ def _ratio(
     zero: float,
     usual: float,
 ) -> tuple[Estimate, str]:
-    """Pointwise ratio of one segment, or why there is none."""
+    """Pointwise ratio of one segment, or why there is none; the force is written over."""
     known = np.isfinite(normal)
     if load.samples == 0 or normal.size == 0:
         return NOTHING, "normal force is not a number" if normal.size else "no samples"
     if not load.mean - zero > max(NO_CONTACT * usual, 0.0):
         return NOTHING, f"no contact: mean normal force {load.mean - zero:.3g} N"
     pressed = known & (normal > 0)
-    lost = 1 - np.count_nonzero(pressed) / normal.size
+    left = normal.size - int(np.count_nonzero(pressed))
+    lost = 1 - (normal.size - left) / normal.size
     if lost > LOST:
         return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
-    estimate = estimate_of(time[pressed], force[pressed] / normal[pressed])
+    if left:
+        time, force, normal = time[pressed], force[pressed], normal[pressed]
+    del known, pressed
+    estimate = estimate_of(time, np.divide(force, normal, out=force))
     if estimate.samples == 0:
         return estimate, "friction force is not a number"
-    left = normal.size - int(np.count_nonzero(pressed))
     said = [f"{left} samples without contact left out"] if left else []
     return estimate, "; ".join([*said, *filter(None, [student_remark(estimate.effective_samples)])])
 
@@ -282,7 +290,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    estimates = [estimate_of(time[s], ratio[s]) for s in parts]
+    estimates = [estimate_of(time[s], ratio[s]) for s in one_by_one(parts)]
     means, own = _column(estimates, "mean"), _column(estimates, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(

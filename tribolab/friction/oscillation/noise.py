@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.pieces import pieces
+from tribolab.room import room
+
 _LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
-_PIECE = 1 << 17  # values that are worked on at a time
 
 
 def quantisation_step(values: np.ndarray) -> float:
@@ -40,9 +42,8 @@ def noise_level(values: np.ndarray) -> float:
     values = _known(values)
     if values.size < 5:
         return 0.0
-    second = np.empty(values.size - 2)
-    for start in range(0, second.size, _PIECE):
-        stop = min(start + _PIECE, second.size)
+    second = room(values.size - 2)
+    for start, stop in pieces(0, second.size):
         np.abs(np.diff(values[start : stop + 2], 2), out=second[start:stop])
     return float(np.median(second, overwrite_input=True) / (0.6745 * np.sqrt(6.0)))
 

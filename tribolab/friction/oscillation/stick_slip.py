@@ -27,6 +27,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 
@@ -210,7 +211,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
             if np.isfinite(first).any():
                 rests = unloaded_rests(run, segments, float(np.nanmedian(first)))[1]
                 zero = float(rests.value.mean()) if rests else 0.0
-        for part, sign in zip(parts, direction, strict=True):
+        for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = force[part]
             if normal is None:
                 yield SegmentSignal(time[part], _signed(raw, sign), raw, np.nan)
@@ -231,7 +232,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         # a coefficient that never changes sign carries no direction
         begins = [ratio[s][:_SOME] for s in parts]
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
-        for part, sign in zip(parts, direction, strict=True):
+        for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = ratio[part]
             yield SegmentSignal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
     else:

@@ -19,6 +19,7 @@ import numpy as np
 
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.proof import Readings, surely_changes
+from tribolab.pieces import running_total
 
 INSIDE = 16  # bins within a piece
 BESIDE = 1.5  # of its length are looked at on each side
@@ -57,10 +58,10 @@ class MeanVelocities:
             raise ValueError("a velocity or a position is wanted")
         self.readings = Readings(time, own, self._from_position)
         values = running_median(own) if self._from_position else own
-        # small numbers add up without loss
-        self._total = np.concatenate([[0.0], np.cumsum(values - values[0])])
         self._first = float(values[0])
-        self._moment = np.concatenate([[0.0], np.cumsum(time - time[0])])
+        # small numbers add up without loss
+        self._total = running_total(values, self._first)
+        self._moment = running_total(time if self._from_position else time[:0], float(time[0]))
 
     def means(self, edges: np.ndarray) -> np.ndarray:
         """Mean velocity between successive times; NaN without samples.

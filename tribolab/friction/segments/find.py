@@ -20,6 +20,7 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
+from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
@@ -259,7 +260,7 @@ def _within(
         )
     time, position = finite(run, "position")
     start, stop = start.copy(), stop.copy()
-    for i in range(start.size):
+    for i in one_by_one(range(start.size)):
         first, last = np.searchsorted(time, [start[i], stop[i]])
         part = position[first:last]
         inside = first + np.flatnonzero((part >= low) & (part <= high))
@@ -276,7 +277,7 @@ def _mean_velocity(
     """Mean of the recorded velocity over each trimmed segment, wild readings left out."""
     velocity = run["sliding_velocity"].values
     result = guess.copy()
-    for i in range(first.size):
+    for i in one_by_one(range(first.size)):
         part = velocity[first[i] : last[i]]
         size = max(1, part.size // 4096)
         part = part[: part.size // size * size].reshape(-1, size).mean(axis=1)
@@ -297,7 +298,7 @@ def _mean_slope(
     time, position = track(run)
     first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
     result = guess.copy()
-    for i in range(first.size):
+    for i in one_by_one(range(first.size)):
         if last[i] - first[i] >= 3:
             result[i] = line(time[first[i] : last[i]], position[first[i] : last[i]])[1]
     return result
@@ -306,7 +307,7 @@ def _mean_slope(
 def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Median of the run's label over each segment, NaN where it has none."""
     result = np.full(first.size, np.nan)
-    for i in range(first.size):
+    for i in one_by_one(range(first.size)):
         part = values[first[i] : last[i]]
         part = part[np.isfinite(part)]
         if part.size:

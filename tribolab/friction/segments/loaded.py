@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
+from tribolab.pieces import one_by_one
 
 NO_LOAD = "no load"
 NO_CONTACT = 0.02  # share of the run's load below which there is no contact
@@ -48,7 +49,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     zero = float(np.median(rests)) if rests.size else 0.0
     least = NO_CONTACT * (usual - zero)
     result: list[Stretch] = []
-    for stretch in stretches:
+    for stretch in one_by_one(stretches):
         if stretch.kind == "constant":
             result += _cut(time, force, zero, stretch, least, limits.min_samples)
         else:
@@ -58,7 +59,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
 
 def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind: str) -> np.ndarray:
     levels = []
-    for stretch in stretches:
+    for stretch in one_by_one(stretches):
         if stretch.kind == kind:
             first, last = np.searchsorted(time, [stretch.start, stretch.stop])
             part = force[first:last][:: max(1, (last - first) // 4096)]
@@ -82,7 +83,7 @@ def _cut(
     if count < 1:
         return [stretch]
     at = first + (last - first) * np.arange(count + 1) // count
-    part = np.nan_to_num(force[first:last] - zero)
+    part = np.nan_to_num(force[first:last] - zero, copy=False)
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     bare = mean < least
     if not bare.mean() > LOST:

@@ -16,6 +16,7 @@ from tribolab.friction.segments.plateaus import (
     straight_pieces,
 )
 from tribolab.friction.segments.proof import is_proven
+from tribolab.pieces import one_by_one
 
 MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
 FEW_BLOCKS = 512  # in a second look
@@ -112,7 +113,7 @@ def held(
         What counts as constant.
     """
     result: list[VelocityPiece] = []
-    for piece in pieces:
+    for piece in one_by_one(pieces):
         if piece.kind != "constant":
             result.append(piece)
             continue

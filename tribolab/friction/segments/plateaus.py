@@ -23,6 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.pieces import pieces
+from tribolab.room import room
+
 SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
 TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
 FAR = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
@@ -69,9 +72,16 @@ def running_median(values: np.ndarray) -> np.ndarray:
     """Return the running median of five samples, which drops spikes and keeps edges."""
     if values.size < 5:
         return values
-    padded = np.concatenate([values[:1].repeat(2), values, values[-1:].repeat(2)])
-    stack = np.stack([padded[i : i + values.size] for i in range(5)])
-    return np.partition(stack, 2, axis=0)[2]
+    median = room(values.size)
+    ends = values[:1].repeat(2), values[-1:].repeat(2)
+    for first, last in pieces(0, values.size):
+        before = ends[0][first:] if first < 2 else ends[0][:0]
+        after = ends[1][values.size - last :] if last > values.size - 2 else ends[1][:0]
+        near = values[max(first - 2, 0) : last + 2]
+        padded = np.concatenate([before, near, after])
+        stack = np.stack([padded[i : i + last - first] for i in range(5)])
+        median[first:last] = np.partition(stack, 2, axis=0)[2]
+    return median
 
 
 def quantum(values: np.ndarray) -> float:

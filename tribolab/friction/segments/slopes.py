@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.segments.plateaus import quantum
+from tribolab.pieces import pieces
+from tribolab.room import room
 
 WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST = 8  # samples in a block
@@ -25,18 +27,30 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """
     if time.size < 3:
         return 0.0
-    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
-    chord = position[:-2] + share * (position[2:] - position[:-2])
-    size = np.sqrt(1 + share**2 + (1 - share) ** 2)
-    noise = float(np.median(np.abs(position[1:-1] - chord) / size) / 0.6745)
+    off = room(time.size - 2)
+    for first, last in pieces(0, off.size):
+        off[first:last] = _off_chord(time[first : last + 2], position[first : last + 2])
+    noise = float(np.median(off, overwrite_input=True) / 0.6745)
     rounding = digit(position) / np.sqrt(12)
     # readings that mostly repeat have no median distance
     return max(noise, rounding) or quantum(position) / np.sqrt(12)
 
 
+def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Distance of each reading from the chord of its neighbours, over what white noise makes it."""
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    chord = position[:-2] + share * (position[2:] - position[:-2])
+    size = np.sqrt(1 + share**2 + (1 - share) ** 2)
+    return np.abs(position[1:-1] - chord) / size
+
+
 def is_staircase(position: np.ndarray) -> bool:
     """Whether most readings repeat the one before: the digits are coarser than the motion."""
-    return bool(position.size > 2 and np.mean(np.diff(position) == 0) > 0.5)
+    steps = position.size - 1
+    still = sum(
+        int(np.count_nonzero(np.diff(position[a : b + 1]) == 0)) for a, b in pieces(0, steps)
+    )
+    return steps > 1 and still > 0.5 * steps
 
 
 def digit(position: np.ndarray) -> float:
@@ -81,6 +95,20 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
     return is_staircase(position) or noise <= ROUNDED * digit(position)
 
 
+def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Return the samples behind which the position goes on far away."""
+    least = JUMP * float(np.ptp(position)) if position.size else 0.0
+    parts = [
+        first
+        + np.flatnonzero(
+            (np.abs(np.diff(position[first : last + 1])) > least)
+            & (np.diff(time[first : last + 1]) > 0)
+        )
+        for first, last in pieces(0, position.size - 1)
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
+
+
 def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Join a position record where it jumps without a motion: set to zero in mid-run, wrapped.
 
@@ -99,16 +127,12 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     A jump is a single difference of `JUMP` of the range or more that stands off from the rates
     around it; it is replaced by what their median would give.
     """
-    steps, spacing = np.diff(position), np.diff(time)
-    span = float(np.ptp(position)) if position.size else 0.0
-    far = np.flatnonzero((np.abs(steps) > JUMP * span) & (spacing > 0))
-    if far.size == 0 or steps.size < 2 * AROUND:
+    far = _far(time, position)
+    if far.size == 0 or position.size <= 2 * AROUND:
         return position, np.zeros(0, dtype=int)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rate = np.where(spacing > 0, steps / spacing, np.nan)
     near = far[:, None] + np.concatenate([np.arange(-AROUND, 0), np.arange(1, AROUND + 1)])
-    beside = np.where((near >= 0) & (near < rate.size), near, far[:, None])
-    around = rate[beside]
+    beside = np.where((near >= 0) & (near < position.size - 1), near, far[:, None])
+    around = _rates(time, position, beside)
     around[beside == far[:, None]] = np.nan
     usual = np.nanmedian(around, axis=1)
     size = np.where(around == 0, np.nan, np.abs(around))
@@ -116,14 +140,24 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     size[still] = 0.0
     scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
     limit = np.maximum(FASTER * np.nanmedian(size, axis=1), ISOLATED * scatter)
-    jump = np.abs(rate[far] - usual) > limit
+    jump = np.abs(_rates(time, position, far) - usual) > limit
     at = far[jump]
-    moved = np.zeros(position.size)
-    moved[at + 1] = steps[at] - usual[jump] * spacing[at]
+    moved = position[at + 1] - position[at] - usual[jump] * (time[at + 1] - time[at])
     last = digit(position)
     if last > 0:  # the joined readings keep their digits
         moved = np.round(moved / last) * last
-    return position - np.cumsum(moved), at + 1
+    ahead = np.concatenate([[0.0], np.cumsum(moved)])
+    joined = room(position.size)
+    for a, b in pieces(0, position.size):
+        joined[a:b] = position[a:b] - ahead[np.searchsorted(at + 1, np.arange(a, b), "right")]
+    return joined, at + 1
+
+
+def _rates(time: np.ndarray, position: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Rate from some samples to the next ones; NaN where no time passes."""
+    spacing = time[at + 1] - time[at]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(spacing > 0, (position[at + 1] - position[at]) / spacing, np.nan)
 
 
 def block_slopes(
@@ -131,8 +165,17 @@ def block_slopes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean time and least-squares slope of each block of `size` samples."""
     count = time.size // size
-    t = time[: count * size].reshape(count, size)
-    x = position[: count * size].reshape(count, size)
+    middle, slope = np.empty(count), np.empty(count)
+    for first, last in pieces(0, count, block=size):
+        part = slice(first * size, last * size)
+        middle[first:last], slope[first:last] = _slopes(
+            time[part].reshape(-1, size), position[part].reshape(-1, size)
+        )
+    return middle, slope
+
+
+def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """As `block_slopes`, of blocks in rows."""
     middle = t.mean(axis=1, keepdims=True)
     t, x = t - middle, x - x.mean(axis=1, keepdims=True)
     slope = (t * x).sum(axis=1) / (t * t).sum(axis=1)

@@ -12,6 +12,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
+from tribolab.pieces import anywhere
 
 RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
@@ -33,7 +34,7 @@ def name_of(run: xr.Dataset) -> str:
 def velocity_source(run: xr.Dataset) -> str:
     """Say what tells the speed of the run: the best of what it has."""
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
-        if name in run and _any_number(run[name].values):
+        if name in run and anywhere(np.isfinite, run[name].values):
             return source
     if "step" in run:
         return "step"
@@ -47,11 +48,6 @@ def velocity_source(run: xr.Dataset) -> str:
         " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign file may "
         'say it: sliding_speed = "1 mm/s" in its [[run]]'
     )
-
-
-def _any_number(values: np.ndarray) -> bool:
-    """Whether there is a number among the values; the first few nearly always tell."""
-    return bool(np.isfinite(values[:1000]).any() or np.isfinite(values).any())
 
 
 def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.parts import Known, Reference, Strokes
-from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, folded
+from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, Pressed, folded
 from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
 from tribolab.friction.zero.unequal import TOO_FAR
@@ -188,10 +188,7 @@ def _fold(
         return Fold("rectified", "") if stated else SIGNED
     if segments.attrs.get("velocity_source") not in ("recorded", "position"):
         return SIGNED  # the direction was taken from the force, or there is none
-    loaded = np.ones(run.sizes["time"], dtype=bool)
-    if "normal_force" in run and parts:
-        normal = np.abs(run["normal_force"].values)
-        usual = np.nanmedian(np.concatenate([normal[part] for part in parts]))
-        loaded = normal > max(0.5, UNLOADED) * usual
     rest = float(np.median(rests.value)) if rests is not None else float("nan")
-    return folded(ForceTrace(run[name].values, loaded, parts, mean, error, direction, rest))
+    normal = run["normal_force"].values if "normal_force" in run and parts else None
+    pressed = Pressed(normal, parts, max(0.5, UNLOADED))
+    return folded(ForceTrace(run[name].values, pressed, parts, mean, error, direction, rest))

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+
+from tribolab.pieces import anywhere, one_by_one
+from tribolab.room import room
 
 DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
 TOUCH = 5.0  # standard deviations from zero within which a force touches it
@@ -16,6 +20,39 @@ LIKE = 0.25  # of their mean: strokes that differ by less are of one level
 CLEAR = 5.0  # standard errors beyond which levels differ
 
 
+class Pressed:
+    """Whether the surfaces are pressed together; the usual load is looked up when first asked for.
+
+    Parameters
+    ----------
+    normal
+        Normal force (time); None where it is not known, and the surfaces count as pressed.
+    parts
+        Samples of each trimmed segment.
+    share
+        Of the usual load, from which on they are.
+    """
+
+    def __init__(self, normal: np.ndarray | None, parts: list[slice], share: float) -> None:
+        self._normal, self._parts, self._share = normal, parts, share
+
+    @cached_property
+    def _least(self) -> float:
+        assert self._normal is not None  # `within` asks
+        loads = room(sum(self._normal[part].size for part in self._parts))
+        end = 0
+        for part in one_by_one(self._parts):
+            begin, end = end, end + self._normal[part].size
+            np.abs(self._normal[part], out=loads[begin:end])
+        return self._share * float(np.nanmedian(loads, overwrite_input=True))
+
+    def within(self, part: slice) -> np.ndarray:
+        """Return which samples of a stretch are pressed."""
+        if self._normal is None:
+            return np.ones(len(range(*part.indices(part.stop))), dtype=bool)
+        return np.abs(self._normal[part]) > self._least
+
+
 class ForceTrace(NamedTuple):
     """What a fold is told by: the samples of the force and where the strokes are.
 
@@ -24,7 +61,7 @@ class ForceTrace(NamedTuple):
     force
         (time)
     loaded
-        Whether the surfaces are pressed together (time).
+        When the surfaces are pressed together.
     parts
         Samples of each trimmed segment, in the order of time.
     mean, error
@@ -33,15 +70,33 @@ class ForceTrace(NamedTuple):
         Recorded direction of each segment (segment).
     rest
         Reading of the force in rests without load, NaN without one.
+    turned
+        By what the force is multiplied.
     """
 
     force: np.ndarray
-    loaded: np.ndarray
+    loaded: Pressed
     parts: list[slice]
     mean: np.ndarray
     error: np.ndarray
     sign: np.ndarray
     rest: float
+    turned: float = 1.0
+
+    def within(self, part: slice) -> np.ndarray:
+        """Return the finite readings of a stretch."""
+        force = self.turned * self.force[part]
+        return force[np.isfinite(force)]
+
+    def is_below(self, part: slice) -> bool:
+        """Whether all readings of a stretch are below zero."""
+        return bool(np.nanmax(self.turned * self.force[part]) < 0)
+
+    def between(self, number: int) -> np.ndarray:
+        """Return the finite readings under load from a segment to the next."""
+        gap = slice(self.parts[number].stop, self.parts[number + 1].start)
+        force = self.turned * self.force[gap][self.loaded.within(gap)]
+        return force[np.isfinite(force)]
 
 
 class Fold(NamedTuple):
@@ -80,10 +135,11 @@ def folded(trace: ForceTrace) -> Fold:
     --------
     >>> force = 9.0 * np.sin(np.linspace(0, 4 * np.pi, 400)).clip(-0.5, 0.5)
     >>> parts = [slice(30, 80), slice(130, 180), slice(230, 280), slice(330, 380)]
+    >>> pressed = Pressed(None, parts, 0.5)
     >>> def told(force):
     ...     mean = np.array([force[part].mean() for part in parts])
     ...     sign, error = np.array([1, -1, 1, -1]), np.full(4, 0.01)
-    ...     return folded(ForceTrace(force, force == force, parts, mean, error, sign, np.nan)).kind
+    ...     return folded(ForceTrace(force, pressed, parts, mean, error, sign, np.nan)).kind
     >>> told(force), told(np.abs(force)), told(force + 20)
     ('signed', 'rectified', 'signed')
     """
@@ -91,13 +147,11 @@ def folded(trace: ForceTrace) -> Fold:
     if known.sum() < 2 or not (known & (trace.sign > 0)).any():
         return SIGNED
     turned = 1.0 if np.nanmedian(trace.mean) >= 0 else -1.0
-    trace = trace._replace(
-        force=turned * trace.force, mean=turned * trace.mean, rest=turned * trace.rest
-    )
+    trace = trace._replace(turned=turned, mean=turned * trace.mean, rest=turned * trace.rest)
     # a stroke below zero, beyond its error or with all of its readings, has a sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
         return SIGNED
-    if any(np.nanmax(trace.force[trace.parts[i]]) < 0 for i in np.flatnonzero(known)):
+    if any(trace.is_below(trace.parts[i]) for i in one_by_one(np.flatnonzero(known))):
         return SIGNED
     if (known & (trace.sign < 0)).any():
         return _both_ways(trace, known)
@@ -142,16 +196,11 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
     apart by more than the readings scatter; where they are not, one of at least ten readings.
     """
     dips, below, straight, seen = 0, 0, 0, 0
-    for i in range(len(trace.parts) - 1):
+    for i in one_by_one(range(len(trace.parts) - 1)):
         if trace.sign[i] * trace.sign[i + 1] > 0 and (trace.sign < 0).any():
             continue
-        here, there = trace.parts[i], trace.parts[i + 1]
-        between = slice(here.stop, there.start)
-        turn = trace.force[between][trace.loaded[between]]
-        turn = turn[np.isfinite(turn)]
-        first, second = (
-            trace.force[part][np.isfinite(trace.force[part])] for part in (here, there)
-        )
+        turn = trace.between(i)
+        first, second = (trace.within(part) for part in trace.parts[i : i + 2])
         if turn.size < 3 or first.size < 3 or second.size < 3:
             continue
         seen += 1
@@ -172,8 +221,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
 
 def _one_way(trace: ForceTrace) -> Fold:
     """No direction is recorded: a force that touches zero at the stops and is never below it."""
-    force = trace.force[np.isfinite(trace.force)]
-    if len(trace.parts) < 2 or (force < 0).any():
+    if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
     level = float(np.nanmedian(trace.mean))
     if np.isfinite(trace.rest) and abs(trace.rest) > 0.02 * level:
@@ -196,13 +244,13 @@ def _one_way(trace: ForceTrace) -> Fold:
     return SIGNED
 
 
+def _negative(force: np.ndarray) -> np.ndarray:
+    return (force < 0) & np.isfinite(force)
+
+
 def _touches(trace: ForceTrace, number: int) -> bool | None:
     """Whether the force comes to zero between two strokes, as near as its noise and steps allow."""
-    here, there = trace.parts[number], trace.parts[number + 1]
-    between = slice(here.stop, there.start)
-    turn = trace.force[between][trace.loaded[between]]
-    turn = turn[np.isfinite(turn)]
-    stroke = trace.force[here][np.isfinite(trace.force[here])]
+    turn, stroke = trace.between(number), trace.within(trace.parts[number])
     if turn.size < 3 or stroke.size < 3:
         return None
     lowest = int(np.argmin(turn))

@@ -22,6 +22,8 @@ from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect
+from tribolab.pieces import pieces
+from tribolab.room import room
 from tribolab.units import to_si
 
 
@@ -52,9 +54,16 @@ def set_time(content: Content, dialect: Dialect) -> None:
     start = 0
     for piece in content.pieces:
         rows = len(next(iter(piece.columns.values())))
-        piece.columns["time"] = (start + np.arange(rows)) * step
+        piece.columns["time"] = _even(start, rows, step)
         if dialect.time.restart == "error":
             start += rows
+
+
+def _even(start: int, rows: int, step: float) -> np.ndarray:
+    time = room(rows)
+    for first, last in pieces(0, rows):
+        time[first:last] = (start + np.arange(first, last)) * step
+    return time
 
 
 def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray | str]:

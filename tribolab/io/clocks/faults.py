@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.pieces import pieces
+
 _BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
 _MANY = 10_000  # small falls that are looked at one by one; a clock with more of them jitters
 _SMALL = 5.0  # in usual intervals: a fall below it may be jitter
@@ -57,7 +59,7 @@ class Faults(NamedTuple):
 
 def first_fault(time: np.ndarray) -> int | None:
     """Row (from 0) of the first time that is missing or not later than the one before it."""
-    for start in range(0, len(time), _BLOCK):
+    for start, _ in pieces(0, len(time), _BLOCK):
         part = time[max(start - 1, 0) : start + _BLOCK]
         if start == 0 and not np.isfinite(part[0]):
             return 0

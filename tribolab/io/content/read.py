@@ -14,6 +14,7 @@ from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, peek
+from tribolab.pieces import anywhere
 from tribolab.provenance import sha256_of_file
 
 _T = TypeVar("_T")
@@ -107,13 +108,28 @@ def measurable(values: np.ndarray) -> np.ndarray:
     >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
     [1.0, nan, 0.0]
     """
-    if values.dtype.kind != "f":
+    if values.dtype.kind != "f" or not anywhere(_odd, values):
         return values
+    return np.where(_beyond(values), np.nan, np.where(_nothing(values), 0.0, values))
+
+
+def _odd(values: np.ndarray) -> np.ndarray:
+    return _beyond(values) | _nothing(values)
+
+
+def _beyond(values: np.ndarray) -> np.ndarray:
+    """Which numbers nothing measured can have."""
+    return (np.abs(values) > LARGEST) & np.isfinite(values)
+
+
+def _nothing(values: np.ndarray) -> np.ndarray:
+    """Which numbers are a trace of nothing."""
     size = np.abs(values)
-    beyond, nothing = (size > LARGEST) & np.isfinite(size), (size < 1 / LARGEST) & (size > 0)
-    if not (beyond.any() or nothing.any()):
-        return values
-    return np.where(beyond, np.nan, np.where(nothing, 0.0, values))
+    return (size < 1 / LARGEST) & (size > 0)
+
+
+def _no_value(values: np.ndarray) -> bool:
+    return not anywhere(lambda part: ~np.isnan(part), values)
 
 
 def _checked(content: Content, dialect: Dialect) -> Content:
@@ -127,9 +143,7 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     empty = [
         name
         for name in present
-        if all(
-            np.isnan(piece.columns[name]).all() for piece in content.pieces if name in piece.columns
-        )
+        if all(_no_value(piece.columns[name]) for piece in content.pieces if name in piece.columns)
     ]
     for name in empty:
         if name not in optional:
@@ -180,19 +194,27 @@ def _possible(content: Content) -> Content:
         for name, values in columns.items():
             if name in _PLACES or values.dtype.kind != "f":
                 continue
-            odd = np.isfinite(values) & (np.abs(values) > LARGEST)
             if name == "time":  # whoever sets the clock refuses it
-                columns[name] = np.where(odd, np.inf, values)
+                columns[name] = _without_beyond(values)
                 continue
             columns[name] = measurable(values)
-            if odd.any():
-                places[name] = places.get(name, 0) + int(odd.sum())
+            if columns[name] is values:
+                continue
+            if odd := int(_beyond(values).sum()):
+                places[name] = places.get(name, 0) + odd
         pieces.append(piece._replace(columns=columns))
     content = content._replace(pieces=pieces)
     if not places:
         return content
     told = "; ".join(f"{name}: {count}" for name, count in places.items())
     return content._replace(notes={**content.notes, "numbers_beyond_range": told})
+
+
+def _without_beyond(values: np.ndarray) -> np.ndarray:
+    """Return times with those that no clock can show as infinite."""
+    if not anywhere(_beyond, values):
+        return values
+    return np.where(_beyond(values), np.inf, values)
 
 
 def _whole_number(path: Path, text: str | None) -> int | None:

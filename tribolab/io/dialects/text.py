@@ -16,6 +16,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
+from tribolab.room import is_long, let_go, room
 from tribolab.untyped import Arguments
 
 BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
@@ -295,6 +296,7 @@ class _Columns:
                         target += signal.offset
                 at += len(chunk)
         self._used += rows
+        let_go()
 
     def _make_room(self, rows: int) -> None:
         if not self._arrays:
@@ -305,6 +307,7 @@ class _Columns:
             for k, array in enumerate(self._arrays):
                 self._arrays[k] = _room(max(2 * len(array), self._used + rows))
                 self._arrays[k][: self._used] = array[: self._used]
+                let_go()
 
     def finished(self) -> dict[str, np.ndarray]:
         """Arrays by quantity, cut to the rows that came."""
@@ -315,11 +318,11 @@ class _Columns:
 
 
 def _room(rows: int) -> np.ndarray:
-    """Return an array of that length, of arrow's memory.
+    """Return an array of that length: a long one in a scratch file, else of arrow's memory.
 
     Numpy's asks for huge pages, and where memory is in many pieces the system first clears them.
     """
-    return np.frombuffer(pa.allocate_buffer(8 * rows))
+    return room(rows) if is_long(rows) else np.frombuffer(pa.allocate_buffer(8 * rows))
 
 
 def _scaled(numbers: np.ndarray, scale: float, out: np.ndarray) -> None:
