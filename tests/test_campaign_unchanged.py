@@ -1,6 +1,7 @@
 """Nothing is done where nothing changed, changes are noticed, and failures that may end retried."""
 
 import os
+import shutil
 import time
 from dataclasses import replace
 
@@ -14,8 +15,9 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.records.parts import CurveOutcome, RunOutcome
+from tribolab.report import code
 
-OPTIONS = {"figures": "none", "pdf": False}
+OPTIONS = {"figures": "none", "pdf": False, "code": code.code_of_page()}
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +85,31 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
     os.utime(raw, ns=(state.st_atime_ns, state.st_mtime_ns + 1))  # as long, a nanosecond later
     assert not unchanged(*load_and_plan(campaign), first.folder, OPTIONS)
     assert [one.reused for one in run(campaign).runs] == [False, True]
+
+
+@pytest.mark.slow
+def test_another_code_of_the_report_makes_the_page_anew_and_nothing_else(
+    campaign, monkeypatch, tmp_path
+):
+    first = run(campaign)
+    before = fingerprint(first.folder)
+    package = tmp_path / "tribolab"
+    for room in ("report", "plot", "records"):
+        shutil.copytree(code._PACKAGE / room, package / room)
+    monkeypatch.setattr(code, "_PACKAGE", package)
+    made = code.code_of_page.__wrapped__(), code.code_of_figures.__wrapped__()
+    assert made == (code.code_of_page(), code.code_of_figures()), "wherever it is installed"
+    style = package / "report/assets/report.css"
+    style.write_text(style.read_text("utf-8") + "\n", "utf-8")
+    assert code.code_of_figures.__wrapped__() == made[1], "a style draws no figure anew"
+    monkeypatch.setattr("tribolab.app.run.code_of_page", code.code_of_page.__wrapped__)
+    again = run(campaign)
+    assert all(one.reused for one in again.runs)
+    after = fingerprint(first.folder)
+    assert after["report.html"] != before["report.html"]
+    assert {name for name in after if name.startswith("data/") and after[name] != before[name]} == (
+        set()
+    )
 
 
 @pytest.mark.slow

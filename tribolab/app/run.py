@@ -18,6 +18,7 @@ from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.staging import resolved, staged
 from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.errors import ConfigError
+from tribolab.report.code import code_of_page
 from tribolab.report.figure_choice import wanted
 
 
@@ -100,7 +101,7 @@ def run_campaign(
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
-    options = {"figures": which, "pdf": pdf}
+    options = {"figures": which, "pdf": pdf, "code": code_of_page()}
     known = unchanged(campaign, runs, place, options, verify=verify)
     if known is not None:
         return known

@@ -13,6 +13,7 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice
+from tribolab.report.code import code_of_figures
 from tribolab.report.figure_files import DRAWING, Drawn, save_figure
 from tribolab.words import explain
 
@@ -135,12 +136,10 @@ def planned(
     pdf: bool = False,
 ) -> list[FigureTask]:
     """Make tasks of what is to be drawn."""
-    from tribolab.version import __version__
-
     tasks = []
     for what in figures:
         identities = [store.identity(file) for file in what.files]
-        shaping = [__version__, draw.__qualname__, repr(what), identities]
+        shaping = [code_of_figures(), draw.__qualname__, repr(what), identities]
         tasks.append(
             FigureTask(
                 section=section,

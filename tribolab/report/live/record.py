@@ -11,6 +11,7 @@ from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.parts import Notice
+from tribolab.report.code import code_of_figures
 from tribolab.report.live.figure import ShownFigure
 from tribolab.words import explain
 
@@ -75,10 +76,8 @@ def live_task(
     store
         It knows whether these are as they were.
     """
-    from tribolab.version import __version__
-
     identities = [store.identity(file) for file in files]
-    fingerprint = sha256_of([__version__, name, repr(shaping), identities])
+    fingerprint = sha256_of([code_of_figures(), name, repr(shaping), identities])
     return LiveTask(name, make, store.folder, fingerprint)
 
 

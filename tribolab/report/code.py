@@ -1,0 +1,33 @@
+"""Which code makes the report, as a checksum: another page wants to be made when it changed."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.version import __version__
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_ROOMS = ("report", "plot", "records")
+_PYTHON = (".py",)
+_WHOLE = (*_PYTHON, ".j2", ".js", ".css", ".LICENSE")
+
+
+@cache
+def code_of_figures() -> str:
+    """Return the checksum of the version and the code that shape figures: they are drawn anew."""
+    return _checksum(_PYTHON)
+
+
+@cache
+def code_of_page() -> str:
+    """Return the checksum of all that shapes the report: code, templates, scripts, styles."""
+    return _checksum(_WHOLE)
+
+
+def _checksum(kinds: tuple[str, ...]) -> str:
+    """Return what changes with the content of our files, wherever they are installed."""
+    files = (file for room in _ROOMS for file in (_PACKAGE / room).rglob("*"))
+    chosen = sorted((str(f.relative_to(_PACKAGE)), f) for f in files if f.suffix in kinds)
+    return sha256_of([__version__, [[name, sha256_of_file(file)] for name, file in chosen]])
