@@ -339,7 +339,8 @@ def test_the_page_sent_alone_zooms_into_the_finer_trace(browser, alone):
 @pytest.mark.slow
 def test_a_browser_that_cannot_unpack_says_so_and_keeps_tables_and_sentences(browser, alone):
     with browser.page(alone, before="delete window.DecompressionStream") as page:
-        page.wait("document.querySelector('#card-1 .plot').textContent.includes('too old')")
+        page.wait("document.querySelector('#card-1').textContent.includes('too old')")
+        assert page.run("document.querySelectorAll('#card-1 .still .full').length") > 0
         assert len(rows(page)) == 4
         assert "Highest µ" in page.run("document.querySelector('.answer').textContent")
         page.click("#details summary")
@@ -428,7 +429,7 @@ def test_axes_show_what_is_seen_and_bars_end_where_values_end(browser, results):
         "panels": [{"x": {"label": "load", "unit": "N"}, "y": {"label": "stress", "least": 0}}],
         "series": [{"label": "a", "x": [31], "y": [0.2], "style": "points", "error": [0.5]}],
     }
-    drawing = "(() => {{ const it = new report.drawing.Chart(document.querySelector('#card-1'));"
+    drawing = "(() => {{ const it = new report.Chart(document.querySelector('#card-1'));"
     drawing += "it.data = {}; return {} }})()"
     with browser.page(results / "report.html") as page:
         low, high = page.run(drawing.format(json.dumps(figure), "it.range('y', 0)"))

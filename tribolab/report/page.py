@@ -15,7 +15,7 @@ from tribolab.records.packed import deflated
 from tribolab.records.parts import PageTrace
 from tribolab.records.traces import as_text
 from tribolab.report.answer import cards, of_nothing
-from tribolab.report.live.figure import ShownFigure
+from tribolab.report.live.shown import ShownFigure
 from tribolab.report.sections import shown_sections
 from tribolab.report.templating import environment, framing
 from tribolab.untyped import Json

@@ -31,10 +31,10 @@ from tribolab.words import aligned, force_text, number
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
-_STYLES = ("report.css", "review.css")
+_STYLES = ("report.css", "still.css", "review.css")
 _SCRIPTS = ("report.js", "view.js", "files.js", "table.js", "start.js")
 _REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
-_DRAWING = ("chart.js", "charts.js", "trace.js", *_REVIEW)
+_DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
 _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
 
 

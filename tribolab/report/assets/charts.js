@@ -2,7 +2,7 @@
 // All figures: drawn when the reader comes near them, again when the light or the view changes, and on paper.
 report.charts = (() => {
   const charts = new Map(); // by figure element
-  const { Chart, plotly, heightOf, state } = report.drawing;
+  const { plotly, heightOf, state } = report.drawing;
 
   // Figures are made when the reader comes near; on a browser that cannot unpack, a word says so.
   const near = new IntersectionObserver((entries) => {
@@ -17,7 +17,7 @@ report.charts = (() => {
 
   function chartOf(figure) {
     if (!charts.has(figure)) {
-      charts.set(figure, new (figure.classList.contains("trace") ? report.Trace : Chart)(figure));
+      charts.set(figure, new (figure.classList.contains("trace") ? report.Trace : report.Chart)(figure));
       sized.observe(figure.querySelector(".plot"));
     }
     return charts.get(figure);
@@ -29,7 +29,8 @@ report.charts = (() => {
       await chartOf(figure).draw();
     } catch (error) {
       if (typeof DecompressionStream !== "undefined") throw error;
-      figure.querySelector(".plot").textContent = "This browser is too old to unpack the figure; the tables have its numbers.";
+      const words = "This browser is too old for more than a picture of the figure; the tables have its numbers.";
+      figure.querySelector(".plot").after(Object.assign(document.createElement("p"), { className: "note", textContent: words }));
     }
   }
 
@@ -48,6 +49,7 @@ report.charts = (() => {
   // On paper everything is drawn, what nobody scrolled to as well; that is unpacked beforehand.
   const printed = () => Array.from(document.querySelectorAll("figure.live")).filter((figure) => !figure.closest("details:not([open])"));
   async function prepare() {
+    await plotly();
     for (const figure of printed()) await chartOf(figure).unpack().catch(() => {});
   }
   addEventListener("beforeprint", () => {
@@ -64,7 +66,7 @@ report.charts = (() => {
   report.begun.push(() => {
     watch(document);
     report.view.changed(repaint);
-    (globalThis.requestIdleCallback ?? setTimeout)(() => plotly().then(prepare, () => {}));
+    (globalThis.requestIdleCallback ?? setTimeout)(() => prepare().catch(() => {}));
   });
-  return { watch, plotly, chartOf };
+  return { watch, plotly, chartOf, prepare };
 })();

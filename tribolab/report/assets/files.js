@@ -1,7 +1,11 @@
 "use strict";
 // What is packed inside the page, and files that the page hands out. No request leaves it.
 {
-  report.bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  report.bytes = (text) => {
+    const letters = atob(text), bytes = new Uint8Array(letters.length);
+    for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
+    return bytes;
+  };
 
   // Fails where the browser has no DecompressionStream (those of before 2023).
   report.unpacked = async (text) => {

@@ -33,12 +33,24 @@
       report.charts?.watch(event.target);
     }
   }, true);
+  // The page counts as loading, so that who prints it at once waits for what is being unpacked.
+  function loading() {
+    const frame = document.createElement("iframe");
+    frame.hidden = true;
+    document.body.append(frame);
+    frame.contentDocument.open();
+    return () => {
+      frame.contentDocument.close();
+      frame.remove();
+    };
+  }
   document.getElementById("open-all")?.addEventListener("click", () => openAll(true));
   document.getElementById("close-all")?.addEventListener("click", () => openAll(false));
   // Runs are printed only if the address asks for them: ?print=all
   if (new URLSearchParams(location.search).get("print") === "all") {
     document.documentElement.classList.add("print-all");
-    openAll(true);
+    const release = loading();
+    openAll(true).then(() => report.charts?.prepare()).finally(release);
   }
   for (const call of report.begun) call();
   addEventListener("load", () => report.goTo(report.view.anchor));

@@ -46,7 +46,7 @@ report.Trace = (() => {
   const plain = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
   const concerns = (span, row) => /velocity|speed|position/.test(span.signal) === row > 0;
 
-  return class extends report.drawing.Chart {
+  return class extends report.Chart {
     async read() {
       const [coarse, fine] = this.figure.querySelectorAll("script");
       const trace = JSON.parse(coarse.textContent), bytes = await unpack(trace);

@@ -95,6 +95,8 @@ def _card(
         panels=(Panel(SPEED, FRICTION),),
         series=tuple(series),
         one_load=True,
+        width="card",
+        height=230,
     )
 
 
@@ -259,6 +261,8 @@ def comparison(known: Friction) -> list[LiveFigure]:
             panels=(Panel(SPEED, FRICTION),),
             series=tuple(series),
             one_load=True,
+            width="whole",
+            height=440,
         )
     ]
 

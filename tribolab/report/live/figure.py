@@ -1,6 +1,7 @@
 """What a live figure is: panels, series and words, small enough to stand inside the page.
 
-`assets/chart.js` draws all of them, so a figure says what it shows and nothing of how.
+`assets/chart.js` draws all of them (and `still` before it), so a figure says what it shows and
+nothing of how.
 """
 
 from __future__ import annotations
@@ -11,10 +12,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tribolab.records.packed import deflated
-from tribolab.records.traces import as_text
-
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "band", "bars", "heat"]
+Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
 _DIGITS = 6  # more than any screen resolves
 
@@ -109,6 +108,12 @@ class LiveFigure:
         What is drawn.
     one_load
         Whether one load is shown at a time, the lowest at first; else all may be seen together.
+    width
+        Whether it stands in a card, is one of two beside each other, or has the whole width.
+    height
+        Of its panel [px]; 0 is as usual.
+    rows
+        Whether names stand below each other, so that it cannot be made lower.
     """
 
     id: str
@@ -119,6 +124,9 @@ class LiveFigure:
     panels: tuple[Panel, ...]
     series: tuple[Series, ...]
     one_load: bool = False
+    width: Width = "half"
+    height: int = 0
+    rows: bool = False
 
     @property
     def surface(self) -> str:
@@ -132,64 +140,21 @@ class LiveFigure:
         names = {one.medium for one in self.series}
         return names.pop() if len(names) == 1 else ""
 
-    def shown(self) -> ShownFigure:
-        """Return what the page has of it."""
-        return ShownFigure(
-            self.id,
-            self.section,
-            self.title,
-            self.note,
-            self.alt,
-            self.surface,
-            self.medium,
-            len(self.panels),
-            len({one.label for one in self.series if one.style != "band"}),
-            deflated(as_text(_plain(self)).encode()),
-        )
 
-
-@dataclass(frozen=True)
-class ShownFigure:
-    """A live figure as it stands in the page.
-
-    Parameters
-    ----------
-    id, section, title, note, alt
-        As of `LiveFigure`.
-    surface, medium
-        What all of it is of; "" where there are several.
-    panels, labels
-        How many there are, which tell how much room it takes before it is drawn.
-    packed
-        What it shows, compressed, as text that may stand in a script element.
-    """
-
-    id: str
-    section: str
-    title: str
-    note: str
-    alt: str
-    surface: str
-    medium: str
-    panels: int
-    labels: int
-    packed: str
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return a figure as plain data, without what is as usual and with the digits that are seen."""
     if is_dataclass(value) and not isinstance(value, type):
         found = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}
         return {
-            name: _plain(one)
+            name: plain(one)
             for name, one in found.items()
             if one is not usual[name] and not (isinstance(one, str | tuple | list) and not one)
         }
     if isinstance(value, np.ndarray | list | tuple):
-        return [_plain(one) for one in value]
+        return [plain(one) for one in value]
     if isinstance(value, np.generic):
-        return _plain(value.item())
+        return plain(value.item())
     if isinstance(value, float):
         return float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None
     return value

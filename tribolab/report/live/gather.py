@@ -13,10 +13,10 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.report.live.curves import Friction, card_figures, comparison, model_figures
-from tribolab.report.live.figure import ShownFigure
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask, Missed, live_task
+from tribolab.report.live.shown import ShownFigure, shown
 from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
 from tribolab.report.model_records import ModelRow
@@ -72,7 +72,7 @@ def live_figures(
     known = Friction(curves, points, by_curve, bands, missed, surfaces)
     made = [*card_figures(known), *comparison(known), *model_figures(known)]
     return [
-        *(figure.shown() for figure in made),
+        *(shown(figure) for figure in made),
         *(figure for record in records for figure in record.figures),
     ], findings
 

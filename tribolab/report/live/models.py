@@ -22,6 +22,7 @@ from tribolab.report.live.figure import (
     thinned,
 )
 from tribolab.report.live.record import Band, LiveRecord, Missed
+from tribolab.report.live.shown import shown
 from tribolab.report.model_records import ModelRow
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, percent
@@ -53,7 +54,7 @@ def record_of_models(
     found = [shear_stress(models, colours), sensitivity(models, colours)]
     found += _profiles(models, folder)
     found.append(_factors(models, folder, colours))
-    figures = tuple(figure.shown() for figure in found if figure is not None)
+    figures = tuple(shown(figure) for figure in found if figure is not None)
     return LiveRecord(figures, bands, missed)
 
 
@@ -126,6 +127,7 @@ def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Live
         "Fitted shear stress over the load, by surface and medium.",
         (Panel(Axis("load", "N"), Axis("shear stress σ", "MPa", least=0.0)),),
         tuple(series),
+        width="whole",
     )
 
 
@@ -176,6 +178,9 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveF
         (Panel(Axis("largest change of µ", "% of the curve's height", log=True), Axis("")),),
         tuple(series),
         one_load=True,
+        width="whole",
+        height=380,
+        rows=True,
     )
 
 

@@ -12,7 +12,7 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.parts import Notice
 from tribolab.report.code import code_of_figures
-from tribolab.report.live.figure import ShownFigure
+from tribolab.report.live.shown import ShownFigure
 from tribolab.words import explain
 
 KIND = "live"

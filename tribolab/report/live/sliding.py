@@ -13,6 +13,7 @@ from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import SPEED, system_name
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, thinned
 from tribolab.report.live.record import LiveRecord
+from tribolab.report.live.shown import shown
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, number
 
@@ -66,7 +67,7 @@ def record_of_sliding(
         _events(opened),
         _spectrogram(opened),
     ]
-    return LiveRecord(tuple(figure.shown() for figure in found if figure is not None))
+    return LiveRecord(tuple(shown(figure) for figure in found if figure is not None))
 
 
 def _lowest(judged: Iterable[Judged]) -> Iterable[Judged]:
@@ -124,6 +125,9 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
         "Class of waveform of each condition at each sliding speed.",
         (Panel(SPEED, Axis("")),),
         tuple(series),
+        width="whole",
+        height=140 + 26 * len(judged),
+        rows=True,
     )
 
 

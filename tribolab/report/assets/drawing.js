@@ -1,0 +1,61 @@
+"use strict";
+// What all figures share: colours, sizes, and the library that draws.
+report.drawing = (() => {
+  // Okabe and Ito's palette, which people with any common colour deficiency tell apart.
+  const HUES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b6b6b", "#000000"];
+  const DARKER = ["#5db4ee", "#ff8a3d", "#35c79a", "#e79cc6", "#f2bd45", "#8fd0f5", "#a8b0b8", "#ffffff"];
+  const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
+  const DASHES = { line: "solid", dashed: "dash", dotted: "dot", dashdot: "dashdot" };
+  const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
+  const PAPER = 680, HALF = 316; // widths that fit between the margins of A4, of one and of two beside each other
+  const AROUND = 70; // above and below the axes: a legend that is no taller than these leaves most to the plot
+  const still = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
+  let library = null;
+  const state = { printing: false };
+
+  function isDark() {
+    const theme = document.documentElement.dataset.theme;
+    return !state.printing && (theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches);
+  }
+  // Plotly reads a little HTML in labels; names from files are text and nothing else.
+  const text = (words) => String(words).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
+  const lines = (words) => text(words).replaceAll("\n", "<br>");
+  const force = (load) => `${Number(load.toPrecision(3))} N`;
+  const axis = (kind, panel) => kind + (panel ? panel + 1 : "");
+
+  // Known before a figure is drawn: what is below does not move when it comes.
+  function heightOf(place, width, panels, labels) {
+    const columns = Math.max(1, Math.floor(width / 210));
+    const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
+    const low = place.closest(".cards") ? 175 : 240;
+    const squeezed = state.printing && panels === 1 && !("rows" in place.dataset); // not where names stand below each other
+    const plot = squeezed ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1];
+    const whole = labels > 1 ? Math.ceil(labels / columns) * 21 : 0, legend = state.printing ? whole : Math.min(whole, plot - AROUND);
+    return { plot, legend, cut: legend < whole };
+  }
+
+  // The page's policy forbids style attributes as text; the library means what a script may set.
+  const asText = Element.prototype.setAttribute;
+  Element.prototype.setAttribute = function (name, value) {
+    if (name === "style") this.style.cssText = value;
+    else asText.call(this, name, value);
+  };
+
+  // The library is unpacked and started from the page itself, once.
+  function plotly() {
+    library ??= (async () => {
+      const code = await report.unpacked(document.getElementById("library").textContent);
+      const script = document.createElement("script");
+      script.src = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+      await new Promise((done, failed) => {
+        script.onload = done;
+        script.onerror = failed;
+        document.head.append(script);
+      });
+      return globalThis.Plotly;
+    })();
+    return library;
+  }
+
+  return { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, still, state, isDark, text, lines, force, axis, heightOf, plotly };
+})();

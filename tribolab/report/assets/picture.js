@@ -1,0 +1,178 @@
+"use strict";
+// One figure as the library wants it: from what it shows, its traces and its layout.
+report.Picture = (() => {
+  const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
+
+  return class {
+    constructor(figure) {
+      this.figure = figure;
+      this.place = figure.querySelector(".plot");
+      this.load = null; // the one that is shown, of a figure of one load
+      this.scales = {}; // what the reader chose: log or linear, by axis
+      this.off = new Map(); // what the legend switches, by label
+    }
+
+    async unpack() {
+      this.data ??= await this.read();
+      return this.data;
+    }
+
+    async read() {
+      const packed = this.figure.querySelector("script").textContent;
+      return JSON.parse(new TextDecoder().decode(await report.unpacked(packed)));
+    }
+
+    get loads() {
+      return [...new Set(this.data.series.map((one) => one.load).filter((load) => load !== undefined))].sort((a, b) => a - b);
+    }
+
+    // One load is chosen for all figures together; a figure that does not have it shows its lowest.
+    chosen() {
+      if (!this.data.one_load) return report.view.get("load") || null;
+      const loads = this.loads.map(force), wanted = report.view.get("load");
+      return loads.includes(wanted) ? wanted : loads[0] ?? null;
+    }
+
+    shown() {
+      const load = this.chosen(), hidden = report.view.hidden;
+      return this.data.series.filter((one) => {
+        if (one.load !== undefined && load && force(one.load) !== load) return false;
+        if (one.runs?.length && one.runs.every((name) => hidden.has(name))) return false;
+        return report.view.shows({ surface: one.surface, medium: one.medium });
+      });
+    }
+
+    isLog(side, panel) {
+      return this.scales[`${side}${panel}`] ?? Boolean(this.data.panels[panel][side].log);
+    }
+
+    traces() {
+      const hues = isDark() ? DARKER : HUES, seen = new Set(), traces = [];
+      const marking = report.view.get("mark");
+      for (const one of this.shown()) {
+        const panel = one.panel ?? 0, place = one.colour ?? 0, style = one.style ?? "line";
+        const hue = hues[place % hues.length];
+        const faded = marking && !report.view.marks([one.label, ...(one.runs ?? [])].join(" "));
+        const base = {
+          name: text(one.label), legendgroup: one.label, showlegend: !seen.has(one.label) && style !== "band",
+          x: one.x, y: one.y, xaxis: axis("x", panel), yaxis: axis("y", panel), opacity: faded ? 0.15 : 1,
+          visible: (this.off.get(one.label) ?? one.faint) ? "legendonly" : true, meta: one.goes_to,
+          hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
+        };
+        // what is told of a point stands beside it, see tellOf
+        if (one.told?.length > 1 || (one.told?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.told[k] ?? one.told[0]), hoverinfo: "none", hovertemplate: null });
+        if (style !== "band") seen.add(one.label);
+        const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
+        if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: one.faint ? 5 : 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
+        else if (style === "band") traces.push(...this.band(one, base, hue));
+        else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", textposition: "none", marker: { color: hue } });
+        // colours are levels here, so conditions are told by their markers, in the legend too
+        else if (style === "heat") traces.push({ ...base, x: [null], y: [null], mode: "markers", marker: { color: hues[6], symbol, size: 8 } }, { ...base, showlegend: false, mode: "markers", marker: { color: one.high, symbol, size: 7, colorscale: "Cividis", showscale: traces.length === 0, cmin: 0.3, cmax: 3, colorbar: { title: { text: "log₁₀ of the ratio", side: "right" }, thickness: 12 } }, hovertemplate: `${text(one.label)}<br>%{x} m/s, %{y} Hz<br>log₁₀ ratio %{marker.color}<extra></extra>` });
+        else traces.push({ ...base, mode: "lines", line: { color: hue, width: style === "line" ? 2 : 1.6, dash: DASHES[style] } });
+      }
+      return traces;
+    }
+
+    bars(one, hue) {
+      if (!one.error?.some((value) => value > 0)) return {};
+      const array = one.error.map((value) => value ?? 0), { least } = this.data.panels[one.panel ?? 0].y;
+      const below = least === undefined ? {} : { symmetric: false, arrayminus: array.map((value, k) => Math.max(0, Math.min(value, one.y[k] - least))) };
+      return { error_y: { type: "data", array, ...below, color: hue, thickness: 1.4, width: 4 } };
+    }
+
+    band(one, base, hue) {
+      const log = this.isLog("y", one.panel ?? 0);
+      const least = log ? Math.min(...one.high.filter((value) => value > 0)) / 1e3 : -Infinity;
+      const edge = { ...base, mode: "lines", line: { width: 0, color: hue }, hoverinfo: "skip", hovertemplate: null, text: null };
+      return [
+        { ...edge, y: one.y.map((value) => Math.max(value, least)) },
+        { ...edge, y: one.high, fill: "tonexty", fillcolor: `${hue}2e` },
+      ];
+    }
+
+    // Bands may reach far beyond what was measured: the first view is that of points and lines.
+    range(side, panel) {
+      const log = this.isLog(side, panel);
+      let low = Infinity, high = -Infinity;
+      const least = side === "y" ? this.data.panels[panel].y.least ?? -Infinity : -Infinity;
+      const seen = side === "y" ? this.range("x", panel) : undefined, wide = this.isLog("x", panel);
+      const within = (x) => !seen || typeof x !== "number" || ((wide ? Math.log10(x) : x) >= seen[0] && (wide ? Math.log10(x) : x) <= seen[1]);
+      for (const one of this.shown()) {
+        if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || (this.off.get(one.label) ?? one.faint)) continue;
+        const values = side === "x" ? one.x : one.y;
+        for (let k = 0; k < values.length; k++) {
+          const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;
+          if (typeof value !== "number") { if (typeof value === "string") return undefined; continue; }
+          if (side === "y" && !within(one.x[k])) continue;
+          for (const end of [Math.max(value - bar, least), value + bar, value]) {
+            if (log && !(end > 0)) continue;
+            if (log && end < value / 20) continue;
+            low = Math.min(low, end);
+            high = Math.max(high, end);
+          }
+        }
+      }
+      if (!(high >= low)) return undefined;
+      const decades = this.data.panels[panel][side].decades;
+      if (log) [low, high] = [Math.log10(low), Math.log10(high)];
+      if (log && decades) low = Math.max(low, high - decades);
+      else if (!log && side === "y" && low > 0 && low < 0.6 * high) low = 0;
+      const room = high > low ? (high - low) * 0.06 : log ? 0.3 : Math.abs(high) * 0.5 || 0.5;
+      return [low === 0 && !log ? 0 : low - room, high + room];
+    }
+
+    layout() {
+      const dark = isDark(), ink = dark ? "#e4e8ec" : "#1c2126", grid = dark ? "#333b44" : "#d8dee4";
+      const panels = this.data.panels, count = panels.length, narrow = this.width < 520;
+      const small = state.printing && !this.saving; // on paper letters are as high as those around
+      const layout = {
+        width: this.width, height: this.height, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+        font: { family: FONT, size: small ? 10 : 13, color: ink }, hovermode: "closest", dragmode: still ? false : "zoom",
+        margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.legend().length > 1,
+        hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: narrow ? 12 : 13 } },
+        legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: small ? 9 : narrow ? 11 : 12 }, maxheight: this.sizes.cut ? this.sizes.legend : undefined, groupclick: "togglegroup", itemsizing: "constant" },
+        shapes: this.shapes?.() ?? [],
+        ...(this.more?.() ?? {}),
+      };
+      const gap = 0.09, tall = (1 - gap * (count - 1)) / count;
+      panels.forEach((panel, row) => {
+        const last = row === count - 1;
+        const name = ({ label, unit }) => text(unit ? `${label} (${unit})` : label ?? "");
+        const side = (kind, what) => ({
+          type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
+          title: { text: kind === "x" && !last ? "" : name(what), standoff: 8 }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
+          tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
+          minorloglabels: "none", nticks: narrow ? 5 : 8, range: this.range(kind, row),
+        });
+        const x = side("x", panel.x), y = side("y", panel.y);
+        if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
+        if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
+        x.anchor = axis("y", row);
+        if (row) x.matches = "x";
+        if (!last && count > 1) x.showticklabels = false;
+        y.domain = [1 - row * (tall + gap) - tall, 1 - row * (tall + gap)];
+        y.anchor = axis("x", row);
+        Object.assign(x, this.axes?.("x", row)), Object.assign(y, this.axes?.("y", row));
+        layout[axis("xaxis", row)] = x;
+        layout[axis("yaxis", row)] = y;
+      });
+      return layout;
+    }
+
+    legend() { return [...new Set(this.shown().filter((one) => one.style !== "band").map((one) => one.label))]; }
+
+    get width() {
+      if (this.full) return innerWidth - 24;
+      if (state.printing) return this.place.closest(".grid, .cards") ? HALF : PAPER;
+      return Math.max(260, this.place.clientWidth);
+    }
+
+    get sizes() { return heightOf(this.place, this.width, this.data.panels.length, this.legend().length); }
+
+    get height() {
+      if (this.full) return innerHeight - 110;
+      const { plot, legend } = this.sizes;
+      return plot + legend;
+    }
+  };
+})();

@@ -1,0 +1,133 @@
+"""What of an axis is seen at first, and where its ticks stand: as `assets/chart.js` has it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from tribolab.report.live.figure import Axis, Panel, Series
+
+_ROOM = 0.06  # of the span, on both sides
+_BELOW = 20  # on a logarithmic axis a bar is followed down to its value over this
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The part of an axis that is seen, in its own numbers: of a logarithmic one, the logarithms.
+
+    `names` has the rows of an axis of names, the lowest first; it is empty for an axis of numbers.
+    """
+
+    low: float
+    high: float
+    log: bool = False
+    names: tuple[str, ...] = ()
+
+    def place(self, value: object) -> float | None:
+        """Return where a value stands, from 0 at the low end to 1; None where there is no place."""
+        if self.names:
+            known = isinstance(value, str) and value in self.names
+            return self._share(self.names.index(str(value))) if known else None
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            return None
+        if self.log:
+            return self._share(math.log10(value)) if value > 0 else None
+        return self._share(float(value))
+
+    def _share(self, number: float) -> float:
+        return (number - self.low) / (self.high - self.low)
+
+
+def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, Scale]:
+    """Return what is seen of a panel at first: all points and lines, and of bands what they reach.
+
+    Parameters
+    ----------
+    panel, number
+        The panel, and its place in the figure.
+    series
+        What is shown of the figure.
+    """
+    mine = [one for one in series if one.panel == number and not one.faint]
+    x = _scale(panel.x, _along(mine, panel.x), level=False)
+    names = dict.fromkeys(str(y) for one in mine for y in one.y if isinstance(y, str))
+    if names:
+        return x, Scale(-0.5, len(names) - 0.5, names=tuple(names))
+    return x, _scale(panel.y, _up(mine, panel.y, x), level=True)
+
+
+def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
+    for one in series:
+        if one.style == "bars":
+            yield from (0.8 * float(x) if axis.log else 0.0 for x in one.x)
+        if one.style != "band":
+            yield from (float(x) for x in one.x if x is not None)
+
+
+def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
+    least = -math.inf if axis.least is None else axis.least
+    for one in series:
+        if one.style == "band":
+            continue
+        errors = one.error or [None] * len(one.y)
+        for at, y, error in zip(one.x, one.y, errors, strict=True):
+            place = x.place(at)
+            if y is None or place is None or not 0 <= place <= 1:
+                continue
+            bar = error or 0.0
+            ends = (max(y - bar, least), y + bar, float(y))
+            yield from (end for end in ends if not axis.log or end >= y / _BELOW)
+
+
+def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
+    known = [v for v in values if math.isfinite(v) and (v > 0 or not axis.log)]
+    if not known:
+        return Scale(0.0, 1.0, axis.log)
+    low, high = min(known), max(known)
+    if axis.log:
+        low, high = math.log10(low), math.log10(high)
+        if axis.decades:
+            low = max(low, high - axis.decades)
+    elif level and 0 < low < 0.6 * high:
+        low = 0.0
+    spare = 0.3 if axis.log else abs(high) * 0.5 or 0.5
+    room = (high - low) * _ROOM if high > low else spare
+    return Scale(low if low == 0 and not axis.log else low - room, high + room, axis.log)
+
+
+def ticks(scale: Scale, most: int) -> list[tuple[float, float]]:
+    """Return the ticks of an axis of numbers: the value, and its place from 0 to 1.
+
+    Examples
+    --------
+    >>> [value for value, _ in ticks(Scale(0, 2.2), 6)]
+    [0.0, 0.5, 1.0, 1.5, 2.0]
+    >>> [value for value, _ in ticks(Scale(-3.1, 0.2, True), 6)]
+    [0.001, 0.01, 0.1, 1.0]
+    >>> [value for value, _ in ticks(Scale(0.1, 0.8, True), 6)]
+    [2.0, 5.0]
+    >>> [value for value, _ in ticks(Scale(0.041, 0.07, True), 4)]
+    [1.1, 1.12, 1.14, 1.16]
+    """
+    low, high = scale.low, scale.high
+    values = _decades(low, high, most) if scale.log else _steps(low, high, most)
+    return [(value, place) for value in values if (place := scale.place(value)) is not None]
+
+
+def _decades(low: float, high: float, most: int) -> list[float]:
+    first, last = math.ceil(low - 1e-9), math.floor(high + 1e-9)
+    step = max(1, math.ceil((last - first + 1) / most))
+    whole = [float(f"1e{k}") for k in range(last, first - 1, -step)][::-1]
+    if len(whole) > 1:
+        return whole
+    parts = (float(f"{m}e{k}") for k in range(first - 1, last + 1) for m in (1, 2, 5))
+    seen = [value for value in parts if low <= math.log10(value) <= high]
+    return seen if len(seen) > 1 else _steps(10.0**low, 10.0**high, most)
+
+
+def _steps(low: float, high: float, most: int) -> list[float]:
+    power = 10.0 ** math.floor(math.log10((high - low) / most))
+    step = next(m * power for m in (1, 2, 5, 10, 20) if (high - low) / (m * power) <= most)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [float(f"{k * step:.10g}") for k in range(first, last + 1)]

@@ -1,0 +1,148 @@
+"""Shapes of a still figure: markers, lines, bands and bars as SVG paths, colours by class."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from tribolab.report.live.figure import Series, Style
+
+Point = tuple[float, float]
+_HUES = 8  # of the palette, as in `assets/report.css`
+_DASHES: dict[Style, str] = {"dashed": "6 4", "dotted": "2 3", "dashdot": "6 3 2 3"}
+_SEEN = 0.3  # how far a line may pass from a point of it [px]
+_LEVELS = 5  # colours of a heat map
+_LOW, _HIGH = 0.3, 3.0  # its ends, as in `assets/chart.js`
+# corners of the markers that are no circles, and where the first one stands [turns from the top]
+_CORNERS = ((0, 0.0), (4, 0.125), (4, 0.0), (3, 0.0), (3, 0.5), (5, 0.0), (6, 0.25), (5, 0.0))
+
+
+def hue(colour: int) -> str:
+    """Return the class of a place in the palette."""
+    return f"h{colour % _HUES}"
+
+
+def coordinate(value: float) -> str:
+    """Return a length [px] with the digits that are seen.
+
+    Examples
+    --------
+    >>> coordinate(12.0), coordinate(12.345)
+    ('12', '12.3')
+    """
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def path(points: Iterable[Point | None]) -> str:
+    """Return a line through points, broken where there is none.
+
+    Examples
+    --------
+    >>> path([(0, 0), (1, 2), None, (3, 4), (5, 6)])
+    'M0 0L1 2M3 4L5 6'
+    """
+    text, pen = [], "M"
+    for point in points:
+        if point is None:
+            pen = "M"
+            continue
+        text.append(f"{pen}{coordinate(point[0])} {coordinate(point[1])}")
+        pen = "L"
+    return "".join(text)
+
+
+def straightened(points: Sequence[Point | None]) -> Iterator[Point | None]:
+    """Give a line without the points that nobody would miss.
+
+    Examples
+    --------
+    >>> list(straightened([(0, 0), (1, 1), (2, 2.1), (3, 0), None, (5, 5)]))
+    [(0, 0), (2, 2.1), (3, 0), None, (5, 5), None]
+    """
+    part: list[Point] = []
+    for point in [*points, None]:
+        if point is not None:
+            part.append(point)
+        elif part:
+            yield from _straight(part)
+            yield None
+            part = []
+
+
+def _straight(part: Sequence[Point]) -> Iterator[Point]:
+    """Give the points of one piece after Ramer, Douglas and Peucker."""
+    x, y = np.array(part, float).T
+    kept = {0, len(part) - 1}
+    spans = [(0, len(part) - 1)]
+    while spans:
+        first, last = spans.pop()
+        dx, dy = x[last] - x[first], y[last] - y[first]
+        inner = slice(first + 1, last)
+        off = np.abs(dx * (y[inner] - y[first]) - dy * (x[inner] - x[first]))
+        off /= math.hypot(dx, dy) or 1.0
+        if off.size and off.max() > _SEEN:
+            middle = first + 1 + int(off.argmax())
+            kept.add(middle)
+            spans += [(first, middle), (middle, last)]
+    yield from (part[k] for k in sorted(kept))
+
+
+def markers(points: Sequence[Point], colour: int, size: float) -> str:
+    """Return the outline of a marker at each point; its shape goes with the colour."""
+    corners, turn = _CORNERS[colour % _HUES]
+    return "".join(_marker(x, y, size, corners, turn) for x, y in points)
+
+
+def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
+    if not corners:
+        across = f"{coordinate(size)} {coordinate(size)} 0 1 0 {coordinate(2 * size)} 0"
+        back = across.replace(f" {coordinate(2 * size)} 0", f" {coordinate(-2 * size)} 0")
+        return f"M{coordinate(x - size)} {coordinate(y)}a{across}a{back}"
+    angles = [2 * math.pi * (turn + k / corners) for k in range(corners)]
+    reach = size * (1.15 if corners < 5 else 1.05)
+    at = [(x + reach * math.sin(a), y - reach * math.cos(a)) for a in angles]
+    return path(at) + "z"
+
+
+def error_bars(bars: Iterable[tuple[float, float, float]], cap: float) -> str:
+    """Return bars, each at x from one y to another [px], with caps."""
+    parts = []
+    for x, low, high in bars:
+        parts.append(path([(x, low), (x, high)]))
+        parts += [path([(x - cap, y), (x + cap, y)]) for y in (low, high)]
+    return "".join(parts)
+
+
+def drawn_points(points: Sequence[Point], series: Series, bars: str) -> Iterator[str]:
+    """Give the markers of a series, and its error bars before them."""
+    if bars:
+        yield f'<path class="{hue(series.colour)} bar" d="{bars}"/>'
+    kind = "open" if series.open else "full"
+    yield f'<path class="{hue(series.colour)} {kind}" d="{markers(points, series.colour, 3.6)}"/>'
+
+
+def drawn_line(points: Sequence[Point | None], series: Series) -> Iterator[str]:
+    """Give the line of a series."""
+    dash = _DASHES.get(series.style)
+    dashed = f' stroke-dasharray="{dash}"' if dash else ""
+    yield f'<path class="{hue(series.colour)} line"{dashed} d="{path(straightened(points))}"/>'
+
+
+def drawn_band(low: Sequence[Point], high: Sequence[Point], series: Series) -> Iterator[str]:
+    """Give the area between two lines."""
+    if low and high:
+        around = straightened([*low, *reversed(high)])
+        yield f'<path class="{hue(series.colour)} band" d="{path(around)}z"/>'
+
+
+def drawn_heat(points: Sequence[tuple[Point, float]]) -> Iterator[str]:
+    """Give dots whose colour is a level, equal ones together."""
+    by_level: dict[int, list[Point]] = {}
+    for point, value in points:
+        share = (value - _LOW) / (_HIGH - _LOW)
+        by_level.setdefault(min(max(int(share * _LEVELS), 0), _LEVELS - 1), []).append(point)
+    for level, mine in sorted(by_level.items()):
+        dots = "".join(f"M{coordinate(x)} {coordinate(y)}h0" for x, y in mine)
+        yield f'<path class="l{level} dot" d="{dots}"/>'

@@ -1,0 +1,62 @@
+"""A live figure as the page has it: its words, its data compressed, and a still picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tribolab.records.packed import deflated
+from tribolab.records.traces import as_text
+from tribolab.report.live.figure import LiveFigure, plain
+from tribolab.report.live.still import still
+
+
+@dataclass(frozen=True)
+class ShownFigure:
+    """A live figure as it stands in the page.
+
+    Parameters
+    ----------
+    id, section, title, note, alt, height, rows
+        As of `LiveFigure`.
+    surface, medium
+        What all of it is of; "" where there are several.
+    panels, labels
+        How many there are, which tell how much room it takes before it is drawn.
+    packed
+        What it shows, compressed, as text that may stand in a script element.
+    still
+        Its first view as SVG, which stands there until it is drawn.
+    """
+
+    id: str
+    section: str
+    title: str
+    note: str
+    alt: str
+    height: int
+    rows: bool
+    surface: str
+    medium: str
+    panels: int
+    labels: int
+    packed: str
+    still: str
+
+
+def shown(figure: LiveFigure) -> ShownFigure:
+    """Return what the page has of a figure."""
+    return ShownFigure(
+        figure.id,
+        figure.section,
+        figure.title,
+        figure.note,
+        figure.alt,
+        figure.height,
+        figure.rows,
+        figure.surface,
+        figure.medium,
+        len(figure.panels),
+        len({one.label for one in figure.series if one.style != "band"}),
+        deflated(as_text(plain(figure)).encode()),
+        still(figure),
+    )

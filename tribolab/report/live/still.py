@@ -1,0 +1,251 @@
+"""A live figure as it stands in the page until a script draws it: an SVG, for paper as well.
+
+It shows the first view, so the first screen is whole at once, a page that is printed before its
+scripts are done has its figures, and so has one whose scripts do not run. Colours are classes of
+`assets/still.css`, for light and dark.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from markupsafe import escape
+
+from tribolab.report.live import marks
+from tribolab.report.live.axes import Scale, scales, ticks
+from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, plain, thinned
+from tribolab.report.live.marks import Point, coordinate
+from tribolab.words import MINUS, number
+
+_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], as on paper or so
+_HEIGHTS = (300, 430, 580)  # of figures of one, two and three panels
+_LETTER = 6.6  # mean width of a letter [px]
+_LINE = 18  # height of a row of the legend
+_TOP, _RIGHT, _BOTTOM = 8, 12, 42
+_BETWEEN = 16  # panels
+_MOST = 240  # points of a line
+_MOST_HEAT = 400
+
+
+@dataclass(frozen=True)
+class _Box:
+    """Where the axes of one panel stand [px], and what they show."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+    x: Scale
+    y: Scale
+
+    def at(self, x: object, y: object) -> Point | None:
+        """Return where a point stands within the box, far outside at most by its own size."""
+        across, up = self.x.place(x), self.y.place(y)
+        if across is None or up is None:
+            return None
+        return self.width * _near(across), self.height * (1 - _near(up))
+
+
+def _near(share: float) -> float:
+    return min(max(share, -1.0), 2.0)
+
+
+def still(figure: LiveFigure) -> str:
+    """Return a figure as SVG: of one load at a time the lowest."""
+    width = _WIDTHS[figure.width]
+    series = _first(figure)
+    labels = _labels(series)
+    rows = math.ceil(len(labels) / _columns(width, labels)) if len(labels) > 1 else 0
+    top = _TOP + rows * _LINE
+    height = (figure.height or _HEIGHTS[len(figure.panels) - 1]) + rows * _LINE
+    parts = list(_legend(labels, width)) if rows else []
+    for place, box in enumerate(_boxes(figure, series, width, top, height)):
+        parts += _panel(figure, place, box, series)
+    body = "".join(parts)
+    return (
+        f'<svg class="still" viewBox="0 0 {width} {height}" height="{height}" '
+        f'aria-hidden="true" focusable="false">{body}</svg>'
+    )
+
+
+def _first(figure: LiveFigure) -> list[Series]:
+    """Return what is seen at first, its values as plain numbers."""
+    loads = sorted({one.load for one in figure.series if one.load is not None})
+    shown = []
+    for one in figure.series:
+        other = figure.one_load and one.load is not None and one.load != loads[0]
+        if not (other or one.faint):
+            shown.append(replace(one, **{name: plain(getattr(one, name)) for name in ("x", "y")}))
+    return shown
+
+
+def _labels(series: Sequence[Series]) -> dict[str, Series]:
+    named: dict[str, Series] = {}
+    for one in series:
+        if one.style != "band":
+            named.setdefault(one.label, one)
+    return named
+
+
+def _columns(width: int, labels: dict[str, Series]) -> int:
+    longest = max(map(len, labels), default=1) * _LETTER + 30
+    return max(1, min(len(labels), int((width - 10) / longest)))
+
+
+def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
+    columns = _columns(width, labels)
+    for place, (label, one) in enumerate(labels.items()):
+        x, y = 10 + (place % columns) * (width - 10) / columns, 12 + place // columns * _LINE
+        sample = replace(one, style="points" if one.style in ("bars", "heat") else one.style)
+        if sample.style == "points":
+            yield from marks.drawn_points([(x + 9, y - 4)], sample, "")
+        else:
+            yield from marks.drawn_line([(x, y - 4), (x + 18, y - 4)], sample)
+        yield _text(x + 23, y, label)
+
+
+def _boxes(
+    figure: LiveFigure, series: Sequence[Series], width: int, top: float, height: float
+) -> list[_Box]:
+    """Return the panels below each other, with room for what stands left of them."""
+    seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
+    if len(seen) > 1:  # panels below each other share what lies along them
+        low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
+        seen = [(replace(x, low=low, high=high), y) for x, y in seen]
+    names = max((len(name) for _, y in seen for name in y.names), default=0)
+    left = min(names * _LETTER + 12, 0.45 * width) if names else 58
+    count = len(seen)
+    each = (height - top - _BOTTOM - _BETWEEN * (count - 1)) / count
+    return [
+        _Box(left, top + place * (each + _BETWEEN), width - left - _RIGHT, each, x, y)
+        for place, (x, y) in enumerate(seen)
+    ]
+
+
+def _panel(figure: LiveFigure, place: int, box: _Box, series: Sequence[Series]) -> Iterator[str]:
+    panel = figure.panels[place]
+    last = place == len(figure.panels) - 1
+    yield from _across(box, panel.x, shown=last)
+    yield from _names(box) if box.y.names else _up(box, panel.y)
+    sides = ("x", box.left), ("y", box.top), ("width", box.width), ("height", box.height)
+    size = " ".join(f'{name}="{coordinate(value)}"' for name, value in sides)
+    yield f"<svg {size}>"
+    mine = [one for one in series if one.panel == place]
+    bars = [one for one in mine if one.style == "bars"]
+    for one in sorted(mine, key=lambda one: one.style != "band"):
+        if one.style == "bars":
+            yield from _rows(one, box, bars)
+        else:
+            yield from _drawn(one, box, panel.y)
+    yield "</svg>"
+    yield f'<path class="axis" d="{_corner(box)}"/>'
+
+
+def _corner(box: _Box) -> str:
+    bottom = box.top + box.height
+    return marks.path([(box.left, box.top), (box.left, bottom), (box.left + box.width, bottom)])
+
+
+def _drawn(one: Series, box: _Box, axis: Axis) -> Iterator[str]:
+    if one.style == "points":
+        at = [box.at(x, y) for x, y in zip(one.x, one.y, strict=True)]
+        bars = marks.error_bars(_bars(one, box, axis), 3)
+        yield from marks.drawn_points([point for point in at if point], one, bars)
+    elif one.style == "band":
+        lower = [box.at(x, _above(y, box)) for x, y in zip(one.x, one.y, strict=True)]
+        upper = [box.at(x, y) for x, y in zip(one.x, one.high, strict=True)]
+        yield from marks.drawn_band([p for p in lower if p], [p for p in upper if p], one)
+    elif one.style == "heat":
+        kept = thinned(len(one.x), _MOST_HEAT)
+        levels = [(box.at(one.x[k], one.y[k]), float(one.high[k])) for k in kept]
+        yield from marks.drawn_heat([(at, value) for at, value in levels if at])
+    else:
+        kept = thinned(len(one.x), _MOST)
+        yield from marks.drawn_line([box.at(one.x[k], one.y[k]) for k in kept], one)
+
+
+def _above(value: Any, box: _Box) -> Any:
+    """Return the lower edge of a band, which on a logarithmic axis may lie at or below zero."""
+    if box.y.log and value is not None and not value > 0:
+        return 10.0 ** (box.y.low - (box.y.high - box.y.low))
+    return value
+
+
+def _bars(one: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, float]]:
+    least = -math.inf if axis.least is None else axis.least
+    errors = one.error or [None] * len(one.y)
+    for x, y, error in zip(one.x, one.y, errors, strict=True):
+        middle = box.at(x, y)
+        if middle is None or not error or not error > 0:
+            continue
+        high = box.at(x, y + error)
+        low = box.at(x, _above(max(y - error, least), box))
+        if low is not None and high is not None:
+            yield middle[0], low[1], high[1]
+
+
+def _rows(one: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
+    """Give the bars of a series, which share a row with those of the others."""
+    thick = 0.8 * box.height / len(box.y.names) / len(every)
+    below = next(k for k, other in enumerate(every) if other is one) - 0.5 * len(every)
+    for x, y in zip(one.x, one.y, strict=True):
+        end = box.at(x, y)
+        if end is not None and end[0] > 0:
+            top = coordinate(end[1] - (below + 1) * thick)
+            yield (
+                f'<rect class="{marks.hue(one.colour)} full" x="0" y="{top}" '
+                f'width="{coordinate(end[0])}" height="{coordinate(thick)}"/>'
+            )
+
+
+def _across(box: _Box, axis: Axis, *, shown: bool) -> Iterator[str]:
+    bottom = box.top + box.height
+    for value, place in ticks(box.x, max(2, int(box.width / 70))):
+        x = box.left + place * box.width
+        yield f'<path class="grid" d="{marks.path([(x, box.top), (x, bottom)])}"/>'
+        if shown:
+            yield _text(x, bottom + 15, _tick(value, box.x.log, axis.unit), "middle")
+    if shown:
+        yield _text(box.left + box.width / 2, bottom + 34, _named(axis), "middle")
+
+
+def _up(box: _Box, axis: Axis) -> Iterator[str]:
+    for value, place in ticks(box.y, max(2, int(box.height / 40))):
+        y = box.top + box.height * (1 - place)
+        yield f'<path class="grid" d="{marks.path([(box.left, y), (box.left + box.width, y)])}"/>'
+        yield _text(box.left - 6, y + 4, _tick(value, box.y.log, axis.unit), "end")
+    middle = coordinate(box.top + box.height / 2)
+    turned = f'transform="translate(13 {middle}) rotate(-90)" text-anchor="middle"'
+    yield f"<text {turned}>{escape(_named(axis))}</text>"
+
+
+def _names(box: _Box) -> Iterator[str]:
+    most = max(4, int((box.left - 8) / (0.9 * _LETTER)))
+    for name in box.y.names:
+        y = box.top + box.height * (1 - (box.y.place(name) or 0.0))
+        text = name if len(name) <= most else name[: most - 1].rstrip() + "…"
+        yield _text(box.left - 6, y + 4, text, "end")
+
+
+def _named(axis: Axis) -> str:
+    return f"{axis.label} ({axis.unit})" if axis.unit else axis.label
+
+
+def _tick(value: float, log: bool, unit: str) -> str:
+    """Return a tick as the live figure has it: powers of ten where the axis has a unit."""
+    text = number(value, 6)
+    power = math.log10(value) if log else 0.0
+    if not (log and unit or "e" in text) or power != round(power) or power in (0, 1):
+        return text
+    return "10" + str(round(power)).replace("-", MINUS).translate(_RAISED)
+
+
+_RAISED = str.maketrans(f"{MINUS}0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def _text(x: float, y: float, words: str, anchor: str = "") -> str:
+    where = f' text-anchor="{anchor}"' if anchor else ""
+    return f'<text x="{coordinate(x)}" y="{coordinate(y)}"{where}>{escape(words)}</text>'
