@@ -13,6 +13,8 @@ import websocket
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 BROWSER = next((found for name in NAMES if (found := shutil.which(name))), "")
+KEYS = {"Tab": 9, "Enter": 13, " ": 32, "Escape": 27, "End": 35, "Home": 36}
+KEYS |= {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
 OPTIONS = [
     "--headless",
     "--no-sandbox",
@@ -61,12 +63,12 @@ class Browser:
         self._devtools.close()
 
     @contextlib.contextmanager
-    def page(self, address, width=1400, height=900, dark=False, before=""):
+    def page(self, address, width=1400, height=900, dark=False, before="", touch=False):
         """Open an address, a script run before any of its own; afterwards the tab is closed."""
         target = self._devtools.call("Target.createTarget", url="about:blank")["targetId"]
         tab = _Devtools(f"ws://127.0.0.1:{self._port[0]}/devtools/page/{target}")
         try:
-            page = Page(tab, width, height, dark)
+            page = Page(tab, width, height, dark, touch)
             page.before(before)
             page.go(address)
             yield page
@@ -78,7 +80,7 @@ class Browser:
 class Page:
     """A tab: what it logged and asked for, and how to act in it."""
 
-    def __init__(self, tab, width, height, dark):
+    def __init__(self, tab, width, height, dark, touch):
         self._tab = tab
         for domain in ("Page", "Runtime", "Log", "Network"):
             tab.call(f"{domain}.enable")
@@ -92,8 +94,10 @@ class Page:
             width=width,
             height=height,
             deviceScaleFactor=1,
-            mobile=False,
+            mobile=touch,
         )
+        if touch:
+            tab.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         tab.call("Emulation.setEmulatedMedia", features=scheme)
 
@@ -125,7 +129,11 @@ class Page:
 
     def click(self, selector, shift=False):
         """Bring an element into view, wait until it stands still, and click on its middle."""
-        x, y = self.run(
+        self.mouse([self.middle(selector)], shift)
+
+    def middle(self, selector):
+        """Bring an element into view, wait until it stands still, and return its middle [px]."""
+        return self.run(
             f"(async () => {{ const e = document.querySelector({json.dumps(selector)});"
             "const middle = () => { e.scrollIntoView({block: 'center', behavior: 'instant'});"
             "const b = e.getClientRects()[0]; return [b.x + b.width / 2, b.y + b.height / 2] };"
@@ -134,7 +142,6 @@ class Page:
             "now = middle(); still = now.join() === before.join() ? still + 1 : 0 }"
             "return now })()"
         )
-        self.mouse([(x, y)], shift)
 
     def mouse(self, points, shift=False):
         """Press at the first point, move over the others, release at the last."""
@@ -147,11 +154,47 @@ class Page:
         ):
             self._tab.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
-    def key(self, name, text=""):
+    def touch(self, *fingers):
+        """Move fingers along their points, all at once, and lift them: one finger, or two."""
+        steps = list(zip(*fingers, strict=True))
+        for number, points in enumerate(steps):
+            kind = "touchMove" if number else "touchStart"
+            places = [{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(points)]
+            self._tab.call("Input.dispatchTouchEvent", type=kind, touchPoints=places)
+        self._tab.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def tap(self, point):
+        """Tap with a finger."""
+        self._tab.call("Input.emulateTouchFromMouseEvent", **self._tapped("mousePressed", point))
+        self._tab.call("Input.emulateTouchFromMouseEvent", **self._tapped("mouseReleased", point))
+
+    @staticmethod
+    def _tapped(kind, point):
+        place = {"x": round(point[0]), "y": round(point[1])}
+        return {"type": kind, "button": "left", "clickCount": 1} | place
+
+    def key(self, name, text="", shift=False):
         """Press a key: a character, or the name of a key such as ArrowRight."""
+        held = {"modifiers": 8 * shift}
+        if name in KEYS:  # what the browser itself does with a key hangs on its number
+            held["windowsVirtualKeyCode"] = KEYS[name]
         for kind in ("keyDown", "keyUp"):
             more = {"text": text} if text and kind == "keyDown" else {}
-            self._tab.call("Input.dispatchKeyEvent", type=kind, key=name, **more)
+            self._tab.call("Input.dispatchKeyEvent", type=kind, key=name, **held, **more)
+
+    def tab_to(self, selector):
+        """Press the Tab key until an element has the focus."""
+        there = f"document.activeElement === document.querySelector({json.dumps(selector)})"
+        for _ in range(200):
+            if self.run(there):
+                return
+            self.key("Tab")
+        raise AssertionError(f"the Tab key never came to {selector}")
+
+    def press(self, selector, key="Enter", shift=False):
+        """Go to an element by keyboard, and press a key on it."""
+        self.tab_to(selector)
+        self.key(key, {"Enter": "\r", " ": " "}.get(key, ""), shift)
 
     def type(self, text):
         """Type into what has the focus."""

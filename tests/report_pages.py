@@ -52,6 +52,16 @@ def made(folder):
     return outcome.folder
 
 
+def made_with_repeats(folder):
+    """Write results of two conditions, one of them at two loads, both with repeats."""
+    runs = [("a1", "Sb-R", "glycerol", 31.0, 0.8), ("a2", "Sb-R", "glycerol", 31.0, 0.84)]
+    runs += [("b1", "Sb-R", "glycerol", 91.0, 0.7)]
+    runs += [("c1", "Sb-S", "dry", 31.0, 1.1), ("c2", "Sb-S", "dry", 31.0, 1.14)]
+    outcome = made_outcome(folder, runs, "Repeats")
+    write_report(outcome)
+    return outcome.folder
+
+
 class Reader(HTMLParser):
     """Collects the elements of a page, and checks that they are closed in order."""
 
@@ -77,6 +87,13 @@ class Reader(HTMLParser):
 
     def all(self, tag):
         return [attrs for name, attrs in self.elements if name == tag]
+
+
+def sent(folder, factory):
+    """A folder of its own with nothing but the page, as it is sent by mail."""
+    place = factory.mktemp("sent")
+    (place / "report.html").write_text(page_of(folder), encoding="utf-8")
+    return place
 
 
 def page_of(folder):

@@ -1,5 +1,11 @@
 """How results show themselves in a notebook."""
 
+import json
+import os
+import re
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -119,3 +125,25 @@ def test_the_logs_of_a_run_are_read_back_by_the_name_of_the_first(tmp_path):
     assert found.attrs["source"] == f"{force.name}; {motion.name}"
     written = set(run.force_log.friction_force.values.round(3))
     assert set(found.friction_force.values.round(3)) <= written
+
+
+def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
+    code = (
+        "import IPython, json\n"
+        "shell = IPython.core.interactiveshell.InteractiveShell.instance()\n"
+        "import tribolab, sys\n"
+        "assert 'xarray' not in sys.modules\n"
+        "import xarray as xr\n"
+        "run = xr.Dataset({'friction_force': ('time', [1.0], {'units': 'N'}), 'note': ('time', "
+        "['a'])}, {'time': ('time', [0.0], {'units': '<s>'})})\n"
+        "show = shell.display_formatter.format\n"
+        "print(json.dumps([show(run)[0]['text/html'], show(run.friction_force)[0]['text/html']]))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code],
+        check=True, capture_output=True, text=True, env={**os.environ, "IPYTHONDIR": str(tmp_path)},
+    )  # fmt: skip
+    dataset, array = json.loads(done.stdout)
+    types = re.findall(r"<div class='xr-var-dtype'>(.*?)</div>", dataset)
+    assert types == ["&lt;s&gt;, float64", "N, float64", "&lt;U1"]
+    assert "&#x27;friction_force&#x27; [N]" in array or "'friction_force' [N]" in array

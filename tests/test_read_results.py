@@ -13,8 +13,8 @@ from reporting import made_outcome
 
 import tribolab as tl
 from tribolab.errors import ReadError
+from tribolab.friction.joined import joined_curves
 from tribolab.report import tables
-from tribolab.report.compared import joined_curves
 from tribolab.report.results import write_report
 
 
@@ -99,7 +99,10 @@ def test_speeds_of_one_curve_stay_apart_however_near_those_of_another_lie():
     rows = [([1.00e-3, 1.08e-3], "dry"), ([1.04e-3, 1e-2], "wet")]
     curves = joined_curves(
         [
-            (xr.Dataset({"half_loop": ("sliding_speed", v)}, {"sliding_speed": v}), "s", m, np.nan)
+            (
+                xr.Dataset({"half_loop": ("sliding_speed", v)}, {"sliding_speed": v}),
+                {"medium": m, "normal_force": np.nan},
+            )
             for v, m in rows
         ]
     )

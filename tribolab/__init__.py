@@ -13,6 +13,7 @@ is a plain function on xarray datasets, in SI units::
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import TYPE_CHECKING, Any
 
 from tribolab.version import __version__
@@ -62,8 +63,10 @@ _PUBLIC = {
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "with_shear_stress": "tribolab.lubrication.stribeck",
     "film_profile": "tribolab.lubrication.stribeck",
+    "relative_flow_factors": "tribolab.lubrication.relative_factors",
     "flow_factors": "tribolab.lubrication.factors",
     "fit_shear_stress": "tribolab.fit.shear_stress",
+    "fit_shear_stresses": "tribolab.fit.several",
     "sliding_mode": "tribolab.mode.verdict",
     "Mode": "tribolab.mode.model",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
@@ -99,6 +102,7 @@ __all__ = [
     "check_scan_set",
     "read_scans",
     "read_results",
+    "relative_flow_factors",
     "remove_form",
     "fill_dropouts",
     "psd_1d",
@@ -124,6 +128,7 @@ __all__ = [
     "film_profile",
     "flow_factors",
     "fit_shear_stress",
+    "fit_shear_stresses",
     "sliding_mode",
     "Mode",
     "model_uncertainty",
@@ -154,6 +159,7 @@ if TYPE_CHECKING:
     from tribolab.draft.draft import draft_dialect
     from tribolab.errors import TribolabError
     from tribolab.fit.model_uncertainty import model_uncertainty
+    from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.coefficient.half_loops import half_loops
@@ -167,6 +173,7 @@ if TYPE_CHECKING:
     from tribolab.io.read import read
     from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
+    from tribolab.lubrication.relative_factors import relative_flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
     from tribolab.mode.model import Mode
     from tribolab.mode.verdict import sliding_mode
@@ -183,6 +190,12 @@ if TYPE_CHECKING:
     from tribolab.surface.self_affine import self_affine_psd
     from tribolab.surface.synthesis import synthesise_map
     from tribolab.variables import variables
+
+
+if "IPython" in sys.modules:
+    from tribolab.unit_display import show_units
+
+    show_units()
 
 
 def __getattr__(name: str) -> Any:

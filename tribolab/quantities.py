@@ -145,6 +145,7 @@ _ROWS = [
     ("loss_modulus", "E''", "Pa", "loss modulus"),
     ("central_separation", "u_0", "m", "mean separation at the middle of the contact"),
     # lubrication: factors, profiles, curves
+    ("relative_separation", "u/h_rms", "1", "mean separation over rms roughness"),
     ("pressure_flow_factor", "\\phi_p", "1", "pressure flow factor"),
     ("shear_flow_factor", "\\phi_s", "1", "shear flow factor"),
     ("shear_stress_factor", "\\phi_f", "1", "friction factor of the mean shear"),

@@ -242,14 +242,16 @@ def _points(
         measured = measured_stribeck_curve([measured])
     elif given is None or given.dims != ("sliding_speed",):
         over = "is not in it"
+        cure = (
+            "tl.measured_stribeck_curve makes such a curve from the results of friction_coefficient"
+        )
         if given is not None:
             over = f"is over {', '.join(map(repr, given.dims)) or 'none'}"
+            if "sliding_speed" in given.dims:
+                cure = "tl.fit_shear_stresses fits every curve"
         raise AnalysisError(
             f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
-            cure=Cure(
-                notebook="tl.measured_stribeck_curve makes such a curve from the results of "
-                "friction_coefficient"
-            ),
+            cure=Cure(notebook=cure),
         )
     measured = measured.sortby("sliding_speed")
     speed = measured["sliding_speed"].values.astype(float)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from scipy import special
 
-from tribolab.errors import AnalysisError
+from tribolab.errors import AnalysisError, shown
 from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.joined import Label, joined_curves
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
@@ -30,18 +31,21 @@ class _Value(NamedTuple):
 
 
 def measured_stribeck_curve(
-    frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1
+    frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1, **labels: Sequence[Label]
 ) -> xr.Dataset:
     """Combine the segments of one or more runs into friction coefficient over sliding speed.
 
     Parameters
     ----------
     frictions
-        Results of `friction_coefficient`, one for each run of the same system. Segments that a
-        person rejected (`decide`) are left out.
+        Results of `friction_coefficient`, one for each run of the same system, or of several
+        systems with `labels`. Segments that a person rejected (`decide`) are left out.
     speed_tolerance
         Speeds that differ by no more than this ratio belong together. The two strokes of a pair
         stay together at their mean speed.
+    **labels
+        What tells the runs apart, one label for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
+        Runs with the same labels make one curve.
 
     Returns
     -------
@@ -51,12 +55,12 @@ def measured_stribeck_curve(
         ``_sem``; ``_within``, the standard deviation of the observations of one run about the run's
         mean (NaN if no run has two); ``_between``, the standard deviation of the runs' means (NaN
         for one run); ``runs`` and ``segments``. Attributes: the provenance, with the files of all
-        runs as its source.
+        runs as its source. With `labels` all that is over these dims, too (`joined_curves`).
 
     Raises
     ------
     AnalysisError
-        If there is no run, or none has a friction coefficient.
+        If there is no run, none has a friction coefficient, or there is not one label for each run.
 
     Notes
     -----
@@ -88,7 +92,11 @@ def measured_stribeck_curve(
     >>> curve = measured_stribeck_curve([one])
     >>> curve.friction_coefficient.values.round(3).tolist(), curve.segments.values.tolist()
     ([0.31, 0.5], [2, 1])
+    >>> measured_stribeck_curve([one, one, one], medium=["dry", "oil", "dry"]).runs.values.tolist()
+    [[2.0, 2.0], [1.0, 1.0]]
     """
+    if labels:
+        return _of_several(frictions, speed_tolerance, labels)
     if len(frictions) == 0:
         raise AnalysisError("a measured Stribeck curve needs at least one run; none was given")
     for friction in frictions:
@@ -120,6 +128,29 @@ def measured_stribeck_curve(
     curve = xr.Dataset(data, coords={"sliding_speed": columns[0]})
     origin = made("measured Stribeck curve", **joined_sources(f.attrs for f in frictions))
     return stamp(curve, **origin, speed_tolerance=float(speed_tolerance))
+
+
+def _of_several(
+    frictions: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
+) -> xr.Dataset:
+    """Return the curve of each combination of labels, side by side."""
+    for name, given in labels.items():
+        if isinstance(given, str) or len(given) != len(frictions):
+            raise AnalysisError(
+                f"{shown(name)}: one label for each of {len(frictions)} runs is wanted",
+                function="measured_stribeck_curve",
+            )
+    groups: dict[tuple[Label, ...], list[xr.Dataset]] = {}
+    for friction, *label in zip(frictions, *labels.values(), strict=True):
+        groups.setdefault(tuple(label), []).append(friction)
+    curves = joined_curves(
+        [
+            (measured_stribeck_curve(group, speed_tolerance), dict(zip(labels, key, strict=True)))
+            for key, group in groups.items()
+        ]
+    )
+    origin = made("measured Stribeck curves", **joined_sources(f.attrs for f in frictions))
+    return curves.assign_attrs(**origin, speed_tolerance=float(speed_tolerance))
 
 
 def _observations(friction: xr.Dataset, run: int) -> list[_Value]:

@@ -182,7 +182,7 @@ def _facts(system: System) -> dict[str, str | float | int]:
     }
 
 
-def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
+def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
     """Add a shear stress to a computed curve that has none, without computing it again.
 
     Parameters
@@ -190,12 +190,12 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
     curve
         From `stribeck_curve` with the shear stress ``"0 Pa"``.
     shear_stress
-        sigma_f [Pa].
+        sigma_f [Pa]; of several curves one for each, e.g. over (surface).
 
     Returns
     -------
     xarray.Dataset
-        The curve with its solid part.
+        The curve with its solid part; of several curves with ``shear_stress`` [Pa], too.
 
     Examples
     --------
@@ -213,7 +213,9 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float) -> xr.Dataset:
         name: curve[name] + solid for name in ("friction_coefficient", "friction_without_factors")
     }
     curve = curve.assign({"friction_coefficient_solid": solid, **added})
-    return stamp(curve, shear_stress_Pa=shear_stress)
+    if isinstance(shear_stress, xr.DataArray) and shear_stress.dims:
+        return stamp(curve.assign(shear_stress=shear_stress))
+    return stamp(curve, shear_stress_Pa=float(shear_stress))
 
 
 @over_dims(psd=("wavenumber",))

@@ -134,7 +134,7 @@ _UNITS = (("separation", "m"), ("contact_pressure", "Pa"), ("fluid_pressure", "P
 
 
 def lubrication_factors(
-    factors: Mapping[str, xr.Dataset],
+    factors: Mapping[str, xr.Dataset] | xr.Dataset,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
@@ -146,7 +146,7 @@ def lubrication_factors(
     ----------
     factors
         The five factors (separation) with the attribute ``rms_roughness_m``, by the surface's
-        name.
+        name; or over (surface, relative_separation), from `tribolab.relative_flow_factors`.
     surfaces
         All surfaces of the study in their order, so that each keeps its colour.
     title
@@ -165,12 +165,14 @@ def lubrication_factors(
     >>> tl.plot.figure_data(figure).pressure_flow_factor.dropna().round(2).tolist()
     [0.0, 0.09, 0.35, 0.61, 0.8]
     """
+    if isinstance(factors, xr.Dataset):
+        factors = {str(one): factors.sel(surface=one) for one in factors["surface"].values}
     chosen = colours(list(factors), surfaces)
     both = ("flow factors", "friction factors")
     with several_panels(axes, both, _side_by_side(2)) as (figure, (flow, friction)):
         for panel, names in ((flow, _FLOW), (friction, _FRICTION)):
             for name, data in factors.items():
-                over = data["separation"].values / data.attrs["rms_roughness_m"]
+                over = _over(data)
                 for key, style, _ in names:
                     panel.plot(over, data[key], color=chosen[name], linestyle=style, linewidth=1.1)
                 numbers = {key: data[key].values for key, _, _ in names}
@@ -203,3 +205,10 @@ def lubrication_factors(
             name_all(friction)
             name_panel(flow, title)
     return figure
+
+
+def _over(factors: xr.Dataset) -> np.ndarray:
+    """Return the separation in units of the roughness."""
+    if "relative_separation" in factors.coords:
+        return factors["relative_separation"].to_numpy()
+    return factors["separation"].to_numpy() / float(factors.attrs["rms_roughness_m"])

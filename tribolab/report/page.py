@@ -92,6 +92,7 @@ def _context(
         "cards": cards(document),
         "unnamed": of_nothing(document),
         "live": live,
+        "decided": document["review"]["entries"] if "review" in document else [],
         "review": as_text(document["review"]) if "review" in document else "",
         "groups": first,
         "more_groups": rest,

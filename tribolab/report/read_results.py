@@ -138,7 +138,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         ReadError
             If a file cannot be read.
         """
-        from tribolab.report.compared import joined_curves
+        from tribolab.friction.joined import joined_curves
 
         files = {path.stem: path for path in (self.folder / "data").glob("*.nc")}
         known = [curve for curve in self._report["curves"] if curve["name"] in files]
@@ -146,9 +146,12 @@ class Results(Mapping[str, "pd.DataFrame"]):
             [
                 (
                     self._part(f"data/{curve['name']}.nc", None),
-                    curve["surface"] or ("" if curve["medium"] else curve["runs"][0]),
-                    curve["medium"],
-                    _number(curve["nominal_normal_force_N"]),
+                    {
+                        "surface": curve["surface"]
+                        or ("" if curve["medium"] else curve["runs"][0]),
+                        "medium": curve["medium"],
+                        "normal_force": _number(curve["nominal_normal_force_N"]),
+                    },
                 )
                 for curve in known
             ]

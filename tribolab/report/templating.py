@@ -32,7 +32,7 @@ _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
-_SCRIPTS = ("report.js", "view.js", "files.js", "table.js", "start.js")
+_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "start.js")
 _REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
 _DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
 _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
@@ -78,7 +78,7 @@ def framing(
     fills it by script.
     """
     style = "".join(asset(name) for name in _STYLES)
-    names = (*_SCRIPTS[:3], *_DRAWING, *_SCRIPTS[3:]) if draws else _SCRIPTS
+    names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
     scripts = [asset(name) for name in names]
     hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
     styles = " ".join(f"'{fingerprint(text)}'" for text in ((style, "") if draws else (style,)))

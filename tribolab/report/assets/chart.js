@@ -1,7 +1,7 @@
 "use strict";
 // One figure that answers: drawn, hovered, zoomed, switched, handed out. When it is drawn, charts.js says.
 report.Chart = (() => {
-  const { state, still, isDark, force, plotly } = report.drawing;
+  const { state, still, isDark, plotly } = report.drawing;
 
   return class extends report.Picture {
     constructor(figure) {
@@ -17,9 +17,9 @@ report.Chart = (() => {
     paint(Plotly = globalThis.Plotly) {
       if (!Plotly || !this.data || !(state.printing || this.place.clientWidth)) return;
       const config = { displayModeBar: false, scrollZoom: false, doubleClick: false, showTips: false, locale: "en" };
+      this.place.querySelector(".still")?.remove(); // first: one upon the other, they would move the page
       Plotly.react(this.place, this.traces(), this.layout(), config);
       if (!this.drawn) this.attach(Plotly);
-      this.place.querySelector(".still")?.remove();
       this.drawn = true;
       this.chips();
       this.tell?.();
@@ -46,14 +46,16 @@ report.Chart = (() => {
       });
       this.place.on("plotly_hover", (event) => { this.tellOf(event.points[0]); });
       this.place.on("plotly_unhover", () => { if (!still) this.told?.remove(); });
-      this.place.on("plotly_doubleclick", () => { this.whole(); });
+      this.place.on("plotly_doubleclick", () => { if (!this.panned) this.whole(); });
       this.place.on("plotly_relayout", () => this.follow?.());
     }
 
     // A finger cannot hover: its first tap reads the point, and another one goes to the run.
     isMeant(event) {
       const point = event.points[0], tapped = `${point.curveNumber} ${point.pointNumber}`;
-      if (!still || this.tapped === tapped) return true;
+      if (!still) return true;
+      if (this.panned) return false;
+      if (this.tapped === tapped) return true;
       this.tapped = tapped;
       this.tellOf(point);
       return false;
@@ -76,20 +78,8 @@ report.Chart = (() => {
     // Chips for the loads, and what the switches say.
     chips() {
       const holder = this.figure.querySelector(".loads");
-      if (holder && this.data.one_load) {
-        const loads = this.loads.map(force), now = this.chosen();
-        if (holder.childElementCount !== loads.length) {
-          holder.replaceChildren(...loads.map((load) => {
-            const chip = document.createElement("button");
-            chip.type = "button";
-            chip.textContent = load;
-            chip.addEventListener("click", () => report.view.set("load", load));
-            return chip;
-          }));
-          holder.hidden = loads.length < 2;
-        }
-        for (const chip of holder.children) chip.setAttribute("aria-pressed", String(chip.textContent === now));
-      }
+      const now = this.chosen();
+      for (const chip of holder?.children ?? []) chip.setAttribute("aria-pressed", String(chip.textContent === now));
       for (const button of this.figure.querySelectorAll("[data-scale]")) {
         const side = button.dataset.scale, log = this.isLog(side, 0);
         button.hidden = side === "y" && !this.data.panels[0].y.label;
@@ -162,6 +152,7 @@ report.Chart = (() => {
       report.panByTouch(this);
       this.figure.addEventListener("click", (event) => {
         const button = event.target.closest("button");
+        if (button?.closest(".loads")) report.view.set("load", button.textContent);
         if (button?.dataset.act) acts[button.dataset.act]?.();
         if (button?.dataset.scale) this.rescale(button.dataset.scale);
       });

@@ -39,6 +39,7 @@ report.charts = (() => {
       const plot = figure.querySelector(".plot"), { panels, labels } = plot.dataset;
       const size = panels && plot.clientWidth && heightOf(plot, plot.clientWidth, Number(panels), Number(labels));
       if (size) plot.style.minHeight = `${size.plot + size.legend}px`;
+      if (size) plot.querySelector(".still")?.setAttribute("height", size.plot + size.legend);
       near.observe(figure);
     }
   }

@@ -20,7 +20,7 @@ report.drawing = (() => {
   // Plotly reads a little HTML in labels; names from files are text and nothing else.
   const text = (words) => String(words).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
   const lines = (words) => text(words).replaceAll("\n", "<br>");
-  const force = (load) => `${Number(load.toPrecision(3))} N`;
+  const force = (load) => `${Math.abs(load) >= 100 ? Math.round(load) : Number(load.toPrecision(3))} N`; // as words.force_text has it
   const axis = (kind, panel) => kind + (panel ? panel + 1 : "");
 
   // Known before a figure is drawn: what is below does not move when it comes.

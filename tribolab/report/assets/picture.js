@@ -56,14 +56,14 @@ report.Picture = (() => {
         const base = {
           name: text(one.label), legendgroup: one.label, showlegend: !seen.has(one.label) && style !== "band",
           x: one.x, y: one.y, xaxis: axis("x", panel), yaxis: axis("y", panel), opacity: faded ? 0.15 : 1,
-          visible: (this.off.get(one.label) ?? one.faint) ? "legendonly" : true, meta: one.goes_to,
+          visible: this.off.get(one.label) ? "legendonly" : true, meta: one.goes_to,
           hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
         };
         // what is told of a point stands beside it, see tellOf
         if (one.told?.length > 1 || (one.told?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.told[k] ?? one.told[0]), hoverinfo: "none", hovertemplate: null });
         if (style !== "band") seen.add(one.label);
         const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
-        if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: one.faint ? 5 : 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
+        if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
         else if (style === "band") traces.push(...this.band(one, base, hue));
         else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", textposition: "none", marker: { color: hue } });
         // colours are levels here, so conditions are told by their markers, in the legend too
@@ -98,7 +98,7 @@ report.Picture = (() => {
       const seen = side === "y" ? this.range("x", panel) : undefined, wide = this.isLog("x", panel);
       const within = (x) => !seen || typeof x !== "number" || ((wide ? Math.log10(x) : x) >= seen[0] && (wide ? Math.log10(x) : x) <= seen[1]);
       for (const one of this.shown()) {
-        if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || (this.off.get(one.label) ?? one.faint)) continue;
+        if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || this.off.get(one.label)) continue;
         const values = side === "x" ? one.x : one.y;
         for (let k = 0; k < values.length; k++) {
           const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;

@@ -1,6 +1,5 @@
 "use strict";
-// Appearance, contents, and opening what a link points to. The page can be read without any of it.
-document.documentElement.classList.add("js");
+// Appearance and contents. The page can be read without any of it.
 
 (() => {
   const themes = ["automatic", "light", "dark"];

@@ -153,8 +153,34 @@
     else report.save(`${name}.xlsx`, "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", report.workbook(rows.map((row) => row.map(number))));
   }
 
+  // Columns beyond those that fit are there when they are asked for, all of them or one by one.
+  const rowsOf = (table) => [table.tHead.rows[0], ...held(table).rows].filter((row) => !row.classList.contains("group"));
+  function showEvery(table, every) {
+    table.classList.toggle("every", every);
+    for (const row of rowsOf(table)) for (const cell of row.querySelectorAll(".shown")) cell.classList.remove("shown");
+    const button = table.closest(".tabled").querySelector("[data-every]");
+    button.textContent = every ? "Fewer columns" : "More columns";
+    button.setAttribute("aria-pressed", String(every));
+    if (table.id !== "runs-table") return;
+    for (const head of table.tHead.querySelectorAll(".extra")) document.querySelector(`[data-hides="${head.dataset.name}"]`).checked = every;
+  }
+  function show(table, place, shown) {
+    const extra = table.tHead.rows[0].cells[place].classList.contains("extra");
+    if (extra && table.classList.contains("every")) {
+      showEvery(table, false);
+      for (const row of rowsOf(table)) for (const cell of row.querySelectorAll(".extra")) cell.classList.add("shown");
+      for (const head of table.tHead.querySelectorAll(".extra")) document.querySelector(`[data-hides="${head.dataset.name}"]`).checked = true;
+    }
+    for (const row of rowsOf(table)) {
+      if (extra) row.cells[place].classList.toggle("shown", shown);
+      else row.cells[place].hidden = !shown;
+    }
+  }
+
   function sortable(table) {
     held(table);
+    const every = table.closest(".tabled")?.querySelector("[data-every]");
+    if (every) every.hidden = !table.tHead.querySelector(".extra");
     Array.from(table.tHead.rows[0].cells).forEach((head, column) => {
       const button = document.createElement("button");
       button.type = "button";
@@ -166,9 +192,10 @@
   }
 
   document.addEventListener("click", (event) => {
-    const button = event.target.closest?.("button[data-out], button[data-more]");
+    const button = event.target.closest?.("button[data-out], button[data-more], button[data-every]");
     const table = button?.closest(".tabled").querySelector("table");
     if (button?.dataset.out) handOut(table, button);
+    else if (button?.dataset.every !== undefined) showEvery(table, !table.classList.contains("every"));
     else if (button) {
       held(table).most *= 5;
       lay(table);
@@ -238,8 +265,9 @@
     if (!menu || !table) return;
     const names = Array.from(table.tHead.rows[0].cells, (cell) => cell.dataset.name);
     menu.addEventListener("change", (event) => {
-      const place = names.indexOf(event.target.dataset.hides);
-      for (const row of [table.tHead.rows[0], ...held(table).rows]) if (!row.classList.contains("group")) row.cells[place].hidden = !event.target.checked;
+      const { checked } = event.target;
+      show(table, names.indexOf(event.target.dataset.hides), checked);
+      event.target.checked = checked;
     });
     document.addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });
     menu.addEventListener("keydown", (event) => {

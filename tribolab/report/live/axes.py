@@ -49,7 +49,7 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
     series
         What is shown of the figure.
     """
-    mine = [one for one in series if one.panel == number and not one.faint]
+    mine = [one for one in series if one.panel == number]
     x = _scale(panel.x, _along(mine, panel.x), level=False)
     names = dict.fromkeys(str(y) for one in mine for y in one.y if isinstance(y, str))
     if names:

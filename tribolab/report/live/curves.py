@@ -1,4 +1,4 @@
-"""Measured and computed friction over speed: the answer's cards, the comparison, the model."""
+"""Measured and computed friction over speed: the answer's cards, and the model's parts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.wording import with_error
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, safe
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.model_records import ModelRow
@@ -91,7 +91,7 @@ def _card(
         title=f"{name}: friction over sliding speed",
         note="",
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
-        f"{speeds(map(_float, every))}, µ {span(map(_float, values))}.",
+        f"{speeds(map(float_of, every))}, µ {span(map(float_of, values))}.",
         panels=(Panel(SPEED, FRICTION),),
         series=tuple(series),
         one_load=True,
@@ -100,11 +100,13 @@ def _card(
     )
 
 
-def _float(value: Any) -> float | None:
+def float_of(value: Any) -> float | None:
+    """Return a number of a row."""
     return None if value is None else float(value)
 
 
-def _labels(curve: CurveRecord) -> dict[str, Any]:
+def labels_of(curve: CurveRecord) -> dict[str, Any]:
+    """Return what all series of a curve are of."""
     outcome = curve.outcome
     return {
         "surface": outcome.surface,
@@ -133,7 +135,7 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
         error=errors,
         told=words,
         goes_to=targets,
-        **_labels(curve),
+        **labels_of(curve),
     )
 
 
@@ -151,48 +153,18 @@ def _as_found(curve: CurveRecord) -> list[Series]:
             colour=_UNDECIDED,
             error=[row["friction_coefficient_sem"] for row in rows],
             told=[
-                f"without decisions by hand\nv = {plain_speed(_float(row['sliding_speed_m_s']))}\n"
-                f"µ = {with_error(_float(row['friction_coefficient']), _sem(row))}"
+                "without decisions by hand\n"
+                f"v = {plain_speed(float_of(row['sliding_speed_m_s']))}\n"
+                f"µ = {with_error(float_of(row['friction_coefficient']), _sem(row))}"
                 for row in rows
             ],
-            **(_labels(curve) | {"open": True}),
+            **(labels_of(curve) | {"open": True}),
         )
     ]
 
 
 def _sem(row: Row) -> float | None:
-    return _float(row["friction_coefficient_sem"])
-
-
-def _singly(known: Friction, curve: CurveRecord, colour: int, label: str) -> list[Series]:
-    """Return the points of each run, where there are repeats."""
-    names = [name for name in curve.outcome.run_names if known.points.get(name)]
-    if len(names) < 2:
-        return []
-    return [
-        Series(
-            label,
-            [point.speed for point in known.points[name]],
-            [point.mu for point in known.points[name]],
-            style="points",
-            colour=colour,
-            error=[point.within for point in known.points[name]],
-            told=[_told(point) for point in known.points[name]],
-            goes_to=(name,),
-            faint=True,
-            **(_labels(curve) | {"runs": (name,)}),
-        )
-        for name in names
-    ]
-
-
-def _told(point: RunPoint) -> str:
-    within = "not known" if point.within is None else f"± {number(point.within, 2)}"
-    return (
-        f"{point.run}\nv = {plain_speed(point.speed)}\nµ = {number(point.mu)}\n"
-        f"within the run: {within}\n{many(point.segments, 'segment')}, "
-        f"{point.effective_samples:.0f} independent samples"
-    )
+    return float_of(row["friction_coefficient_sem"])
 
 
 def _has_stress(model: ModelRow) -> bool:
@@ -209,7 +181,7 @@ def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
 def _modelled(
     known: Friction, model: ModelRow, curve: CurveRecord, colour: int, label: str
 ) -> list[Series]:
-    labels = _labels(curve)
+    labels = labels_of(curve)
     rows = _within(model.curve, curve)
     line = Series(
         label,
@@ -233,38 +205,6 @@ def _modelled(
         **labels,
     )
     return [band, line]
-
-
-def comparison(known: Friction) -> list[LiveFigure]:
-    """Return all surfaces and media in one figure, with every run."""
-    series: list[Series] = []
-    colours = places([*known.surfaces, *(c.outcome.surface for c in known.curves)])
-    for curve in known.curves:
-        outcome = curve.outcome
-        label = system_name(outcome.surface, outcome.medium, outcome.run_names)
-        colour = colours[outcome.surface]
-        series.append(_measured(known, curve, colour, label))
-        series += _singly(known, curve, colour, f"{label}: single runs")
-    if not series:
-        return []
-    every = [row["friction_coefficient"] for curve in known.curves for row in curve.points]
-    return [
-        LiveFigure(
-            id="curves-compared",
-            section="curves",
-            title="All surfaces and media at a load",
-            note="Filled: in a liquid; open: dry. Bars: standard error of the mean, between runs "
-            "where there are repeats (widened for few), else within the run. Single runs are "
-            "switched on in the legend.",
-            alt=f"Friction coefficient over sliding speed of {many(len(known.curves), 'curve')}, "
-            f"µ {span(map(_float, every))}.",
-            panels=(Panel(SPEED, FRICTION),),
-            series=tuple(series),
-            one_load=True,
-            width="whole",
-            height=440,
-        )
-    ]
 
 
 _PART = Axis("friction coefficient µ", log=True, decades=4)
@@ -291,8 +231,9 @@ def model_figures(known: Friction) -> list[LiveFigure]:
                     id=f"model-{safe(name)}",
                     section="model",
                     title=f"{name}: the model taken apart",
-                    note="Above: the model with the fitted shear stress, and what it is made of. "
-                    "Below: measured less model, with the standard error of the measured point.",
+                    note="Above: what the computed friction is made of; its sum stands beside the "
+                    "measured points on the first screen. Below: measured less model, with the "
+                    "standard error of the measured point.",
                     alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
                     "and the difference between measurement and model.",
                     panels=(
@@ -307,15 +248,11 @@ def model_figures(known: Friction) -> list[LiveFigure]:
 
 
 def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> list[Series]:
-    labels = _labels(curve)
+    labels = labels_of(curve)
     rows = _within(model.curve, curve)
     speed = [row["sliding_speed_m_s"] for row in rows]
     stressed = _has_stress(model)
     series = []
-    if stressed:
-        series.append(
-            Series("model", speed, [row["friction_coefficient"] for row in rows], **labels)
-        )
     for name, words, style, colour in _PARTS:
         if stressed or name == "friction_coefficient_couette":
             values = [row.get(name) for row in rows]

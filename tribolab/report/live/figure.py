@@ -68,8 +68,6 @@ class Series:
         Names of the runs in it: it goes when all of them are hidden.
     goes_to
         The run that a click on each point leads to; one for all of them, or one for each.
-    faint
-        Whether it is drawn small and starts switched off.
     open
         Whether its markers are open, as those of dry runs are.
     """
@@ -88,7 +86,6 @@ class Series:
     told: Sequence[str] = ()
     runs: Sequence[str] = ()
     goes_to: Sequence[str] = ()
-    faint: bool = False
     open: bool = False
 
 
@@ -127,6 +124,13 @@ class LiveFigure:
     width: Width = "half"
     height: int = 0
     rows: bool = False
+
+    @property
+    def loads(self) -> list[float]:
+        """Loads among which one is chosen, the lowest first; none where all are shown at once."""
+        if not self.one_load:
+            return []
+        return sorted({one.load for one in self.series if one.load is not None})
 
     @property
     def surface(self) -> str:

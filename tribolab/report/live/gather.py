@@ -12,7 +12,8 @@ from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 from tribolab.records.run_record import RunRecord
-from tribolab.report.live.curves import Friction, card_figures, comparison, model_figures
+from tribolab.report.live.compared import comparisons
+from tribolab.report.live.curves import Friction, card_figures, model_figures
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask, Missed, live_task
@@ -70,7 +71,7 @@ def live_figures(
         missed |= record.missed
     by_curve = {row.model.curve: row for row in models}
     known = Friction(curves, points, by_curve, bands, missed, surfaces)
-    made = [*card_figures(known), *comparison(known), *model_figures(known)]
+    made = [*card_figures(known), *comparisons(known), *model_figures(known)]
     return [
         *(shown(figure) for figure in made),
         *(figure for record in records for figure in record.figures),

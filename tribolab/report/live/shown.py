@@ -8,6 +8,7 @@ from tribolab.records.packed import deflated
 from tribolab.records.traces import as_text
 from tribolab.report.live.figure import LiveFigure, plain
 from tribolab.report.live.still import still
+from tribolab.words import force_text
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,8 @@ class ShownFigure:
         As of `LiveFigure`.
     surface, medium
         What all of it is of; "" where there are several.
+    loads
+        In words, if one of them is chosen.
     panels, labels
         How many there are, which tell how much room it takes before it is drawn.
     packed
@@ -37,6 +40,7 @@ class ShownFigure:
     rows: bool
     surface: str
     medium: str
+    loads: tuple[str, ...]
     panels: int
     labels: int
     packed: str
@@ -55,6 +59,7 @@ def shown(figure: LiveFigure) -> ShownFigure:
         figure.rows,
         figure.surface,
         figure.medium,
+        tuple(map(force_text, figure.loads)),
         len(figure.panels),
         len({one.label for one in figure.series if one.style != "band"}),
         deflated(as_text(plain(figure)).encode()),

@@ -73,11 +73,10 @@ def still(figure: LiveFigure) -> str:
 
 def _first(figure: LiveFigure) -> list[Series]:
     """Return what is seen at first, its values as plain numbers."""
-    loads = sorted({one.load for one in figure.series if one.load is not None})
     shown = []
     for one in figure.series:
-        other = figure.one_load and one.load is not None and one.load != loads[0]
-        if not (other or one.faint):
+        other = figure.one_load and one.load is not None and one.load != figure.loads[0]
+        if not other:
             shown.append(replace(one, **{name: plain(getattr(one, name)) for name in ("x", "y")}))
     return shown
 

@@ -1,0 +1,285 @@
+"""The page as a person reads it: by mouse, by keyboard alone, by finger, and on paper."""
+
+import os
+
+import pytest
+from chromium import BROWSER, chromium
+from printed import printed
+from report_pages import figures_of, made_with_repeats, page_of, sent
+
+FAILED = "the page could not be opened: no chromium was found"
+LOADS = ["31 N", "91 N"]
+SYSTEMS = ["Sb-R, glycerol", "Sb-S, dry"]
+ADDRESS = "decodeURIComponent(location.hash)"
+ROWS = "Array.from(document.querySelectorAll('#runs-table tr[data-run]'), row => row.dataset.run)"
+CHIP = "Array.from(document.querySelectorAll('#{} .loads [aria-pressed=true]'), b => b.textContent)"
+SPAN = "document.querySelector('#card-1 .plot')._fullLayout.xaxis.range.map(Number)"
+SHOWN = (
+    "document.querySelector('#{} .plot')._fullData.filter(one => one.visible === true)"
+    ".map(one => one.name)"
+)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    if not BROWSER:
+        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
+            pytest.fail(FAILED)
+        pytest.skip(FAILED)
+    with chromium(tmp_path_factory.mktemp("profile")) as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """Results of two conditions, the first at two loads and with repeats."""
+    return made_with_repeats(tmp_path_factory.mktemp("reading"))
+
+
+@pytest.fixture(scope="module", params=["among the results", "sent alone"])
+def results(request, whole, tmp_path_factory):
+    """The page as it lies among the results, and as it is sent: one file in an empty folder."""
+    return whole if request.param == "among the results" else sent(whole, tmp_path_factory)
+
+
+@pytest.fixture
+def page(browser, results):
+    """The page, asked afterwards whether it complained or wanted anything."""
+    with browser.page(results / "report.html") as opened:
+        opened.run("window.saved = []; report.save = (...file) => saved.push(file); 0")
+        yield opened
+        assert opened.console == opened.stopped == []
+        assert [url.split("#")[0] for url in opened.requests] == [
+            (results / "report.html").as_uri()
+        ]
+
+
+def drawn(page, figure="card-1"):
+    page.run(f"document.getElementById('{figure}').scrollIntoView({{behavior: 'instant'}})")
+    page.wait(f"document.querySelector('#{figure} .plot')._fullData !== undefined")
+
+
+def by_mouse(page, selector, shift=False):
+    page.click(selector, shift)
+
+
+def by_keyboard(page, selector, shift=False):
+    page.press(selector, shift=shift)
+
+
+WAYS = pytest.mark.parametrize("act", [by_mouse, by_keyboard])
+
+
+@pytest.mark.slow
+@WAYS
+def test_the_load_that_is_chosen_on_a_card_holds_for_all_figures_and_sentences(page, act):
+    for figure in ("card-1", "curves-compared"):
+        drawn(page, figure)
+        assert page.run(CHIP.format(figure)) == ["31 N"]
+    act(page, "#card-1 .loads button:last-child")
+    for figure in ("card-1", "curves-compared"):
+        assert page.run(CHIP.format(figure)) == ["91 N"]
+    assert page.run(ADDRESS) == "#load=91N"
+    seen = "Array.from(document.querySelectorAll('#answer .answer:first-child [data-at-load]'))"
+    assert page.run(f"{seen}.filter(p => p.offsetHeight).map(p => p.dataset.atLoad)") == ["91 N"]
+
+
+@pytest.mark.slow
+@WAYS
+def test_figures_switch_axes_hand_themselves_out_and_lead_to_runs(page, act):
+    drawn(page)
+    for axis in "xy":
+        act(page, f"#card-1 [data-scale={axis}]")
+        kind = f"document.querySelector('#card-1 .plot')._fullLayout.{axis}axis.type"
+        assert page.run(kind) == "linear"
+    for kind in ("csv", "svg", "png"):
+        act(page, f"#card-1 [data-act={kind}]")
+        page.wait(f"saved.some(file => file[0] === 'card-1.{kind}')")
+    act(page, "#runs-table tr[data-run] a")
+    page.wait("document.querySelector('#run-1').open && location.hash === '#run-1'")
+
+
+@pytest.mark.slow
+@WAYS
+def test_a_figure_fills_the_screen_and_comes_back(page, act):
+    drawn(page)
+    size = "['width', 'height'].map(s => document.querySelector('#card-1 .plot')._fullLayout[s])"
+    before = page.run(size)
+    act(page, "#card-1 [data-act=full]")
+    page.wait("document.fullscreenElement?.id === 'card-1'")
+    page.wait(f"{size}[1] > {2 * before[1]}")
+    act(page, "#card-1 [data-act=full]")
+    page.wait("document.fullscreenElement === null")
+    page.wait(f"{size}.join() === '{before[0]},{before[1]}'")
+
+
+@pytest.mark.slow
+def test_the_legend_switches_and_isolates_what_a_figure_shows(page):
+    drawn(page, "curves-runs")
+    assert page.run(SHOWN.format("curves-runs")) == [SYSTEMS[0]] * 2 + [SYSTEMS[1]] * 2
+    page.click("#curves-runs .legendtoggle")
+    page.wait(f"{SHOWN.format('curves-runs')}.length === 2")
+    assert page.run(SHOWN.format("curves-runs")) == [SYSTEMS[1]] * 2
+
+
+@pytest.mark.slow
+def test_a_figure_zooms_by_mouse_and_by_key_and_shows_all_again(page):
+    drawn(page)
+    first = page.run(SPAN)
+    x, y = page.middle("#card-1 .nsewdrag")
+    page.mouse([(x - 40, y), (x, y), (x + 40, y)])
+    page.wait(f"{SPAN}[0] > {first[0]}")
+    page.click("#card-1 [data-act=whole]")
+    assert page.run(SPAN) == pytest.approx(first)
+    page.tab_to("#card-1 .plot")
+    page.key("+", "+")
+    near = page.run(SPAN)
+    assert near[1] - near[0] == pytest.approx((first[1] - first[0]) / 2)
+    page.key("ArrowRight")
+    assert page.run(SPAN)[0] == pytest.approx(near[0] + 0.2 * (near[1] - near[0]))
+    page.key("Home")
+    assert page.run(SPAN) == pytest.approx(first)
+
+
+@pytest.mark.slow
+@WAYS
+def test_tables_sort_by_two_columns_and_are_taken_along(page, act):
+    head = "#runs-table th[data-name={}] button"
+    act(page, head.format("load"))
+    act(page, head.format("load"))
+    act(page, "#runs [data-every]")
+    act(page, head.format("surface"), shift=True)
+    assert page.run(ROWS) == ["b1", "a1", "a2", "c1", "c2"]
+    page.run("document.execCommand = () => true; navigator.clipboard.writeText = async t => {"
+             "window.copied = t }; 0")  # fmt: skip
+    act(page, "#runs [data-out=copy]")
+    page.wait("window.copied !== undefined")
+    lines = page.run("copied").splitlines()
+    assert lines[0].startswith("Run\tStatus\t") and len(lines) == 1 + 5
+    assert [line.split("\t")[0] for line in lines[1:]] == ["3", "1", "2", "4", "5"]
+    for kind in ("csv", "xlsx"):
+        act(page, f"#runs [data-out={kind}]")
+        page.wait(f"saved.some(file => file[0] === 'runs.{kind}')")
+
+
+@pytest.mark.slow
+@WAYS
+def test_columns_that_do_not_fit_come_when_asked_for_and_are_taken_along_anyway(page, act):
+    wide = "(box => box.scrollWidth > box.clientWidth)(document.querySelector('#runs .scroll'))"
+    names = "report.cells(document.getElementById('runs-table'))[0]"
+    every = page.run(names)
+    assert {"Surface", "Medium", "Segments", "Left out"} < set(every)
+    assert not page.run(wide)
+    surface = "document.querySelector('#runs-table [data-name=surface]').offsetWidth"
+    for seen in (True, False):
+        act(page, "#runs [data-every]")
+        assert (page.run(surface) > 0) == seen
+        assert page.run("document.querySelector('[data-hides=surface]').checked") == seen
+    assert page.run(names) == every
+
+
+@pytest.mark.slow
+def test_what_is_looked_at_is_chosen_by_keyboard_alone_and_stands_in_the_address(page):
+    drawn(page, "curves-runs")
+    page.press("#answer [data-view=surface]", "ArrowDown")
+    page.wait(f"{ADDRESS} === '#surface=Sb-R'")
+    assert page.run(ROWS) == ["a1", "a2", "b1"]
+    assert set(page.run(SHOWN.format("curves-runs"))) == {SYSTEMS[0]}
+    page.tab_to("#answer [data-view=mark]")
+    page.type("a2")
+    page.press("#runs-table tr[data-run=a1] input[data-hide]", " ")
+    assert page.run(ADDRESS) == "#surface=Sb-R&mark=a2&hide=a1"
+    page.press("#runs .filters [type=reset]")
+    assert page.run(ROWS) == ["a1", "a2", "b1", "c1", "c2"]
+    page.press("#runs .columns summary")
+    width = "document.querySelector('#runs-table [data-name=medium]').offsetWidth"
+    assert page.run(width) == 0, "a group says it"
+    for seen in (True, False):
+        page.press("[data-hides=medium]", " ")
+        assert (page.run(width) > 0) == seen
+    page.key("Escape")
+    assert not page.run("document.querySelector('#runs .columns').open")
+
+
+@pytest.mark.slow
+def test_a_finger_reads_a_point_goes_to_its_run_pans_and_zooms(browser, results):
+    with browser.page(results / "report.html", 400, 800, touch=True) as page:
+        drawn(page)
+        point = page.middle("#card-1 .points .point")
+        page.tap(point)
+        page.wait("document.querySelector('#card-1 .told') !== null")
+        assert "v = 1 µm/s" in page.run("document.querySelector('#card-1 .told').textContent")
+        assert page.run("location.hash") == "", "who cannot hover reads first"
+        page.tap(point)
+        page.wait("location.hash === '#run-1' && document.querySelector('#run-1 .nsewdrag')")
+        first = page.run(SPAN)
+        x, y = page.middle("#card-1 .nsewdrag")
+        page.touch([(x + step, y) for step in (0, -15, -30, -60)])
+        page.wait(f"{SPAN}[0] > {first[0]}")
+        moved = page.run(SPAN)
+        assert moved[1] - moved[0] == pytest.approx(first[1] - first[0])
+        steps = (20, 30, 45, 60)
+        page.touch([(x - step, y) for step in steps], [(x + step, y) for step in steps])
+        page.wait(f"{SPAN}[1] - {SPAN}[0] < {0.6 * (first[1] - first[0])}")
+        # up and down the page scrolls, and no figure is in the way
+        before = page.run("scrollY")
+        page.touch([(x, y + step) for step in (0, -30, -60, -120, -180)])
+        page.wait(f"scrollY > {before}")
+        assert page.run("document.documentElement.scrollWidth") <= 400
+        assert page.console == page.stopped == []
+
+
+@pytest.mark.slow
+def test_printed_at_once_the_page_has_its_figures_and_tables(browser, results, tmp_path):
+    address = (results / "report.html").as_uri()
+    sheets = printed(address, tmp_path)
+    answer = next(k for k, sheet in enumerate(sheets) if sheet.has("At which speed friction falls"))
+    assert answer <= 2, "two pages of answer"
+    first = "".join(sheet.text for sheet in sheets[:answer])
+    assert first.count("frictioncoefficientµ") == 2, "a figure on each card"
+    assert [sheet for sheet in sheets if len(sheet.text) < 40] == [], "none is blank"
+    text = "".join(sheet.text for sheet in sheets)
+    titles = [figure["title"].replace(" ", "") for figure in figures_of(results).values()]
+    assert all(title in text for title in titles if not title.endswith("overslidingspeed"))
+    assert all(name in text for name in ("a1", "a2", "b1", "c1", "c2")), "the table of runs"
+    assert "Everyrunindetail" not in text
+    everything = printed(f"{address}?print=all", tmp_path)
+    text = "".join(sheet.text for sheet in everything)
+    assert len(everything) > len(sheets) and "Everyrunindetail" in text
+    assert text.count("velocity(m/s)") == 5, "a trace of every run"
+
+
+@pytest.mark.slow
+def test_heads_of_tables_are_repeated_on_every_sheet(browser, whole, tmp_path):
+    row = r"<tr><td>cell</td></tr>" * 150
+    table = f"<div class='scroll'><table><thead><tr><th>Head here</th></tr></thead>{row}</table>"
+    file = tmp_path / "long.html"
+    file.write_text(
+        page_of(whole).replace('<div class="tabled"', f'{table}</div><div class="tabled"', 1)
+    )
+    sheets = printed(file.as_uri(), tmp_path)
+    with_rows = [sheet for sheet in sheets if sheet.has("cell" * 5)]
+    assert len(with_rows) > 1 and all(sheet.has("Head here") for sheet in with_rows)
+
+
+@pytest.mark.slow
+def test_the_first_screen_has_its_figures_before_any_script_is_done(browser, results):
+    with browser.page(results / "report.html", before="delete window.DecompressionStream") as page:
+        page.wait("document.querySelector('#card-1').textContent.includes('too old')")
+        pictures = page.run(
+            "Array.from(document.querySelectorAll('.cards .still'), one => [one.querySelectorAll("
+            "'.full, .open').length, one.getBoundingClientRect().height])"
+        )
+        assert len(pictures) == len(SYSTEMS)
+        assert all(marks > 0 and height > 150 for marks, height in pictures)
+
+
+def test_no_two_figures_show_the_same_numbers(whole, original):
+    for folder in (whole, original.parent / "results"):
+        seen = {}
+        for name, figure in figures_of(folder).items():
+            for one in figure["series"]:
+                if len(one["y"]) > 2:
+                    seen.setdefault((str(one["x"]), str(one["y"])), set()).add(name)
+        assert len(seen) > 4
+        assert [names for names in seen.values() if len(names) > 1] == []

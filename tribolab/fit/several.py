@@ -1,0 +1,223 @@
+"""Shear stresses of several surfaces, media or loads, fitted at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.errors import AnalysisError, shown
+from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.fit.shear_stress_fit import ShearStressFit
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    import pandas as pd
+
+    from tribolab.untyped import Arguments
+
+_OWN = ("sliding_speed", "segment", "wavenumber", "x", "point")  # dims of one curve or spectrum
+
+
+@dataclass(frozen=True, eq=False)
+class ShearStressFits:
+    """Fitted shear stresses of several conditions.
+
+    Parameters
+    ----------
+    fits
+        A `ShearStressFit` for each condition; None where nothing was measured.
+    """
+
+    fits: xr.DataArray
+
+    def sel(self, **labels: object) -> ShearStressFit | ShearStressFits:
+        """Return the fit of one condition, or the fits of some, as `xarray.DataArray.sel` does.
+
+        Raises
+        ------
+        AnalysisError
+            If nothing was measured under this condition.
+        """
+        chosen = self.fits.sel(labels, drop=True)
+        if chosen.dims:
+            return ShearStressFits(chosen)
+        fit = chosen.item()
+        if fit is None:
+            raise AnalysisError(f"nothing was measured at {_words(labels)}, so nothing is fitted")
+        return fit
+
+    def __iter__(self) -> Iterator[tuple[dict[Hashable, Any], ShearStressFit]]:
+        """Give the labels of each condition that was measured, and its fit."""
+        for place in np.ndindex(self.fits.shape):
+            one = self.fits[place]
+            if (fit := one.item()) is not None:
+                yield {dim: one[dim].item() if dim in one.coords else k
+                       for dim, k in zip(self.fits.dims, place, strict=True)}, fit  # fmt: skip
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return all numbers of `ShearStressFit.to_dataframe` over the conditions, with units."""
+        tables = np.empty(self.fits.shape, dtype=object)
+        about: dict[str, tuple[str, str]] = {}
+        for place in np.ndindex(self.fits.shape):
+            fit: ShearStressFit | None = self.fits[place].item()
+            table = None if fit is None else fit.to_dataframe()
+            tables[place] = {} if table is None else table["value"].to_dict()
+            if table is not None:
+                rows = zip(table.index, table["unit"], table["meaning"], strict=True)
+                about |= {name: (unit, meaning) for name, unit, meaning in rows}
+        numbers = {
+            name: (
+                self.fits.dims,
+                np.vectorize(lambda row, name=name: float(row.get(name, np.nan)))(tables),
+                {"units": unit, "long_name": meaning},
+            )
+            for name, (unit, meaning) in about.items()
+        }
+        return xr.Dataset(numbers, self.fits.coords)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the same as a table with a row for each condition that was measured."""
+        table = self.to_dataset().to_dataframe()
+        return table.dropna(how="all", subset=["shear_stress"])
+
+    @property
+    def curve(self) -> xr.Dataset:
+        """The computed curves, over the conditions and sliding_speed."""
+        parts = [
+            fit.curve.reset_coords().expand_dims({d: [v] for d, v in labels.items()})
+            for labels, fit in self
+        ]
+        merged = xr.merge(parts, join="outer", compat="no_conflicts", combine_attrs="drop")
+        order = {dim: self.fits[dim] for dim in self.fits.dims if dim in self.fits.coords}
+        return merged.reindex(order)
+
+    def _repr_html_(self) -> str:
+        """Shear stress, error and fit of each condition in a row; all numbers folded away."""
+        rows = "".join(
+            f"<tr><th>{_words(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
+            f"{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
+            f"{fit.degrees_of_freedom}</td><td>{fit.chi_square_p_value:.2g}</td></tr>"
+            for labels, fit in self
+        )
+        table = self.to_dataframe().to_html(float_format=lambda number: f"{number:.4g}")
+        return (
+            "<table><thead><tr><th></th><th>shear stress, standard error</th><th>chi-square of "
+            f"degrees of freedom</th><th>probability</th></tr></thead><tbody>{rows}</tbody></table>"
+            f"<details><summary>all numbers in SI</summary>{table}</details>"
+        )
+
+
+def fit_shear_stresses(
+    measured: xr.Dataset,
+    contact: LineContact,
+    psd: xr.Dataset,
+    viscosity: str | float | xr.DataArray,
+    load: str | float | xr.DataArray,
+    **options: Any,
+) -> ShearStressFits:
+    """Fit the shear stress of each surface, medium or load.
+
+    Parameters
+    ----------
+    measured
+        Measured curves over further dims beside ``sliding_speed``, as `measured_stribeck_curve`
+        with labels gives them, or `tribolab.read_results` of a folder (``.curves()``).
+    contact
+        As for `fit_shear_stress`.
+    psd, viscosity, load, **options
+        As for `fit_shear_stress`; what is another for each condition has that dim, e.g. spectra
+        over ``surface``, or a load [N/m] over ``normal_force``.
+
+    Returns
+    -------
+    ShearStressFits
+
+    Raises
+    ------
+    AnalysisError
+        If a fit is not possible; the condition is named.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from tribolab.lubrication.stribeck import stribeck_curve
+    >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
+    >>> psd = xr.Dataset({"psd_2d": (("surface", "wavenumber"), [c, 9 * c])},
+    ...                  {"wavenumber": q, "surface": ["fine", "coarse"]})
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> speed = np.geomspace(1e-6, 1e-2, 5)
+    >>> measured = stribeck_curve(contact, psd, 1.4, 310.0, "0.84 MPa", speed, cells=60)
+    >>> fits = fit_shear_stresses(measured, contact, psd, "1.4 Pa s", "310 N/m", cells=60)
+    >>> fits.to_dataset().shear_stress.round(-3).to_series().to_dict()
+    {'fine': 840000.0, 'coarse': 840000.0}
+    """
+    given: Arguments = {"measured": measured, "psd": psd, "viscosity": viscosity, "load": load}
+    given |= options
+    coords = _further(given)
+    if not coords:
+        raise AnalysisError(
+            "measured: there is one curve; fit_shear_stress fits it", function="fit_shear_stresses"
+        )
+    fits = np.empty(tuple(len(values) for values in coords.values()), dtype=object)
+    for place in np.ndindex(fits.shape):
+        labels = {dim: coords[dim][k] for dim, k in zip(coords, place, strict=True)}
+        mine = {name: _cut(value, labels) for name, value in given.items()}
+        if not bool(np.isfinite(mine["measured"]["friction_coefficient"]).any()):
+            continue
+        try:
+            fits[place] = fit_shear_stress(contact=contact, **mine)
+        except AnalysisError as error:
+            raise AnalysisError(f"{_words(labels)}: {error}") from error
+    return ShearStressFits(xr.DataArray(fits, coords, tuple(coords)))
+
+
+def _further(given: Mapping[str, object]) -> dict[Hashable, Any]:
+    """Return the dims beyond those of one curve, with their labels, those of the curves first."""
+    coords: dict[Hashable, Any] = {}
+    for value in given.values():
+        holder = _holder(value)
+        for dim in getattr(holder, "dims", ()):
+            if dim not in _OWN and dim not in coords:
+                known = dim in holder.coords
+                coords[dim] = holder[dim].values if known else np.arange(holder.sizes[dim])
+    return coords
+
+
+def _holder(value: Any) -> Any:
+    """Return the variable of a dataset that tells what it is over."""
+    for name in ("friction_coefficient", "psd_2d"):
+        if name in getattr(value, "data_vars", ()):
+            return value[name]
+    return value
+
+
+def _cut(value: Any, labels: Mapping[Hashable, Any]) -> Any:
+    """Return what belongs to one condition of an argument."""
+    mine = {dim: label for dim, label in labels.items() if dim in getattr(value, "dims", ())}
+    for dim, label in mine.items():
+        try:
+            value = value.sel({dim: label}, drop=True)
+        except KeyError:
+            raise AnalysisError(
+                f"there are measured curves of {shown(str(dim))} '{shown(str(label))}', and "
+                "another argument has none",
+                function="fit_shear_stresses",
+            ) from None
+    if isinstance(value, xr.DataArray) and not value.dims:
+        return value.item()
+    if isinstance(value, xr.Dataset) and "psd_2d" in value:
+        return value.dropna("wavenumber", how="all", subset=["psd_2d"])
+    if isinstance(value, xr.Dataset) and "friction_coefficient" in value and mine:
+        over = value["friction_coefficient"].dims[0]
+        return value.dropna(over, how="all", subset=["friction_coefficient"])
+    return value
+
+
+def _words(labels: Mapping[Any, object]) -> str:
+    return ", ".join(f"{dim} {label}" for dim, label in labels.items())

@@ -1,0 +1,92 @@
+"""Measured curves of several surfaces, media or loads on common axes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.stamping import stamp
+
+Label = str | float
+_TOLERANCE = 0.1  # of speeds that belong together, as for `measured_stribeck_curve`
+
+
+def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> xr.Dataset:
+    """Put measured curves on common axes.
+
+    Parameters
+    ----------
+    curves
+        Each curve (sliding_speed) with what tells it from the others, the same dims for all:
+        names such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N].
+
+    Returns
+    -------
+    xarray.Dataset
+        Everything over these dims and sliding_speed; NaN where nothing was measured. Names keep
+        their order, numbers ascend. Speeds that differ by no more than a tenth stand together at
+        their geometric mean; ``measured_speed`` is each curve's own.
+
+    Examples
+    --------
+    >>> dry, wet = (
+    ...     xr.Dataset({"friction_coefficient": ("sliding_speed", mu)}, {"sliding_speed": v})
+    ...     for v, mu in (([1.0e-3, 1e-2], [0.9, 0.8]), ([1.01e-3], [0.3]))
+    ... )
+    >>> curves = joined_curves([(dry, {"medium": "dry"}), (wet, {"medium": "water"})])
+    >>> mu = curves.friction_coefficient
+    >>> mu.sel(medium="dry").values - mu.sel(medium="water").values
+    array([0.6, nan])
+    """
+    speeds, places = _common_speeds([data["sliding_speed"].to_numpy() for data, _ in curves])
+    dims = list(curves[0][1]) if curves else []
+    axes = {dim: _axis([labels[dim] for _, labels in curves]) for dim in dims}
+    shape = (*(axis.size for axis in axes.values()), speeds.size)
+    values: dict[str, np.ndarray] = {}
+    for (data, labels), place in zip(curves, places, strict=True):
+        at: tuple[int | np.ndarray, ...] = tuple(_place(axes[dim], labels[dim]) for dim in dims)
+        at = (*at, place)
+        own = data.reset_coords().assign(measured_speed=data["sliding_speed"])
+        for name, variable in own.data_vars.items():
+            if variable.dims == ("sliding_speed",) and name != "sliding_speed":
+                values.setdefault(str(name), np.full(shape, np.nan))[at] = variable.to_numpy()
+    whole = (*dims, "sliding_speed")
+    return stamp(
+        xr.Dataset(
+            {name: (whole, one) for name, one in values.items()}, axes | {"sliding_speed": speeds}
+        )
+    )
+
+
+def _axis(labels: Sequence[Label]) -> np.ndarray:
+    """Names in their order, or numbers in theirs, each once; what is not known is the last."""
+    if any(isinstance(label, str) for label in labels):
+        return np.array(list(dict.fromkeys(labels)), dtype=object)
+    return np.unique(np.array(labels, dtype=float))
+
+
+def _place(axis: np.ndarray, label: Label) -> int:
+    if axis.dtype == object or isinstance(label, str):
+        names: list[Label] = axis.tolist()
+        return names.index(label)
+    return axis.size - 1 if np.isnan(label) else int(np.searchsorted(axis, label))
+
+
+def _common_speeds(given: Sequence[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Speeds of all curves [m/s], and the places of each curve's among them."""
+    owner = np.repeat(np.arange(len(given)), [speeds.size for speeds in given])
+    every = np.concatenate([*given, np.zeros(0)])
+    place = np.zeros(every.size, dtype=int)
+    group: list[int] = []
+    groups: list[list[int]] = []
+    for index in np.argsort(every, kind="stable"):
+        near = group and np.log(every[index] / every[group[-1]]) <= np.log1p(_TOLERANCE)
+        if not near or owner[index] in owner[group]:  # a curve's own speeds stay apart
+            group = []
+            groups.append(group)
+        group.append(int(index))
+        place[index] = len(groups) - 1
+    means = np.array([np.exp(np.log(every[members]).mean()) for members in groups])
+    return means, [place[owner == number] for number in range(len(given))]

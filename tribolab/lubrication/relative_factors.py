@@ -1,0 +1,56 @@
+"""Flow and friction factors over the separation in units of the roughness, surfaces compared."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from tribolab.lubrication.factors import flow_factors
+from tribolab.several import over_dims
+from tribolab.stamping import stamp
+
+OVER = "relative_separation"
+
+
+@over_dims(psd=("wavenumber",))
+def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> xr.Dataset:
+    """Flow and friction factors over the mean separation in units of the rms roughness.
+
+    Parameters
+    ----------
+    psd
+        Power spectrum with ``psd_2d`` [m4] (wavenumber); a spectrum with a further dim, such as
+        ``surface``, gives factors with that dim.
+    over
+        Mean separation over rms roughness [1].
+    **options
+        Further arguments of `flow_factors`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The five factors of `flow_factors` [1] and ``separation`` [m], over
+        ``relative_separation`` [1].
+
+    Raises
+    ------
+    AnalysisError
+        As `flow_factors`, and if a separation is not above zero.
+
+    Examples
+    --------
+    >>> from tribolab.studies import xu2026
+    >>> found = relative_flow_factors(xu2026.psd(["Smooth", "Sb-S"], points=301), [0.5, 2.0])
+    >>> found.pressure_flow_factor.dims
+    ('surface', 'relative_separation')
+    >>> found.pressure_flow_factor.values.round(2).tolist()
+    [[0.25, 0.76], [0.25, 0.76]]
+    """
+    table = flow_factors(psd, **options)
+    relative = np.atleast_1d(np.asarray(over, float))
+    separation = xr.DataArray(relative * table.rms_roughness, dims=OVER, coords={OVER: relative})
+    found = table.dataset(separation).reset_coords("separation")
+    return stamp(found, **{k: v for k, v in found.attrs.items() if not k.endswith("_m")})

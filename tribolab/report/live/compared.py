@@ -1,0 +1,154 @@
+"""Surfaces, media and loads beside each other: how friction falls, and every single run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import Row, number_of
+from tribolab.records.wording import with_error
+from tribolab.report.live.curves import (
+    FRICTION,
+    SPEED,
+    Friction,
+    float_of,
+    labels_of,
+    system_name,
+    systems,
+)
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places
+from tribolab.report.live.points import RunPoint
+from tribolab.report.plain import plain_speed
+from tribolab.words import force_text, many, number, span
+
+_SHARE = Axis("µ over its highest value")
+_HALF = 0.5
+
+
+def comparisons(known: Friction) -> list[LiveFigure]:
+    """Return all curves relative to their highest friction, and all single runs of repeats.
+
+    What a curve itself is stands in its card and is not repeated.
+    """
+    colours = places([*known.surfaces, *(curve.outcome.surface for curve in known.curves)])
+    figures = [_falling(known, colours), _every_run(known, colours)]
+    return [figure for figure in figures if figure is not None]
+
+
+def _falling(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
+    """Return at which speed each curve leaves its highest friction."""
+    alone = len(systems(known)) == 1  # then loads are compared, and have the colours
+    loads = places(force_text(curve.outcome.normal_force) for curve in known.curves)
+    series = []
+    for curve in known.curves:
+        outcome = curve.outcome
+        load = force_text(outcome.normal_force)
+        name = load if alone else system_name(outcome.surface, outcome.medium, outcome.run_names)
+        one = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
+        series += [one] if one else []
+    if len(series) < 2:
+        return None
+    speeds = [v for one in series for v in one.x]
+    half = Series("half of it", [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6)
+    return LiveFigure(
+        id="curves-compared",
+        section="curves",
+        title="At which speed friction falls",
+        note="Each curve over its own highest friction, so that plateaus of different height stand "
+        "at 1. Filled: in a liquid; open: dry. Bars: the standard error of the point.",
+        alt=f"Friction relative to its highest value over sliding speed of "
+        f"{many(len(series), 'curve')}.",
+        panels=(Panel(SPEED, _SHARE),),
+        series=(*series, half),
+        one_load=not alone,
+        width="whole",
+        height=440,
+    )
+
+
+def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
+    rows = [row for row in curve.points if _mu(row) is not None and row["sliding_speed_m_s"]]
+    top = max((_mu(row) or 0.0 for row in rows), default=0.0)
+    if len(rows) < 2 or not top > 0:
+        return None
+    shares = [(_mu(row) or 0.0) / top for row in rows]
+    errors = [None if error is None else error / top for error in map(_sem, rows)]
+    return Series(
+        label,
+        [row["sliding_speed_m_s"] for row in rows],
+        shares,
+        style="points",
+        colour=colour,
+        error=errors,
+        told=[
+            f"v = {plain_speed(float_of(row['sliding_speed_m_s']))}\n"
+            f"{with_error(share, error)} of {number(top)}, the highest µ"
+            for row, share, error in zip(rows, shares, errors, strict=True)
+        ],
+        goes_to=curve.outcome.run_names[:1],
+        **labels_of(curve),
+    )
+
+
+def _mu(row: Row) -> float | None:
+    return float_of(number_of(row, "friction_coefficient"))
+
+
+def _sem(row: Row) -> float | None:
+    return float_of(number_of(row, "friction_coefficient_sem"))
+
+
+def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
+    """Return all runs of the curves that have repeats; of the others the curve is the run."""
+    series: list[Series] = []
+    for curve in known.curves:
+        outcome = curve.outcome
+        label = system_name(outcome.surface, outcome.medium, outcome.run_names)
+        names = [name for name in outcome.run_names if known.points.get(name)]
+        if len(names) > 1:
+            series += [
+                _run(name, known.points[name], label, colours[outcome.surface], labels_of(curve))
+                for name in names
+            ]
+    if not series:
+        return None
+    return LiveFigure(
+        id="curves-runs",
+        section="curves",
+        title="Every run of the repeats",
+        note="A point for each run and speed. Filled: in a liquid; open: dry. Bars: the standard "
+        "error within the run, which says nothing of the next run.",
+        alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
+        f"µ {span(mu for one in series for mu in one.y)}.",
+        panels=(Panel(SPEED, FRICTION),),
+        series=tuple(series),
+        one_load=True,
+        width="whole",
+        height=440,
+    )
+
+
+def _run(
+    name: str, points: Sequence[RunPoint], label: str, colour: int, labels: Mapping[str, Any]
+) -> Series:
+    return Series(
+        label,
+        [point.speed for point in points],
+        [point.mu for point in points],
+        style="points",
+        colour=colour,
+        error=[point.within for point in points],
+        told=[_told(point) for point in points],
+        goes_to=(name,),
+        **(dict(labels) | {"runs": (name,)}),
+    )
+
+
+def _told(point: RunPoint) -> str:
+    within = "not known" if point.within is None else f"± {number(point.within, 2)}"
+    return (
+        f"{point.run}\nv = {plain_speed(point.speed)}\nµ = {number(point.mu)}\n"
+        f"within the run: {within}\n{many(point.segments, 'segment')}, "
+        f"{point.effective_samples:.0f} independent samples"
+    )

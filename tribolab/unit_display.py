@@ -1,0 +1,57 @@
+"""Units in what Jupyter shows of a dataset before anything is opened."""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_VARIABLE = re.compile(
+    r"(<div class='xr-var-name'><span[^>]*>(.*?)</span></div><div class='xr-var-dims'>.*?</div>"
+    r"<div class='xr-var-dtype'>)"
+)
+_NAME = re.compile(r"(<div class='xr-(?:array|obj)-name'>)(.*?)(</div>)")
+_HOMES = (("xarray.core.dataset", "Dataset"), ("xarray.core.dataarray", "DataArray"))
+
+
+def show_units() -> None:
+    """Let the notebook that runs this name units beside the variables of xarray.
+
+    Without a notebook nothing happens. `import tribolab` does it.
+    """
+    from IPython.core.getipython import get_ipython
+
+    shell = get_ipython()
+    formatters = getattr(getattr(shell, "display_formatter", None), "formatters", {})
+    if "text/html" in formatters:
+        for home, name in _HOMES:  # by name: xarray is not loaded for it
+            formatters["text/html"].for_type_by_name(home, name, with_units)
+
+
+def with_units(data: xr.Dataset | xr.DataArray) -> str:
+    """Return xarray's own HTML, each variable that has a unit with it before its type.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0], {"units": "N"})})
+    >>> "N, float64" in run._repr_html_(), "N, float64" in with_units(run)
+    (False, True)
+    """
+    text = data._repr_html_()
+    own = getattr(data, "data_vars", {})
+
+    def beside(found: re.Match[str]) -> str:
+        name = html.unescape(found[2])
+        holder: Any = data.coords if name in data.coords else own
+        unit = holder[name].attrs.get("units") if name in holder else None
+        return f"{found[1]}{html.escape(str(unit))}, " if unit else found[1]
+
+    text = _VARIABLE.sub(beside, text)
+    unit = "" if hasattr(data, "data_vars") else data.attrs.get("units", "")
+    if unit:
+        text = _NAME.sub(rf"\g<1>\g<2> [{html.escape(str(unit))}]\g<3>", text, count=1)
+    return text
