@@ -6,6 +6,9 @@ import pytest
 from chromium import BROWSER, chromium
 from printed import printed
 from report_pages import figures_of, made_with_repeats, page_of, sent
+from reporting import made_outcome
+
+from tribolab.report.results import write_report
 
 FAILED = "the page could not be opened: no chromium was found"
 LOADS = ["31 N", "91 N"]
@@ -247,6 +250,22 @@ def test_printed_at_once_the_page_has_its_figures_and_tables(browser, results, t
     text = "".join(sheet.text for sheet in everything)
     assert len(everything) > len(sheets) and "Everyrunindetail" in text
     assert text.count("velocity(m/s)") == 5, "a trace of every run"
+
+
+@pytest.mark.slow
+def test_the_answer_of_many_conditions_fits_on_two_sheets(tmp_path):
+    systems = [(surface, medium) for surface in "ABCDEF" for medium in ("oil", "water", "dry")]
+    runs = [(f"{s}{m}{load:g}", s, m, load, 0.8) for s, m in systems for load in (31.0, 91.0)]
+    outcome = made_outcome(tmp_path, runs, "Many", samples=60)
+    write_report(outcome)
+    sheets = printed((outcome.folder / "report.html").as_uri(), tmp_path)
+    answer = next(k for k, sheet in enumerate(sheets) if sheet.has("At which speed friction falls"))
+    assert answer <= 2
+    text = "".join(sheet.text for sheet in sheets[:answer])
+    assert text.count("frictioncoefficientµ") == text.count("31N:") == len(systems)
+    # a figure of very many rows is made to fit, with its heading above it
+    [rows] = [sheet for sheet in sheets if sheet.has("Steady or stick-slip at every speed")]
+    assert all(rows.has(f"{s}, {m}, {load} N") for s, m in systems for load in (31, 91))
 
 
 @pytest.mark.slow

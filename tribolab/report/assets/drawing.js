@@ -7,7 +7,9 @@ report.drawing = (() => {
   const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
   const DASHES = { line: "solid", dashed: "dash", dotted: "dot", dashdot: "dashdot" };
   const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
-  const PAPER = 680, HALF = 316; // widths that fit between the margins of A4, of one and of two beside each other
+  const PAPER = 680, HALF = 316, THIRD = 206; // widths that fit between the margins of A4, of one to three beside each other
+  const SHEET = 850; // height that fits, with a heading above it
+  const FEW = 6; // cards that two sheets hold, two beside each other; more are printed smaller
   const AROUND = 70; // above and below the axes: a legend that is no taller than these leaves most to the plot
   const still = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
   let library = null;
@@ -23,13 +25,16 @@ report.drawing = (() => {
   const force = (load) => `${Math.abs(load) >= 100 ? Math.round(load) : Number(load.toPrecision(3))} N`; // as words.force_text has it
   const axis = (kind, panel) => kind + (panel ? panel + 1 : "");
 
+  const isOneOfMany = (place) => place.closest(".cards")?.childElementCount > FEW;
+
   // Known before a figure is drawn: what is below does not move when it comes.
   function heightOf(place, width, panels, labels) {
     const columns = Math.max(1, Math.floor(width / 210));
     const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
-    const low = place.closest(".cards") ? 175 : 240;
+    const low = isOneOfMany(place) ? 130 : place.closest(".cards") ? 175 : 240;
     const squeezed = state.printing && panels === 1 && !("rows" in place.dataset); // not where names stand below each other
-    const plot = squeezed ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1];
+    const own = squeezed ? Math.min(low, heights[0]) : heights[Math.min(panels, heights.length) - 1];
+    const plot = state.printing ? Math.min(own, SHEET) : own;
     const whole = labels > 1 ? Math.ceil(labels / columns) * 21 : 0, legend = state.printing ? whole : Math.min(whole, plot - AROUND);
     return { plot, legend, cut: legend < whole };
   }
@@ -57,5 +62,5 @@ report.drawing = (() => {
     return library;
   }
 
-  return { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, still, state, isDark, text, lines, force, axis, heightOf, plotly };
+  return { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf, plotly };
 })();

@@ -1,7 +1,7 @@
 "use strict";
 // One figure as the library wants it: from what it shows, its traces and its layout.
 report.Picture = (() => {
-  const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
+  const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
 
   return class {
     constructor(figure) {
@@ -163,7 +163,7 @@ report.Picture = (() => {
 
     get width() {
       if (this.full) return innerWidth - 24;
-      if (state.printing) return this.place.closest(".grid, .cards") ? HALF : PAPER;
+      if (state.printing) return isOneOfMany(this.place) ? THIRD : this.place.closest(".grid, .cards") ? HALF : PAPER;
       return Math.max(260, this.place.clientWidth);
     }
 

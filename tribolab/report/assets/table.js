@@ -99,8 +99,10 @@
   document.body.append(tip);
   let explained = null;
   function explain(event) {
-    explained = event.target.closest?.("[data-tip]") ?? null;
-    if (explained) place();
+    const head = event.target.closest?.("[data-tip]");
+    if (!head) return;
+    explained = head;
+    place();
   }
   function place() {
     tip.textContent = explained.dataset.tip;
@@ -111,7 +113,10 @@
   }
   const silent = () => { tip.hidden = true; };
   for (const kind of ["mouseover", "focusin"]) document.addEventListener(kind, explain);
-  for (const kind of ["mouseout", "focusout"]) document.addEventListener(kind, silent);
+  document.addEventListener("focusout", silent);
+  document.addEventListener("mouseout", () => { // what has the focus keeps its tip
+    if (!explained?.contains(document.activeElement)) silent();
+  });
   document.addEventListener("scroll", () => { // to give the focus may scroll, and the tip goes with it
     if (tip.hidden) return;
     if (explained.contains(document.activeElement)) place();
