@@ -31,6 +31,8 @@ _PUBLIC = {
     "decide": "tribolab.friction.decisions.decide",
     "friction_coefficient": "tribolab.friction.coefficient.coefficient",
     "half_loops": "tribolab.friction.coefficient.half_loops",
+    "friction_per_cycle": "tribolab.friction.coefficient.cycles",
+    "static_friction": "tribolab.friction.coefficient.static",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
@@ -92,6 +94,8 @@ __all__ = [
     "Decision",
     "decide",
     "friction_coefficient",
+    "friction_per_cycle",
+    "static_friction",
     "half_loops",
     "stick_slip",
     "stick_slip_curve",
@@ -162,7 +166,9 @@ if TYPE_CHECKING:
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress
     from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.coefficient.cycles import friction_per_cycle
     from tribolab.friction.coefficient.half_loops import half_loops
+    from tribolab.friction.coefficient.static import static_friction
     from tribolab.friction.decisions.decide import decide
     from tribolab.friction.decisions.decision import Decision
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve

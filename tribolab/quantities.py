@@ -77,6 +77,23 @@ _ROWS = [
     ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
     ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
+    # static friction
+    ("start_of_sliding", "", "1", "number of the segment that starts"),
+    ("static_friction_coefficient", "\\mu_s", "1", "static friction coefficient"),
+    ("breakaway_force", "F_s", "N", "friction force at which sliding starts"),
+    ("static_excess", "", "1", "static over sliding friction, less 1"),
+    ("peak", "", "1", "whether the start stands out of the sliding that follows"),
+    ("breakaway_time", "t_s", "s", "moment of the highest friction at a start"),
+    ("waiting_time", "t_w", "s", "time of rest under load before a start"),
+    # cycles of a contact that slides to and fro
+    (
+        "friction_coefficient_energy",
+        "\\mu_E",
+        "1",
+        "friction coefficient by the loop's energy",
+    ),
+    ("mean_friction_coefficient", "\\mu", "1", "friction coefficient, mean over the cycles"),
+    ("stroke_length", "L", "m", "length of a stroke"),
     ("omitted_reason", "", "1", "why a stretch is no segment"),
     ("zero_from", "", "1", "what the zero of the friction signal rests on"),
     ("half_loop", "", "N", "half the difference of the friction force between the strokes"),

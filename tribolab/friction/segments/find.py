@@ -21,6 +21,7 @@ from tribolab.friction.segments.stretches import (
     velocity_source,
 )
 from tribolab.pieces import one_by_one
+from tribolab.friction.segments.strokes import middle_parts
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
@@ -40,8 +41,9 @@ def find_segments(
     max_gap: str | float | None = None,
     rest_speed: str | float | None = None,
     position_range: tuple[str | float, str | float] | None = None,
+    stroke_middle: str | float | None = None,
 ) -> xr.Dataset:
-    """Find the segments of a run that slide at constant speed.
+    """Find the segments of a run that slide at constant speed, or the middles of its strokes.
 
     Parameters
     ----------
@@ -69,6 +71,11 @@ def find_segments(
         is covered so slowly.
     position_range
         Only the part of each trimmed segment between these positions [m] counts.
+    stroke_middle
+        For a slider that moves to and fro and never at constant speed, as a crank drives it: each
+        stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
+        a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
+        constant speed applies then.
 
     Returns
     -------
@@ -121,6 +128,8 @@ def find_segments(
     limits = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source = velocity_source(run)
+    if stroke_middle is not None:
+        return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
         stretches = from_velocity(run, limits, gap)
     elif source == "position":
@@ -181,12 +190,33 @@ def _share(trim: str | float) -> float:
     return share
 
 
+def _of_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) -> xr.Dataset:
+    """Return the middle part of each stroke as a segment."""
+    if not 0 < share <= 1:
+        raise AnalysisError(
+            f"stroke_middle: a share above 0 and at most 1 is wanted, e.g. '40 %'; got {share:g}"
+        )
+    strokes, begin, end, count = middle_parts(run, share)
+    time = run["time"].values
+    start, stop = time[strokes.first[:-1]], time[strokes.first[1:]]
+    good = strokes.usual & (count >= min_samples)
+    kind = np.where(good, "constant", np.where(strokes.usual, "too short", "ramp"))
+    speed = strokes.way * share * strokes.length / np.where(end > begin, end - begin, np.inf)
+    stretches = [
+        Stretch(float(a), float(b), str(what), float(v))
+        for a, b, what, v in zip(start, stop, kind, speed, strict=True)
+    ]
+    result = measured(run, stretches, source, 0.0, None, (begin[good], end[good]))
+    return result.assign_attrs(stroke_middle=share)
+
+
 def measured(
     run: xr.Dataset,
     stretches: list[Stretch],
     source: str,
     trim: float,
     position_range: tuple[str | float, str | float] | None,
+    trimmed: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> xr.Dataset:
     """Return the stretches of a run as `find_segments` does: trimmed, with speed and distance.
 
@@ -200,6 +230,8 @@ def measured(
         What tells the speed, as the attribute ``velocity_source`` says it.
     trim, position_range
         As for `find_segments`.
+    trimmed
+        First and last moment of the part of each segment that counts, if `trim` does not tell.
     """
     kept = [s for s in stretches if s.kind == "constant"]
     left = [s for s in stretches if s.kind != "constant"]
@@ -208,6 +240,8 @@ def measured(
     velocity = np.array([s.velocity for s in kept], float)
     trimmed_start = start + trim * (stop - start)
     trimmed_stop = stop - trim * (stop - start)
+    if trimmed is not None:
+        trimmed_start, trimmed_stop = trimmed
     settings = {"trim": trim, "velocity_source": source}
     if position_range is not None:
         low, high = sorted(to_si(x, "m", name="position_range") for x in position_range)

@@ -1,0 +1,98 @@
+"""The peak at each start of sliding: its height, its error, and the rest before it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tribolab as tl
+from tribolab.errors import AnalysisError
+
+SLIDING, LOAD, SPEED, RATE = 0.4, 20.0, 2e-3, 200.0
+
+
+def starts(excess, rests, *, noise=0.05, offset=0.0, width=0.15, seed=0, load_late=0.0):
+    """Strokes by turns both ways; each start overshoots by its excess for `width` seconds.
+
+    While it rests the force stays as it was, then climbs within 0.3 s to the static force and
+    falls exponentially to that of sliding.
+    """
+    rng = np.random.default_rng(seed)
+    velocity, force, load, before = [], [], [], 0.0
+    for k, (more, rest) in enumerate(zip(excess, rests, strict=True)):
+        way = 1.0 if k % 2 == 0 else -1.0
+        still, climb, slide = (int(RATE * s) for s in (rest, 0.3, 6.0))
+        pressed = np.ones(still)
+        pressed[: int(RATE * load_late) if k == 0 else 0] = 0.0
+        after = np.arange(slide) / RATE
+        top = way * SLIDING * (1 + more)
+        rises = np.linspace(before, top, climb, endpoint=False)
+        falls = way * SLIDING * (1 + more * np.exp(-after / width))
+        force += [np.full(still, before) * pressed, rises, falls]
+        velocity += [np.zeros(still + climb), np.full(slide, way * SPEED)]
+        load += [pressed, np.ones(climb + slide)]
+        before = way * SLIDING
+    v, f, n = (np.concatenate(parts) for parts in (velocity, force, load))
+    time = np.arange(v.size) / RATE
+    friction = LOAD * f + offset + noise * rng.standard_normal(v.size)
+    data = {"sliding_velocity": v, "friction_force": friction, "normal_force": LOAD * n}
+    return xr.Dataset({k: ("time", x) for k, x in data.items()}, {"time": time})
+
+
+def measured(run):
+    return tl.static_friction(run, tl.find_segments(run))
+
+
+def test_the_peak_is_found_within_its_error():
+    off = []
+    for seed in range(12):
+        excess = np.array([0.5, 0.2, 0.35, 0.15, 0.6, 0.3])
+        table = measured(starts(excess, [3.0] * 6, offset=2.0, seed=seed))
+        truth = SLIDING * (1 + excess)
+        error = table["static_friction_coefficient_sem"].values
+        off.append((table["static_friction_coefficient"].values - truth) / truth)
+        assert (error < 0.02 * truth).all() and (table["peak"].values == 1).all()
+    # the top of a spike is rounded off by the parabola, by no more than this
+    assert np.abs(np.mean(off)) < 0.02 and np.abs(off).max() < 0.05
+
+
+def test_noise_does_not_raise_the_peak():
+    tables = [measured(starts([0.0] * 6, [3.0] * 6, noise=0.4, seed=seed)) for seed in range(10)]
+    height = np.concatenate([t["static_friction_coefficient"].values for t in tables])
+    error = np.concatenate([t["static_friction_coefficient_sem"].values for t in tables])
+    assert np.mean(np.abs(height - SLIDING) < 3 * error) > 0.9
+    assert np.mean(height / SLIDING - 1) < 0.05  # the highest reading lies 0.15 above
+    assert np.mean([t["peak"].values for t in tables]) < 0.1
+
+
+def test_the_time_of_rest_is_that_under_load():
+    table = measured(starts([0.3] * 4, [5.0, 1.0, 2.0, 8.0], load_late=3.0))
+    # it still rests while the force climbs
+    assert table["waiting_time"].values == pytest.approx([2.3, 1.3, 2.3, 8.3], abs=0.2)
+    assert table["direction"].values.tolist() == [1, -1, 1, -1]
+    assert table["sliding_speed"].values == pytest.approx([SPEED] * 4, rel=1e-3)
+
+
+def test_breakaway_force_and_excess_belong_together():
+    table = measured(starts([0.3] * 4, [3.0] * 4, noise=0.01))
+    force, mu = table["breakaway_force"], table["static_friction_coefficient"]
+    assert (force / mu).values == pytest.approx([LOAD] * 4, rel=1e-6)
+    assert table["static_excess"].values == pytest.approx([0.3] * 4, abs=0.02)
+    assert table["breakaway_force"].attrs["units"] == "N"
+
+
+def test_a_coefficient_alone_will_do():
+    run = starts([0.3] * 4, [3.0] * 4, noise=0.01)
+    ratio = run["friction_force"] / LOAD
+    alone = run.drop_vars(["friction_force", "normal_force"]).assign(friction_coefficient=ratio)
+    table = measured(alone)
+    assert table["static_excess"].values == pytest.approx([0.3] * 4, abs=0.02)
+    assert "breakaway_force" not in table
+
+
+def test_a_result_of_another_run_is_refused():
+    run = starts([0.3] * 4, [3.0] * 4)
+    segments = tl.find_segments(run)
+    with pytest.raises(AnalysisError, match="outside this run"):
+        tl.static_friction(run.isel(time=slice(0, 900)), segments)

@@ -1,0 +1,191 @@
+"""Strokes of a slider that moves to and fro, whatever the shape of its motion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, Cure
+from tribolab.friction.segments.stretches import finite, name_of
+
+HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
+LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
+SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
+FEWEST = 3  # strokes, the cut ones at both ends left out
+
+
+class Strokes(NamedTuple):
+    """Whole strokes of a run, in the order of time.
+
+    Parameters
+    ----------
+    first
+        Number of the first sample of each stroke, and of the sample after the last (stroke + 1).
+    way
+        +1 or -1 (stroke).
+    length
+        Distance between the turns [m] (stroke).
+    place
+        Share of its stroke that each sample has gone (time); NaN outside of whole strokes.
+    usual
+        Whether a stroke is as long as strokes are, and not a twitch at a turn (stroke).
+    """
+
+    first: np.ndarray
+    way: np.ndarray
+    length: np.ndarray
+    place: np.ndarray
+    usual: np.ndarray
+
+    @property
+    def number(self) -> np.ndarray:
+        """Number of each sample's stroke (time), -1 outside."""
+        size = self.place.size
+        index = np.searchsorted(self.first, np.arange(size), side="right") - 1
+        return np.where((index >= 0) & (index < self.way.size), index, -1)
+
+
+def find_strokes(run: xr.Dataset) -> Strokes:
+    """Find the strokes of a run that slides to and fro.
+
+    Parameters
+    ----------
+    run
+        With ``position`` or ``sliding_velocity`` (time).
+
+    Returns
+    -------
+    Strokes
+        From turn to turn: of the position, where it has come back by a quarter of its range; else
+        of the velocity, where it has another sign at a fifth of its usual size.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has neither, or fewer than three whole strokes.
+    """
+    if "position" in run and np.isfinite(run["position"].values).any():
+        first, way, place, length = _by_position(run)
+    elif "sliding_velocity" in run and np.isfinite(run["sliding_velocity"].values).any():
+        first, way, place, length = _by_velocity(run)
+    else:
+        raise AnalysisError(
+            "strokes are told by the position or the signed velocity, and the run has neither",
+            where=name_of(run),
+        )
+    if way.size < FEWEST:
+        raise AnalysisError(
+            f"the slider does not move to and fro: {way.size} whole strokes, {FEWEST} are needed",
+            where=name_of(run),
+            cure=Cure(*["for plateaus of constant speed use find_segments"] * 2),
+        )
+    usual = length > SHORTEST * np.median(length)
+    return Strokes(first, way, length, place, usual)
+
+
+_Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def _held(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Whether a signal was last above `high` (+1) or below `low` (-1); 0 before either."""
+    state = np.where(values > high, 1, np.where(values < low, -1, 0))
+    place = np.where(state != 0, np.arange(state.size), 0)
+    return state[np.maximum.accumulate(place)]
+
+
+def _filled(run: xr.Dataset, name: str) -> np.ndarray:
+    """Return a signal with its gaps bridged by straight lines."""
+    time, values = finite(run, name)
+    if time.size == run.sizes["time"]:
+        return values
+    return np.interp(run["time"].values, time, values)
+
+
+def _by_position(run: xr.Dataset) -> _Parts:
+    position = _filled(run, "position")
+    low, high = np.percentile(position, [1, 99])
+    middle, half = (low + high) / 2, (0.5 - HYSTERESIS) * (high - low)
+    state = _held(position, middle - half, middle + half)
+    change = np.flatnonzero(np.diff(state)) + 1
+    change = change[state[change - 1] != 0]
+    if change.size < 2 or not high > low:
+        return _nothing(position.size)
+    # between two changes the position is on one side: its farthest point is a turn
+    side = state[change[:-1]]
+    inside = np.arange(change[0], change[-1])
+    part = np.repeat(np.arange(side.size), np.diff(change))
+    height = position[inside] * side[part]
+    top = np.maximum.reduceat(height, change[:-1] - change[0])
+    at = inside[height == top[part]]
+    turn = at[np.searchsorted(at, change[:-1])]
+    way = -side[:-1]
+    length = np.abs(np.diff(position[turn]))
+    place = np.full(position.size, np.nan)
+    samples = np.arange(turn[0], turn[-1])
+    number = np.repeat(np.arange(way.size), np.diff(turn))
+    gone = (position[samples] - position[turn[number]]) * way[number]
+    place[samples] = gone / length[number]
+    return turn, way, place, length
+
+
+def _by_velocity(run: xr.Dataset) -> _Parts:
+    time, velocity = run["time"].values, _filled(run, "sliding_velocity")
+    limit = LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
+    state = _held(velocity, -limit, limit)
+    change = np.flatnonzero(np.diff(state)) + 1
+    change = change[state[change - 1] != 0]
+    if change.size < 2:
+        return _nothing(velocity.size)
+    # the turn lies where the velocity last had the sign of before
+    same = np.flatnonzero(velocity[:-1] * velocity[1:] <= 0) + 1
+    turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
+    way = np.sign(state[np.minimum(turn[1:] - 1, state.size - 1)]).astype(int)
+    steps = np.diff(time) * (velocity[1:] + velocity[:-1]) / 2
+    path = np.concatenate([[0.0], np.cumsum(steps)])
+    length = np.abs(np.diff(path[turn]))
+    place = np.full(velocity.size, np.nan)
+    samples = np.arange(turn[0], turn[-1])
+    number = np.repeat(np.arange(way.size), np.diff(turn))
+    gone = np.abs(path[samples] - path[turn[number]])
+    place[samples] = gone / np.where(length[number] > 0, length[number], np.inf)
+    return turn, way, place, length
+
+
+def _nothing(size: int) -> _Parts:
+    none = np.empty(0, dtype=int)
+    return none, none, np.full(size, np.nan), np.empty(0)
+
+
+def middle_parts(
+    run: xr.Dataset, share: float
+) -> tuple[Strokes, np.ndarray, np.ndarray, np.ndarray]:
+    """Return the strokes of a run, and where the middle share of the length of each lies.
+
+    Parameters
+    ----------
+    run
+        As for `find_strokes`.
+    share
+        Of the length of each stroke, about its middle.
+
+    Returns
+    -------
+    tuple
+        The strokes; time of the first and of the last sample of each middle part [s] (stroke), NaN
+        where it holds none; and the number of its samples (stroke).
+    """
+    strokes = find_strokes(run)
+    inside = np.flatnonzero(np.abs(strokes.place - 0.5) <= share / 2)
+    number = strokes.number[inside]
+    each = np.arange(strokes.way.size)
+    first = np.searchsorted(number, each, side="left")
+    last = np.searchsorted(number, each, side="right") - 1
+    count = last - first + 1
+    time = run["time"].values
+    ends = [
+        np.where(count > 0, time[inside[place.clip(0, max(inside.size - 1, 0))]], np.nan)
+        for place in (first, last)
+    ]
+    return strokes, ends[0], ends[1], count
