@@ -20,8 +20,8 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
-from tribolab.pieces import one_by_one
 from tribolab.friction.segments.strokes import middle_parts
+from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
