@@ -122,7 +122,10 @@ def _read(run: PlannedRun) -> xr.Dataset:
 
     files = list(run.files)
     return read_run(
-        files if len(files) > 1 else files[0], run.instrument, clock_shift=run.clock_shift
+        files if len(files) > 1 else files[0],
+        run.instrument,
+        clock_shift=run.clock_shift,
+        zero=run.zero,
     )
 
 

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
-from tribolab.campaign.settings.fields import Patterns, PositiveSi, ShareOfEnds, Si, Spread, Text
+from tribolab.campaign.settings.fields import (
+    MiddleShare,
+    Patterns,
+    PositiveSi,
+    ShareOfEnds,
+    Si,
+    Spread,
+    Text,
+    ZeroPlace,
+)
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.untyped import Arguments, Json
 
@@ -104,6 +113,9 @@ class Segments(Table):
         tuple[Annotated[float, Si("m", "5 mm")], Annotated[float, Si("m", "32 mm")]] | None
     ) = None
     """Only this part of the track is used."""
+    stroke_middle: MiddleShare | None = None
+    """Of a slider that moves to and fro without a constant speed: the share of each stroke's length
+    about its middle that is used, e.g. "40 %"."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
     """Relative difference of speed that separates two neighbouring plateaus."""
     drift: Annotated[float, Field(gt=0)] | None = None
@@ -178,6 +190,9 @@ class RunEntry(Table):
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
     zero_uncertainty: Spread | None = None
     """Standard uncertainty of the zero of the friction force, where no stroke or rest tells it."""
+    zero: ZeroPlace | None = None
+    """Where the zero of the friction signal is read: "first 200 samples", "first 2 s",
+    "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
     cycles: bool = False

@@ -17,6 +17,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from tribolab.errors import UnitError, shown
+from tribolab.io.zero_reading import parse_zero
 from tribolab.units import to_si
 
 _NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
@@ -120,6 +121,34 @@ ShareOfEnds = Annotated[
         }
     ),
 ]
+
+
+# a part of something, up to all of it
+MiddleShare = Annotated[
+    float,
+    Field(gt=0, le=1),
+    BeforeValidator(_share),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "exclusiveMinimum": 0, "maximum": 1},
+                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["40 %"]},
+            ]
+        }
+    ),
+]
+
+
+def _place(value: Any) -> str:
+    """Check where a zero is read."""
+    try:
+        parse_zero(str(value))
+    except UnitError as error:
+        raise ValueError(str(error)) from error
+    return str(value)
+
+
+ZeroPlace = Annotated[str, BeforeValidator(_place), Field(examples=["first 2 s"])]
 
 
 def _spread(value: Any) -> str:

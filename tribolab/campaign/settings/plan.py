@@ -15,6 +15,7 @@ from tribolab.campaign.settings.problems import Problem, message
 from tribolab.campaign.settings.review import REVIEW_FILE, review_beside
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
+from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of, sha256_of_file
 from tribolab.untyped import Arguments, Json
 
@@ -44,6 +45,8 @@ class PlannedRun:
         Between the clocks of the two logs [s], if the campaign file gives it.
     instrument
         Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
+    zero
+        Where the zero of the friction signal is read, see `tribolab.read`.
     segments, friction
         Arguments of `find_segments` and `friction_coefficient`.
     quality
@@ -65,6 +68,7 @@ class PlannedRun:
     sliding_speed: float | None
     clock_shift: float | None
     instrument: str | None
+    zero: str | None = None
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
@@ -248,15 +252,28 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     return group_files(files, instrument)
 
 
+def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, Path | None]:
+    """Where the zero is read, and the blank run that it is read from, in the raw folder."""
+    if entry.zero is None:
+        return None, None
+    name = parse_zero(entry.zero).file
+    if not name:
+        return entry.zero, None
+    blank = campaign.raw / name
+    return f"file {blank}", blank
+
+
 def _settings(campaign: Campaign, entry: RunEntry) -> Json:
     """Return what all runs of an entry share, with its checksum."""
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
+    zero, blank = _zero(campaign, entry)
     settings: Json = {
         "surface": entry.surface or "",
         "medium": entry.medium or "",
         "normal_force": entry.normal_force,
         "sliding_speed": entry.sliding_speed,
         "clock_shift": entry.clock_shift,
+        "zero": zero,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
@@ -266,6 +283,8 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "dialect": instrument and sha256_of_dialect(instrument),
         "cycles": entry.cycles,
         "clock_shift": entry.clock_shift,
+        "zero": zero,
+        "blank": blank and (sha256_of_file(blank) if blank.is_file() else ""),
     }
     return settings | {
         "instrument": instrument,
