@@ -64,6 +64,15 @@ def drawings():
     stresses = xr.Dataset(
         {k: ("sliding_speed", v) for k, v in over_speed.items()}, {"sliding_speed": [1e-5, 1e-3]}
     )
+    at_starts = {"static_friction_coefficient": [0.5, 0.6], "waiting_time": [1e-5, 1e-4]}
+    at_starts |= {"static_friction_coefficient_sem": [0.01, 0.01], "peak": [1, 0]}
+    at_starts |= {"friction_coefficient": [0.4, 0.4]}
+    starts = xr.Dataset({k: ("start_of_sliding", v) for k, v in at_starts.items()})
+    turns = xr.Dataset(
+        {"friction_coefficient": ("cycle", [0.3, 0.31]), "time": ("cycle", [0.5, 1.5])}
+        | {"mean_friction_coefficient": 0.305, "trend": 0.01, "trend_p_value": 1e-3},
+        {"cycle": [1, 2]},
+    )
     return {
         "stribeck": (lambda **k: plot.stribeck(curve, model, **k), 1, "model"),
         "half_loop": (lambda **k: plot.half_loop(friction, **k), 1, "half loop"),
@@ -109,6 +118,8 @@ def drawings():
         "shear_stress_over_speed": (
             lambda **k: plot.shear_stress_over_speed({"Sb-S": stresses}, **k), 1, "Sb-S",
         ),
+        "static_friction": (lambda **k: plot.static_friction({"dry": starts}, **k), 1, "dry"),
+        "cycles": (lambda **k: plot.cycles({"dry": turns}, **k), 1, "dry"),
         "slip_traces": (
             lambda **k: plot.slip_traces([plot.Trace("dry", trace, places, None, 0)], **k),
             1,

@@ -36,6 +36,7 @@ def starts(excess, rests, *, noise=0.05, offset=0.0, width=0.15, seed=0, load_la
     v, f, n = (np.concatenate(parts) for parts in (velocity, force, load))
     time = np.arange(v.size) / RATE
     friction = LOAD * f + offset + noise * rng.standard_normal(v.size)
+    v = v + 1e-3 * SPEED * rng.standard_normal(v.size)
     data = {"sliding_velocity": v, "friction_force": friction, "normal_force": LOAD * n}
     return xr.Dataset({k: ("time", x) for k, x in data.items()}, {"time": time})
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from tribolab.plot.slip_spectra import slip_spectra
     from tribolab.plot.spectrogram import slip_spectrogram
     from tribolab.plot.spread import friction_spread
+    from tribolab.plot.starts import cycles, static_friction
     from tribolab.plot.stick_slip import Trace, slip_events, slip_traces, waveform_map
     from tribolab.plot.style import figure_data, paper_style, save, svg
     from tribolab.plot.surfaces import modulus, spectra, viscoelastic
@@ -41,6 +42,7 @@ _HOMES = {
     "contact_area": "tribolab.plot.contact",
     "contact_separation": "tribolab.plot.contact",
     "effective_work": "tribolab.plot.contact",
+    "cycles": "tribolab.plot.starts",
     "envelope": "tribolab.plot.reduce",
     "figure_data": "tribolab.plot.style",
     "film_profiles": "tribolab.plot.film",
@@ -63,6 +65,7 @@ _HOMES = {
     "slip_spectrogram": "tribolab.plot.spectrogram",
     "slip_traces": "tribolab.plot.stick_slip",
     "spectra": "tribolab.plot.surfaces",
+    "static_friction": "tribolab.plot.starts",
     "stribeck": "tribolab.plot.curves",
     "strokes": "tribolab.plot.panels",
     "svg": "tribolab.plot.style",
@@ -77,6 +80,7 @@ __all__ = [
     "contact_area",
     "contact_separation",
     "effective_work",
+    "cycles",
     "envelope",
     "figure_data",
     "film_profiles",
@@ -100,6 +104,7 @@ __all__ = [
     "shear_stress_over_speed",
     "spectra",
     "strokes",
+    "static_friction",
     "stribeck",
     "svg",
     "trace",

@@ -224,6 +224,8 @@ def _peak(
         height, error, moment = float(near.mean()), noise / np.sqrt(near.size), float(when.mean())
     else:
         height, error, moment = _parabola(when, near, noise)
+    if not clear:  # where the start ends and sliding begins is not seen
+        error = float(np.hypot(error, height - sliding))
     error = float(np.hypot(error, sem))
     return moment, height, error, bool(clear and height - sliding > CLEAR * error)
 
