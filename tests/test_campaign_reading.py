@@ -160,6 +160,17 @@ def test_signals_of_real_files_come_back_as_they_were_read(shared_data, tmp_path
     assert earlier_signals(earlier._replace(mark="")) is None
 
 
+@pytest.mark.parametrize(
+    ("zero", "kept"), [("first 2 s", True), ("1 s to 3 s", True), ("file blank.csv", False)]
+)
+def test_signals_whose_zero_another_file_tells_are_read_again(shared_data, tmp_path, zero, kept):
+    run = planned(shared_data / FILES[0])
+    read = analysis._read(run).assign_attrs(zeros_read={"friction_force": zero})
+    marked = read.copy()
+    note_reading(run, read, marked)
+    assert (READING in marked.attrs) == kept
+
+
 def test_the_mark_tells_files_their_order_and_settings_apart(tmp_path):
     a, b = Path("a.csv"), Path("b.csv")
     sums = (("a", "1", 1), ("b", "2", 1))
@@ -174,6 +185,7 @@ def test_the_mark_tells_files_their_order_and_settings_apart(tmp_path):
     assert mark_of(planned(a, b), (sums[0], ("b", "", 1))) == ""
 
 
+@pytest.mark.slow
 def test_a_run_with_a_log_that_may_come_or_change_unnoticed_is_read_again(original, tmp_path):
     force, motion = (
         original.parent / f"raw/friction/{RUNS[0]}_{log}.csv" for log in ("force", "motion")

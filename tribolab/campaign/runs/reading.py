@@ -16,6 +16,7 @@ from tribolab.campaign.runs.sources import sources_of
 from tribolab.campaign.store.catalogue import fingerprint_of
 from tribolab.campaign.store.data_files import read_data
 from tribolab.errors import ReadError
+from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of
 
 if TYPE_CHECKING:
@@ -57,9 +58,7 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
         The same with what the analysis added.
     """
     attrs = read.attrs
-    # a log that lies beside the files but is not named among them may come, go and change
-    alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
-    if not alone or "companion_missing" in attrs:
+    if not _is_of_its_files(run, attrs):
         return
     mark = mark_of(run, sources_of(run, attrs))
     changed = {"attrs": _changed(attrs, marked.attrs)} | {
@@ -70,6 +69,16 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
     }
     if mark and _is_plain(changed):
         marked.attrs[READING] = {"mark": mark} | changed
+
+
+def _is_of_its_files(run: PlannedRun, attrs: Json) -> bool:
+    """Whether nothing was read but the files that are known to belong to the run.
+
+    A second log that is not named among them may come, go and change; so may a blank run.
+    """
+    alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
+    blank = any(parse_zero(str(text)).file for text in attrs.get("zeros_read", {}).values())
+    return alone and not blank and "companion_missing" not in attrs
 
 
 def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
