@@ -117,6 +117,7 @@ def test_without_adhesion_it_is_perssons_area_at_every_magnification(surface):
     np.testing.assert_allclose(result.area_enhancement, 1, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", SURFACES)
 def test_vanishing_adhesion_goes_over_into_none(surface):
     psd = reference_psd(surface)
@@ -168,6 +169,7 @@ def test_area_is_proportional_to_small_pressure_without_pull_off():
 # --- the solution is the one, and it is converged ---------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("surface", "pressure", "work"),
     [
@@ -211,6 +213,7 @@ def test_relaxation_goes_in_circles_where_adhesion_lifts_off_and_the_root_does_n
     assert float(adhesion(20.0, psd, E_STAR, 30e-3).balance_residual) < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", SURFACES)
 def test_doubling_the_nodes_changes_areas_by_less_than_a_thousandth(surface):
     pressure = np.array([1e3, NOMINAL])
@@ -262,6 +265,7 @@ SPECTRA = st.builds(
 )
 
 
+@pytest.mark.slow
 @properties
 @given(psd=SPECTRA, modulus=st.floats(1e5, 1e9), work=st.floats(1e-3, 0.3))
 def test_area_grows_with_pressure_and_falls_with_magnification(psd, modulus, work):
@@ -283,6 +287,7 @@ def test_area_grows_with_the_work_of_adhesion(psd, pressure, work):
     assert (np.diff(areas) >= -1e-9).all()
 
 
+@pytest.mark.slow
 @properties
 @given(force=st.floats(1e-3, 1e3), length=st.floats(1e-3, 1e3))
 def test_only_ratios_of_force_and_length_count(force, length):

@@ -19,6 +19,7 @@ from tribolab.errors import AnalysisError
 PRESSURE = np.array([0.0417e6, 0.1e6])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", SURFACES)
 def test_values_and_bounds_are_those_at_the_works_of_adhesion_stated(surface):
     psd = reference_psd(surface)

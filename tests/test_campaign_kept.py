@@ -92,6 +92,7 @@ def test_the_earlier_result_of_a_run_is_kept_and_says_so(campaign, spoil, log):
     assert report["verdict"]["status"] == "complete"
 
 
+@pytest.mark.slow
 def test_a_run_is_dropped_when_the_campaign_names_it_no_more(campaign):
     text = campaign.read_text("utf-8")
     emptied(first_log(campaign))
@@ -101,6 +102,7 @@ def test_a_run_is_dropped_when_the_campaign_names_it_no_more(campaign):
     assert RUNS[0] not in [run.name for run in outcome.runs] and not outcome.kept
 
 
+@pytest.mark.slow
 def test_a_raw_file_that_was_renamed_is_not_counted_twice(campaign):
     for log in ("force", "motion"):
         path = first_log(campaign, log)
@@ -168,6 +170,7 @@ def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
     store.close()
 
 
+@pytest.mark.slow
 def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):
     text = campaign.read_text("utf-8")
     campaign.write_text(text.replace("trim = 0.10", "min_duration = '9 h'"), "utf-8")
@@ -175,6 +178,7 @@ def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):
     assert not any(run.kept for run in outcome.runs) and outcome.segments == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "what"),
     [
@@ -195,6 +199,7 @@ def test_inputs_inside_the_results_are_refused_before_work_starts(campaign, old,
         run_campaign(campaign, jobs=1)
 
 
+@pytest.mark.slow
 def test_notes_in_the_results_survive_and_are_named(campaign):
     note = campaign.parent / "results" / "notes.md"
     note.write_text("squeal at 1 mm/s")

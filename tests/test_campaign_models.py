@@ -60,6 +60,7 @@ def outcome(campaign):
     return made
 
 
+@pytest.mark.slow
 def test_the_readme_names_every_table_and_folder_that_a_run_leaves(outcome):
     readme = (SCHEMA.parents[1] / "README.md").read_text("utf-8")
     listed = readme.partition("What the demo leaves behind")[2].partition("\n## ")[0]
@@ -208,6 +209,7 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     assert "liquid: Newtonian" in rows[1].not_varied
 
 
+@pytest.mark.slow
 def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, monkeypatch):
     text = campaign.read_text("utf-8")
     file = campaign.with_name("radius.toml")
@@ -237,6 +239,7 @@ def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, mo
     assert found == f"no model: {model.reason}"
 
 
+@pytest.mark.slow
 def test_speeds_that_are_not_in_order_are_refused_with_the_line(campaign):
     with pytest.raises(ConfigError, match=r"slowest and fastest: 1 m/s is not below 0\.1 m/s"):
         changed(campaign, '\n[model]\nslowest = "1 m/s"\n', "order")

@@ -100,6 +100,7 @@ def said(outcome, severity):
 # what a campaign with scans gives
 
 
+@pytest.mark.slow
 def test_spectrum_contact_and_adhesion_stand_in_one_file(outcome):
     [surface] = outcome.surfaces
     assert surface.done and surface.data_file == "data/surface_Sb-R.nc"
@@ -109,6 +110,7 @@ def test_spectrum_contact_and_adhesion_stand_in_one_file(outcome):
     assert scan in {name for name, _, _ in outcome.sources}
 
 
+@pytest.mark.slow
 def test_roughness_and_contact_area_hold_the_truth_between_their_bounds(outcome, campaign):
     found = compare_surfaces(outcome, campaign.parent)
     assert found.quantity.tolist() == ["rms_roughness_m", "rms_slope", "contact_area_ratio"]
@@ -116,6 +118,7 @@ def test_roughness_and_contact_area_hold_the_truth_between_their_bounds(outcome,
     assert (found.relative_difference.abs() < 0.15).all()  # one scan only
 
 
+@pytest.mark.slow
 def test_spectrum_reaches_from_the_hertz_width_to_a_nanometre(outcome):
     psd = read_netcdf(outcome.folder / "data/surface_Sb-R.nc", group="psd")
     width = 2 * xu2026.system.half_width(31.0)
@@ -123,6 +126,7 @@ def test_spectrum_reaches_from_the_hertz_width_to_a_nanometre(outcome):
     assert float(psd.wavenumber[-1]) == pytest.approx(np.pi / 1e-9, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_tables_say_what_the_functions_give(outcome):
     tables = {
         name: pd.read_csv(outcome.folder / f"tables/{name}.csv")
@@ -143,6 +147,7 @@ def test_tables_say_what_the_functions_give(outcome):
     assert adhesion.contact_area_ratio["dry"] > adhesion.contact_area_ratio["glycerol"]
 
 
+@pytest.mark.slow
 def test_every_value_lies_between_its_bounds(outcome):
     for name in ("roughness", "contact", "adhesion"):
         table = pd.read_csv(outcome.folder / f"tables/{name}.csv")
@@ -178,6 +183,7 @@ def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_pat
     np.testing.assert_allclose(found.contact_width[0], widths, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome, tmp_path):
     report = json.loads((outcome.folder / "report.json").read_text())
     jsonschema.validate(report, json.loads(SCHEMA.read_text()))
@@ -206,6 +212,7 @@ def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome, tmp
     assert "names no <code>[[surface]]</code>" in page
 
 
+@pytest.mark.slow
 def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_path):
     mine = copied(campaign, tmp_path)
     again = run_campaign(mine, jobs=1)
@@ -246,6 +253,7 @@ def test_one_bad_scan_is_left_out_and_named(tmp_path, profiles):
     assert found.sizes["scan"] == 2
 
 
+@pytest.mark.slow
 def test_a_bad_scan_stands_in_the_findings_and_fails_the_command(campaign, outcome, tmp_path):
     mine = copied(campaign, tmp_path)
     (mine.parent / "raw/profiles/sb-r_2.csv").write_text("x [mm],z [um]\n1,2\n")

@@ -144,6 +144,7 @@ def test_a_check_that_raises_is_a_row_and_exit_code_3(monkeypatch, scans, shared
     assert "ZeroDivisionError: division by zero" in row["message"]
 
 
+@pytest.mark.slow
 def test_a_quick_answer_waits_for_no_library_that_it_does_not_need(shared_data):
     file = shared_data / "rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt"
     code = (

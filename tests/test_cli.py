@@ -68,6 +68,7 @@ def test_help_needs_none_of_the_heavy_libraries():
     assert done.stderr == "[]"
 
 
+@pytest.mark.slow
 def test_a_run_says_in_few_lines_what_came_out(analysed):
     campaign, done = analysed
     assert (done.returncode, done.stderr) == (0, "")
@@ -82,6 +83,7 @@ def test_a_run_says_in_few_lines_what_came_out(analysed):
     json.loads((results / "report.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_a_second_run_leaves_everything_as_it_is(campaign):
     before = fingerprint(campaign.parent)
     done = tribolab_command("run", campaign.parent, "--jobs", 1)
@@ -113,6 +115,7 @@ def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_pa
     assert (tmp_path / "new" / "report.html").is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
@@ -141,6 +144,7 @@ def test_what_goes_wrong_gives_its_exit_code_and_the_cure(analysed, words, code,
     assert fingerprint(campaign.parent) == before
 
 
+@pytest.mark.slow
 def test_a_mistake_in_the_campaign_file_is_one_line(campaign):
     text = campaign.read_text(encoding="utf-8")
     campaign.write_text(text.replace("viscosity", "viscosty"), encoding="utf-8")
@@ -153,6 +157,7 @@ def test_a_mistake_in_the_campaign_file_is_one_line(campaign):
     )
 
 
+@pytest.mark.slow
 def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, capsys, campaign):
     def broken(*words, **options):
         raise ZeroDivisionError("float division by zero")
@@ -169,6 +174,7 @@ def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, ca
         cli.app(["run", str(campaign), "--debug"])
 
 
+@pytest.mark.slow
 def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path):
     text = campaign.read_text(encoding="utf-8")
     text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
@@ -178,6 +184,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
     assert "no segment of constant speed was found" in done.stderr
 
 
+@pytest.mark.slow
 def test_info_shows_how_files_are_understood_and_goes_on_after_a_bad_one(analysed):
     campaign = analysed[0]
     good = campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv"

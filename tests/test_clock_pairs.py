@@ -146,6 +146,7 @@ def test_a_companion_of_another_day_is_refused_until_the_shift_is_stated(tmp_pat
     assert "sliding_velocity" not in tl.read(file, pair=False)
 
 
+@pytest.mark.slow
 def test_a_companion_of_the_run_before_fails_and_asks_for_the_shift(tmp_path):
     _, file = files(tmp_path, "2026-03-02T09:32:31")
     run = tl.read(file)

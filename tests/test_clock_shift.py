@@ -56,6 +56,7 @@ def logs(
     return time, force, shown, np.interp(moved, knots, velocities)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shift", [-1.7, 0.0, 1.234])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("rate", [100.0, 1000.0])
@@ -64,6 +65,7 @@ def test_without_build_up_the_error_is_below_two_samples(shift, sign, rate):
     assert abs(estimate.shift - shift) < 2.0 / rate
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("build_up", [3e-6, 1e-5, 3e-5])
 def test_friction_that_builds_up_over_a_distance_does_not_delay_the_shift(build_up, seed):
@@ -72,6 +74,7 @@ def test_friction_that_builds_up_over_a_distance_does_not_delay_the_shift(build_
     assert abs(estimate.shift - 1.234) < 3 * estimate.uncertainty
 
 
+@pytest.mark.slow
 def test_reversals_without_rest_tell_the_shift():
     strokes = tuple((way * 1e-3, 3.0) for way in (1, -1) * 10)
     estimate = estimate_clock_shift(*logs(strokes=strokes, rest=0.0, build_up=1e-5))
@@ -108,6 +111,7 @@ def test_speed_changes_after_one_start_do_not_mislead():
     assert abs(estimate.shift - 1.234) < 3 * estimate.uncertainty
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("kind", ["noise", "random walk", "drift", "constant"])
 def test_a_force_that_does_not_follow_the_motion_tells_nothing(kind, seed):
@@ -136,6 +140,7 @@ def test_a_table_that_does_not_move_tells_nothing():
     assert estimate_clock_shift(time, force, shown, np.zeros_like(velocity)) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("surface", "medium", "load"),
     [("Smooth", "glycerol", 31.0), ("Smooth", "glycerol", 211.0), ("Sb-S", "glycerol", 91.0)]

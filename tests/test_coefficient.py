@@ -173,6 +173,7 @@ def test_no_offset_to_be_had_is_said():
     assert friction.attrs["offset"].startswith("none: no pair")
 
 
+@pytest.mark.slow
 def test_error_of_the_half_loop_covers_the_truth():
     # offset, white noise on the force; the mean of each stroke wanders by itself
     errors = []
@@ -349,6 +350,7 @@ def test_offset_that_cannot_be_had_is_an_error():
 runs = st.integers(0, 10_000).map(lambda seed: small(seed=seed, scatter=0.01))
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @given(runs)
 def test_reversing_velocity_and_force_changes_nothing(run):
@@ -358,6 +360,7 @@ def test_reversing_velocity_and_force_changes_nothing(run):
         assert b[name].values == pytest.approx(a[name].values, rel=1e-9)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @given(runs, st.floats(1e-3, 1e3))
 def test_scaling_both_forces_changes_nothing(run, scale):
@@ -367,6 +370,7 @@ def test_scaling_both_forces_changes_nothing(run, scale):
     assert b["half_loop"].values == pytest.approx(scale * a["half_loop"].values)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @given(runs, st.floats(-50, 50))
 def test_constant_offset_leaves_paired_forces_unchanged(run, offset):
@@ -378,6 +382,7 @@ def test_constant_offset_leaves_paired_forces_unchanged(run, offset):
     assert b["friction_coefficient"].values == pytest.approx(a["friction_coefficient"].values)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @given(runs, st.floats(0, 1e4))
 def test_shifting_time_leaves_all_unchanged(run, shift):
@@ -387,6 +392,7 @@ def test_shifting_time_leaves_all_unchanged(run, shift):
         assert b[name].values == pytest.approx(a[name].values, rel=2e-2, abs=2e-5)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @given(st.integers(0, 10_000))
 def test_taking_every_other_sample_leaves_the_coefficient_within_its_error(seed):

@@ -112,6 +112,7 @@ RUNS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", RUNS)
 def test_a_drafted_dialect_reads_every_run(file, shared_data, tmp_path):
     delimiter, width, columns, (time, unit) = RUNS[file]

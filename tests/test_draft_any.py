@@ -53,6 +53,7 @@ def files(draw):
     return text.encode(encoding), dict(zip(order, table.T, strict=True))
 
 
+@pytest.mark.slow
 @given(made=files())
 @settings(
     max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]

@@ -228,6 +228,7 @@ MARKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", MARKS)
 def test_a_draft_reads_every_row_of_every_part(tmp_path, kind):
     time, signals, stroke = record()

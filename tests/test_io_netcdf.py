@@ -15,7 +15,7 @@ import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.attributes import encoded
 from tribolab.io.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
-from tribolab.io.seal import unseal
+from tribolab.io.seal import seal, unseal
 from tribolab.io.storage import CHUNK, storage
 
 ATTRIBUTES = st.dictionaries(
@@ -173,9 +173,11 @@ def written_by_xarray(groups, path):
             if data[name].dtype.kind in "fiu":
                 data[name].encoding = {"_FillValue": None}
         data.to_netcdf(path, mode="a" if path.exists() else "w", group=group)
+    seal(path)  # else each file is tried in another process first
     return path
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(
     st.dictionaries(st.sampled_from([*SIZES, *"abcdef"]), variables(), max_size=6),

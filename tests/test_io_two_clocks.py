@@ -190,6 +190,7 @@ def test_files_are_grouped_by_the_names_that_the_dialects_state(tmp_path):
     assert all(len(group) == 1 for group in group_files(paths, "cetr_umt2"))
 
 
+@pytest.mark.slow
 def test_the_rigs_clocks_are_brought_together_although_friction_turns_over_slowly(tmp_path):
     import json
 

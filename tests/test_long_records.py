@@ -55,6 +55,7 @@ def hostile_time(seed, size):
     return np.cumsum(np.abs(interval))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("size", [16, 67, 600, 1100, 3001])
 def test_where_a_record_is_cut_does_not_show(monkeypatch, seed, size):

@@ -121,6 +121,7 @@ def test_shear_flow_changes_sign_with_the_body_that_is_rough():
     np.testing.assert_allclose(rest.transport(u)[2] + moving.transport(u)[2], 2 * u)
 
 
+@pytest.mark.slow
 @settings(properties, max_examples=6)
 @given(scale=st.floats(0.05, 20), hurst=st.floats(0.5, 1.2))
 def test_factors_depend_on_separation_over_roughness_not_on_the_slope(scale, hurst):

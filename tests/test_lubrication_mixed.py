@@ -205,6 +205,7 @@ def test_vanishing_roughness_is_smooth():
     np.testing.assert_allclose(rough.friction_coefficient, smooth.friction_coefficient, rtol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "speed", "finest"), [("Smooth", 1e-5, 5e-4), ("Sb-S", 1e-5, 5e-5), (None, 1e-4, 1e-3)]
 )

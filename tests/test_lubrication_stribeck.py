@@ -85,6 +85,7 @@ def test_heavier_load_thins_the_film_and_lowers_the_plateau():
         assert (curve.friction_coefficient.isel(sliding_speed=0).diff("load") < 0).all()
 
 
+@pytest.mark.slow
 def test_friction_factors_change_the_curves_most_where_fluid_takes_over():
     """The paper finds them negligible for Smooth and Sb-S, small for Sb-R.
 
@@ -246,6 +247,7 @@ def test_zeros_beside_the_roughness_change_nothing(side):
     )
 
 
+@pytest.mark.slow
 def test_a_band_is_found_for_a_spectrum_that_ends_with_zeros():
     psd = reference_psd("Sb-S")
     q, c = psd.wavenumber.values, psd.psd_2d.values

@@ -70,6 +70,7 @@ def test_disagreeing_runs_are_known_only_as_well_as_they_agree():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("runs", [5, 10])
 @pytest.mark.parametrize("between", [0.0, 0.01])
 def test_error_of_the_curve_covers_the_truth(runs, between):

@@ -36,6 +36,7 @@ def spread():
     )
 
 
+@pytest.mark.slow
 def test_the_band_holds_the_curve_and_every_variation(spread):
     low, high = spread.friction_coefficient_low, spread.friction_coefficient_high
     assert (low <= spread.friction_coefficient).all()
@@ -81,6 +82,7 @@ def test_a_spectrum_times_a_number_moves_the_plateau_by_its_root(spread):
     assert 0.05 < one.shear_stress_change_high < WIDTH**0.5 - 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "end", "change"),
     [
@@ -114,6 +116,7 @@ def test_each_unknown_moves_the_curve_where_it_must(spread):
     assert change == pytest.approx(1.96 * 0.01 / 0.84, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_fitted_shear_stress_takes_up_what_scales_the_area():
     psd = measured_psd()[["psd_2d"]]
     given = GIVEN | {"speed": [1e-9, 1e-8]}
@@ -201,6 +204,7 @@ def test_what_has_no_band_is_refused(change, words):
         model_uncertainty(CONTACT, reference_psd("Sb-S"), **given)
 
 
+@pytest.mark.slow
 def test_a_band_is_found_for_a_roughness_near_the_cut_off_of_gaps():
     psd = reference_psd("Sb-S")
     fine = psd * (12e-9 / rms_roughness(psd)) ** 2

@@ -57,6 +57,7 @@ def edit(path, old, new):
     path.write_text(text.replace(old, new), encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_every_run_and_every_condition_has_its_data_file(done):
     assert [run.name for run in done.runs] == list(RUNS)
     assert all(run.done and run.segments >= 6 and not run.reused for run in done.runs)
@@ -71,6 +72,7 @@ def test_every_run_and_every_condition_has_its_data_file(done):
     }
 
 
+@pytest.mark.slow
 def test_a_data_file_holds_signals_segments_and_friction_with_their_origin(done, original):
     path = done.folder / done.runs[0].data_file
     for group in ("run", "segments", "friction"):
@@ -87,6 +89,7 @@ def test_a_data_file_holds_signals_segments_and_friction_with_their_origin(done,
     assert sources == {name: raw[name][0] for name in used}
 
 
+@pytest.mark.slow
 def test_opened_without_a_group_a_data_file_says_what_it_is_and_what_it_holds(done, original):
     raw = fingerprint(original.parent)
     for run, curve in ((done.runs[0], done.curves[0]), (done.runs[2], done.curves[1])):
@@ -110,6 +113,7 @@ def test_opened_without_a_group_a_data_file_says_what_it_is_and_what_it_holds(do
         assert len(origin["config_sha256"]) == 64 and origin["history"] and origin["Conventions"]
 
 
+@pytest.mark.slow
 def test_a_measured_curve_takes_its_runs_together(done):
     curve = read_netcdf(done.folder / done.curves[0].data_file)
     at_set_speeds = curve.sel(sliding_speed=[4.64e-6, 1e-4, 2.15e-3], method="nearest")
@@ -117,12 +121,14 @@ def test_a_measured_curve_takes_its_runs_together(done):
     assert at_set_speeds.runs.values.tolist() == [2, 2, 2]
 
 
+@pytest.mark.slow
 def test_raw_files_are_only_read(original, tmp_path):
     before = fingerprint(original.parent)
     process(load_campaign(original), tmp_path)
     assert fingerprint(original.parent) == before
 
 
+@pytest.mark.slow
 def test_a_bad_file_costs_its_own_run_only(campaign, tmp_path):
     bad = campaign.parent / "raw/friction/sb-r_glycerol_31N_01_force.csv"
     bad.write_text("Lunch is at noon.\n")
@@ -134,6 +140,7 @@ def test_a_bad_file_costs_its_own_run_only(campaign, tmp_path):
     assert not (tmp_path / "data" / f"{RUNS[0]}.nc").exists()
 
 
+@pytest.mark.slow
 def test_a_file_that_vanishes_on_the_way_costs_its_own_run_only(campaign, tmp_path):
     gone = campaign.parent / "raw/friction/sb-r_dry_31N_02_force.csv"
 
@@ -147,6 +154,7 @@ def test_a_file_that_vanishes_on_the_way_costs_its_own_run_only(campaign, tmp_pa
     assert missing[1:] == ("", 0)
 
 
+@pytest.mark.slow
 def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monkeypatch):
     def broken(*given):
         raise ZeroDivisionError("float division by zero")
@@ -159,6 +167,7 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     assert outcome.runs[0].reason.startswith(said)
 
 
+@pytest.mark.slow
 def test_what_did_not_change_is_not_done_again(campaign, done, tmp_path):
     for path in campaign.parent.rglob("*.csv"):
         os.utime(path)  # touched, not changed
@@ -197,6 +206,7 @@ def reused(outcome):
     return [run.name for run in outcome.runs if run.reused]
 
 
+@pytest.mark.slow
 def test_a_changed_raw_file_is_done_again_alone(campaign, done, tmp_path):
     motion = campaign.parent / "raw/friction/sb-r_dry_31N_01_motion.csv"
     with motion.open("a") as file:
@@ -204,6 +214,7 @@ def test_a_changed_raw_file_is_done_again_alone(campaign, done, tmp_path):
     assert reused(again(campaign, done, tmp_path / "new")) == [RUNS[0], RUNS[1], RUNS[3]]
 
 
+@pytest.mark.slow
 def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
     edit(campaign, "trim = 0.10", "trim = 0.12")
     outcome = again(campaign, done, tmp_path / "new")
@@ -212,6 +223,7 @@ def test_a_changed_setting_is_done_again(campaign, done, tmp_path):
     assert friction.attrs["trim"] == 0.12
 
 
+@pytest.mark.slow
 def test_a_clock_shift_in_the_campaign_file_is_taken_and_makes_its_runs_anew(
     campaign, done, tmp_path
 ):
@@ -231,6 +243,7 @@ def test_a_clock_shift_in_the_campaign_file_is_taken_and_makes_its_runs_anew(
     assert found["status"] == "pass" and "given" in found["message"]
 
 
+@pytest.mark.slow
 def test_a_clock_shift_without_a_second_log_is_told(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
     edit(campaign, 'medium = "dry"\n', 'medium = "dry"\nclock_shift = "0.42 s"\n')
@@ -239,6 +252,7 @@ def test_a_clock_shift_without_a_second_log_is_told(campaign, tmp_path):
     assert "leave clock_shift out" in run.reason
 
 
+@pytest.mark.slow
 def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_path, monkeypatch):
     first = again(campaign, done, tmp_path / "first")
     damaged = first.folder / first.runs[1].data_file
@@ -250,6 +264,7 @@ def test_another_version_and_a_damaged_file_are_done_again(campaign, done, tmp_p
     assert reused(again(campaign, first, tmp_path / "third")) == []
 
 
+@pytest.mark.slow
 def test_a_campaign_whose_files_are_gone_says_so(campaign, tmp_path):
     loaded = load_campaign(campaign)
     for path in campaign.parent.glob("raw/friction/*_dry_*"):
@@ -284,6 +299,7 @@ def test_processes_give_what_this_process_gives_even_if_one_is_killed(original, 
     same_results(outcome, done)
 
 
+@pytest.mark.slow
 def test_threads_give_what_this_process_gives(original, done, tmp_path):
     with ThreadPoolExecutor(2) as threads:
         same_results(process(load_campaign(original), tmp_path, executor=threads), done)
@@ -353,6 +369,7 @@ def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, 
         process(load_campaign(original), tmp_path)
 
 
+@pytest.mark.slow
 def test_a_force_log_without_its_motion_log_fails_and_says_what_is_missing(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_02_motion.csv").unlink()
     outcome = process(load_campaign(campaign), tmp_path)

@@ -82,6 +82,7 @@ def test_a_spike_of_one_sample_is_in_the_traces():
     assert small.friction_coefficient.max() == pytest.approx(spike)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [None, unknown_speed, force_only])
 def test_run_figures_are_small_and_the_same_every_time(made, kind):
     parts = kind(*made) if kind else made
@@ -99,6 +100,7 @@ def test_the_largest_run_figure_stays_below_150_kb():
         assert len(plot.svg(draw(*parts)).encode()) < 150_000
 
 
+@pytest.mark.slow
 def test_no_setting_of_matplotlib_is_changed_and_pyplot_stays_out():
     code = """
 import sys, matplotlib as mpl
@@ -384,6 +386,7 @@ def test_the_caption_of_spectra_names_only_what_is_marked(tmp_path):
     assert "Blue" not in caption(calm, "calm.nc") and "mains" not in caption(calm, "quiet.nc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["pdf", "ps"])
 def test_no_font_is_embedded_as_type_3_which_journals_refuse(tmp_path, ending):
     figure = plot.stribeck(made_curve())

@@ -44,6 +44,7 @@ def with_form(scans, seed):
     return scans.assign(height=scans.height + np.sqrt(0.07**2 - (x - offset) ** 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["none", "circle"])
 def test_bands_of_95_percent_cover_the_truth_in_95_percent_of_bins(form):
     spectrum = xu2026.surface("Sb-R").spectrum

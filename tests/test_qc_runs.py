@@ -132,6 +132,7 @@ def test_the_mains_line_of_paper_on_paper_is_named_and_too_small_to_object_to(sh
     assert "hum" not in objections(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["Circle_1bar", "Kidney_2bar", "O-ring257_1bar"])
 def test_the_actuators_irregular_first_step_is_a_gap(shared_data, name):
     run, found = verdict(shared_data, "actuator_friction_CC0", f"{name}.csv")
@@ -196,6 +197,7 @@ def tribolab_check(*words):
     return CliRunner().invoke(cli.app, ["check", *map(str, words)])
 
 
+@pytest.mark.slow
 def test_the_command_checks_every_run_and_a_bad_one_stops_none(faulty):
     done = tribolab_check(*sorted(faulty.glob("*.csv")), "--json")
     told = json.loads(done.stdout)
@@ -206,6 +208,7 @@ def test_the_command_checks_every_run_and_a_bad_one_stops_none(faulty):
     assert "time goes backwards" in bad["error"] and bad["findings"] == []
 
 
+@pytest.mark.slow
 def test_the_commands_exit_code_is_the_level_asked_for(faulty):
     by_status = {
         run["status"]: run["files"]

@@ -20,6 +20,7 @@ def raw(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_pattern_reads_each_run_once_whichever_of_its_logs_it_names(raw):
     runs = tl.read(raw / "*.csv")
     names = [run.attrs["source"] for run in runs]

@@ -60,6 +60,7 @@ def the_next(made, folder, **changes):
     return replace(made, folder=folder, store=store, **changes)
 
 
+@pytest.mark.slow
 def test_figures_of_the_same_data_are_taken_over_and_not_drawn(made, tmp_path, monkeypatch):
     def refuse(*given, **more):
         raise AssertionError("drawn again")

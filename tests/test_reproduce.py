@@ -59,6 +59,7 @@ def test_every_published_number_has_a_status_and_a_reason_if_it_does_not_hold(ma
     assert (computed.computed != "").all() and (computed.tolerance != "").all()
 
 
+@pytest.mark.slow
 def test_every_figure_is_there_with_its_origin_its_numbers_and_its_words(made, page):
     said = {image["alt"] for image in Reader(page).all("img")}
     records = json.loads((made.folder / "paper.json").read_text())["figures"]
@@ -70,6 +71,7 @@ def test_every_figure_is_there_with_its_origin_its_numbers_and_its_words(made, p
         assert one["kinds"] and set(one["kinds"]) <= {COMPUTED, SIMULATED}
 
 
+@pytest.mark.slow
 def test_every_data_file_says_what_it_was_made_from(made):
     files = sorted((made.folder / "data").glob("*.nc"))
     assert {path.name.partition("_")[0] for path in files} >= {"curve", "dry", "wet", "spectrum"}
@@ -85,6 +87,7 @@ def test_every_data_file_says_what_it_was_made_from(made):
             assert attrs["source_sha256"].split("; ") == [sums[name] for name in names]
 
 
+@pytest.mark.slow
 def test_a_bound_is_met_or_not_and_has_no_percentage(made, page):
     document = json.loads((made.folder / "paper.json").read_text())
     said = {row["quantity"]: row for row in document["numbers"] if row["difference"]}
@@ -100,6 +103,7 @@ def test_a_bound_is_met_or_not_and_has_no_percentage(made, page):
     assert "within the bound" in cells and "±" not in cells
 
 
+@pytest.mark.slow
 def test_each_number_stands_once_at_its_place(made):
     rows = json.loads((made.folder / "paper.json").read_text())["numbers"]
     claimed = [sum(figure.has(row) for figure in FIGURES) for row in rows]
@@ -108,6 +112,7 @@ def test_each_number_stands_once_at_its_place(made):
         assert any(row["figure"] == figure.name for row in rows) == bool(figure.claims)
 
 
+@pytest.mark.slow
 def test_exponents_above_1_are_judged_and_the_slope_they_promise_is_the_spectrum_s(made, page):
     steep = json.loads((made.folder / "paper.json").read_text())["steep_spectra"]
     assert [one["surface"] for one in steep] == list(xu2026.surfaces)
@@ -124,6 +129,7 @@ def test_exponents_above_1_are_judged_and_the_slope_they_promise_is_the_spectrum
     assert text.index("not a self-affine fractal") < text.index('id="adhesion"')
 
 
+@pytest.mark.slow
 def test_shifted_traces_say_how_far_and_taking_it_off_gives_the_measured_friction(made):
     for file in sorted((made.folder / "figures").glob("*_wet.csv")):
         for label, drawn in pd.read_csv(file).groupby("series"):
@@ -140,6 +146,7 @@ def test_shifted_traces_say_how_far_and_taking_it_off_gives_the_measured_frictio
             assert mean == pytest.approx(float(curve.friction_coefficient[0]), rel=0.1)
 
 
+@pytest.mark.slow
 def test_shear_stress_given_to_the_rig_comes_back(made):
     fits = pd.read_csv(made.folder / "data" / "shear_stress.csv")
     assert fits.surface.tolist() == ["Sb-S", "Sb-R"]
@@ -148,6 +155,7 @@ def test_shear_stress_given_to_the_rig_comes_back(made):
     ).all()
 
 
+@pytest.mark.slow
 def test_page_asks_nothing_of_the_network_and_its_links_lead_somewhere(made, page):
     reader = Reader(page)
     ids = [attrs["id"] for _, attrs in reader.elements if "id" in attrs]
@@ -201,6 +209,7 @@ def test_a_folder_with_something_else_is_refused_before_any_work(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
+@pytest.mark.slow
 def test_interrupted_it_leaves_what_was_there(made):
     before = {path: path.stat().st_mtime_ns for path in made.folder.rglob("*")}
 

@@ -55,6 +55,7 @@ def test_only_what_was_decided_on_is_done_again(reviewed, tmp_path):
     assert "decisions" not in list(read_results(bare.folder))
 
 
+@pytest.mark.slow
 def test_a_notebook_gives_the_numbers_of_the_campaign(reviewed):
     file, outcome = reviewed
     decisions, frictions = load_review(file.parent), {}
@@ -75,6 +76,7 @@ def test_a_notebook_gives_the_numbers_of_the_campaign(reviewed):
         np.testing.assert_array_equal(rows.segments, mine.segments)
 
 
+@pytest.mark.slow
 def test_friction_with_decisions_and_without_are_both_kept(original, reviewed):
     _, outcome = reviewed
     now, before = (read_results(f) for f in (outcome.folder, original.parent / "results"))
@@ -92,6 +94,7 @@ def test_friction_with_decisions_and_without_are_both_kept(original, reviewed):
     assert moved.startswith("decisions change µ by at most ") and "stribeck_as_found" in moved
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("action", ["note", "accept"])
 @pytest.mark.parametrize("name", [FROZEN, SLIPPED])
 def test_notes_and_acceptance_move_no_number_and_cost_no_second_analysis(
@@ -118,6 +121,7 @@ def test_notes_and_acceptance_move_no_number_and_cost_no_second_analysis(
     assert decided.quality == ("accepted" if settled else bare.quality)
 
 
+@pytest.mark.slow
 def test_every_decision_stands_in_a_table_with_what_came_of_it(reviewed):
     table = read_results(reviewed[1].folder)["decisions"]
     packed = pd.read_parquet(reviewed[1].folder / "tables" / "decisions.parquet")
@@ -132,6 +136,7 @@ def test_every_decision_stands_in_a_table_with_what_came_of_it(reviewed):
     assert np.isnan(rows.loc[(LATE, "note")].start_s)
 
 
+@pytest.mark.slow
 def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
     folder = reviewed[1].folder
     report = json.loads((folder / "report.json").read_text("utf-8"))
@@ -150,6 +155,7 @@ def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
     assert "rejected by A. Person: slipped off" in page
 
 
+@pytest.mark.slow
 def test_flags_say_which_samples_a_person_decided_on(reviewed):
     results = read_results(reviewed[1].folder)
     run, rows = results.data(SLIPPED, "run"), rows_of(reviewed[1].folder, SLIPPED)
@@ -165,6 +171,7 @@ def test_flags_say_which_samples_a_person_decided_on(reviewed):
     assert stuck.any() and (frozen.friction_force_qc.values[stuck] == GOOD).all()
 
 
+@pytest.mark.slow
 def test_a_run_that_is_rejected_is_in_no_curve_and_no_failure(original, tmp_path):
     file = copied(original, tmp_path)
     text = entry(FROZEN, "reject", "its signal froze") + entry(LATE, "reject")
@@ -180,6 +187,7 @@ def test_a_run_that_is_rejected_is_in_no_curve_and_no_failure(original, tmp_path
     assert "rejected by A. Person: its signal froze" in page
 
 
+@pytest.mark.slow
 def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_path):
     file = copied(reviewed[0], tmp_path)
     path = file.parent / REVIEW_FILE
@@ -203,6 +211,7 @@ def test_a_decision_that_finds_nothing_is_told_and_stops_no_other(reviewed, tmp_
     assert again.exit_code == 3 and again.stderr == told.stderr
 
 
+@pytest.mark.slow
 def test_a_rejection_holds_for_an_earlier_result_whose_file_cannot_be_read(reviewed, tmp_path):
     file = copied(reviewed[0], tmp_path)
     path = file.parent / REVIEW_FILE
@@ -230,6 +239,7 @@ WRONG = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("right", "wrong", "line", "said"), WRONG.values(), ids=WRONG)
 def test_a_mistake_in_the_review_file_is_met_before_any_work(
     original, tmp_path, right, wrong, line, said
@@ -268,6 +278,7 @@ def spiked(original):
     return run.assign(friction_force=run.friction_force.copy(data=force)), segments, windows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("actions", "status", "effects", "said"),
     [

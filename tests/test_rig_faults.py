@@ -49,6 +49,7 @@ def test_every_check_has_a_fault_that_it_finds():
         assert fault.severity in ("suspect", "fail", "unreadable")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_found_by_its_check(tmp_path, name):
     fault = FAULTS[name]

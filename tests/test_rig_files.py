@@ -75,6 +75,7 @@ def test_every_raw_file_is_named_by_the_campaign_once(campaign):
         assert run["instrument"] == "linear_slider"
 
 
+@pytest.mark.slow
 def test_full_campaign_is_three_surfaces_five_conditions_two_repeats(tmp_path):
     # nothing but the protocol is shortened
     brief = rig.Rig(rig.Protocol(speeds=(1e-2,)))

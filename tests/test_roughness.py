@@ -27,6 +27,7 @@ def mitutoyo(shared_data):
     return read_scans(shared_data / "surfacetopography_MIT" / "mitutoyo_2_mock.xlsx").squeeze()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "printed", "digit"),
     [

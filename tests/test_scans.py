@@ -47,6 +47,7 @@ def test_dektak_with_rounded_positions_is_even(shared_data):
     assert scan.attrs["instrument_Rq_m"] == pytest.approx(1.143e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "points", "pitch", "rq", "cutoff"),
     [

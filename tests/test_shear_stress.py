@@ -161,6 +161,7 @@ def test_a_tilt_within_the_error_bars_is_seen_by_the_order_of_signs():
     assert fit(noiseless).runs_p_value < 0.01
 
 
+@pytest.mark.slow
 def test_points_that_are_not_there_or_have_no_error_are_dealt_with():
     holes = measured(0.02)
     holes.friction_coefficient[2] = np.nan
@@ -177,6 +178,7 @@ def test_points_that_are_not_there_or_have_no_error_are_dealt_with():
     assert fit(renamed).shear_stress == fit(measured(0.02)).shear_stress
 
 
+@pytest.mark.slow
 def test_corrected_stresses_and_their_ratio_are_the_papers(shared):
     enhancement = {
         name: target(shared, "area_enhancement", name, "loads of the curves")
@@ -257,6 +259,7 @@ def measured_at(slowest, fastest):
     return measured(0.02).assign_coords(sliding_speed=np.geomspace(slowest, fastest, SPEEDS.size))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [

@@ -210,6 +210,7 @@ def test_estimates_follow_scale_shift_and_time_origin(seed, n, scale, shift, ori
     assert other.trend_p_value == pytest.approx(plain.trend_p_value, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_intervals_of_few_effective_samples_hold_by_student_s_t():
     """A memory of a third of the record: 95 % intervals missed the mean two times in five."""
     rng = np.random.default_rng(77)
@@ -228,6 +229,7 @@ def test_intervals_of_few_effective_samples_hold_by_student_s_t():
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.05, 0.15, 0.3])
 def test_three_errors_hold_the_mean_of_friction_whose_memory_is_long_beside_the_stroke(share):
     records = memory(np.random.default_rng(17), share * N)[:150]

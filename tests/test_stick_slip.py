@@ -49,6 +49,7 @@ def whole(run):
     return xr.Dataset({k: ("segment", v) for k, v in data.items()}, {"segment": [0]})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", CLASS)
 def test_waveforms_of_the_rig_are_told_apart_at_three_times_the_noise(form):
     wrong = 0
@@ -73,6 +74,7 @@ def test_wavelength_and_drop_are_the_drawn_ones(form):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["sawtooth", "rounded"])
 def test_of_ten_cycles_in_noise_wavelength_and_drop_are_met_without_bias(form):
     wavelength, drop = [], []
@@ -128,6 +130,7 @@ def test_a_saw_of_few_samples_in_noise_is_no_irregular_wave():
     assert sum(kind["waveform"].item() == "sawtooth stick-slip" for kind in kinds) >= 11
 
 
+@pytest.mark.slow
 def test_irregular_stick_slip_is_seen_however_densely_it_is_sampled():
     regularity = []
     for seed in range(3):

@@ -201,6 +201,7 @@ def test_a_dialect_with_many_long_mistakes_is_answered_in_a_line(tmp_path):
     assert len(str(error.value)) < 1200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("column", ["t", "fx", "fz", "v"])
 @pytest.mark.parametrize("wrong", [1e306, -1.7e308, 1e160, 1e-310, 0.0])
 @pytest.mark.parametrize("rows", [slice(None), slice(150, 151), slice(200, None)])

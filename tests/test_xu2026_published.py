@@ -83,6 +83,7 @@ def test_what_is_no_number_is_refused(tmp_path):
         find_published(xu2026.published, "rms_slope", "Sb-X")
 
 
+@pytest.mark.slow
 def test_every_number_has_its_row(compared, shared):
     targets = pd.read_csv(shared / "targets.csv")
     columns = ["quantity", "surface", "condition"]

@@ -269,6 +269,7 @@ def test_sound_loops_with_rests_are_not_objected_to(seed):
 # sign
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loaded_rests", [False, True])
 @pytest.mark.parametrize("offset", [0.0, 2.0, -2.0])
 def test_force_without_sign_gives_the_mean_of_both_directions(offset, loaded_rests):
