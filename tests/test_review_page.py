@@ -2,6 +2,7 @@
 
 import datetime as dt
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from campaigns import copied
 from chromium import BROWSER, chromium
+from report_pages import Reader
 from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, rows_of
 
 from tribolab.app.run import run_campaign
@@ -239,6 +241,21 @@ def test_where_nothing_can_be_kept_the_page_says_so_and_asks_before_it_closes(br
         page.wait("saved.length === 1")
         assert not page.run(asks)
         assert page.console == page.stopped == []
+
+
+def test_the_page_says_when_it_was_made_and_which_decisions_it_holds(original, reviewed):
+    banner = re.compile(r'<p class="made">(.*?)</p>', re.DOTALL)
+    held = re.compile(r'<details id="decisions-held">(.*?)</details>', re.DOTALL)
+    page = (reviewed[0].parent / "results/report.html").read_text("utf-8")
+    said = Reader(banner.search(page)[1]).text
+    assert re.match(r"Made 20\d\d-\d\d-\d\d .* UTC by tribolab", said[0])
+    assert "4 decisions" in said and "of review.toml" in said[-1]
+    rows = held.search(page)[1].replace("<wbr>", "")
+    for words in (SLIPPED, FROZEN, LATE, "slipped off", "A. Person", "2026-11-20", "humid day"):
+        assert words in rows
+    assert rows.count("<tr>") == 1 + 4
+    page = (original.parent / "results/report.html").read_text("utf-8")
+    assert "holds no decision of a review.toml" in page and not held.search(page)
 
 
 ONE = '[[decision]]\nrun = "a"\n'

@@ -6,7 +6,8 @@ as asked for, and opens the page in headless Chromium:
     python tests/benchmarks/bench_report.py 200 2000
 
 Prints, for each number of runs, how large the page is and what of it are finer traces, how long
-until it had loaded and was painted (the best of three), and how long sorting, searching and opening
+until it had loaded and was painted with its first figures, until the first of these answered (the
+best of three, each in a browser that has just started), and how long sorting, searching and opening
 a run took.
 """
 
@@ -22,13 +23,23 @@ from chromium import chromium  # noqa: E402 - after its folder is known
 from tribolab import rig  # noqa: E402 - as above
 from tribolab.app.run import run_campaign  # noqa: E402 - as above
 from tribolab.io.netcdf import read_groups  # noqa: E402 - as above
+from tribolab.records.part_records import CurveRecord  # noqa: E402 - as above
 from tribolab.records.traces import page_trace, trace_size  # noqa: E402 - as above
+from tribolab.report.live.curves import Friction, card_figures  # noqa: E402 - as above
+from tribolab.report.live.shown import shown  # noqa: E402 - as above
 from tribolab.report.page import write_page  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("
     "() => done(performance.now()))))"
 )
+
+
+_ANSWERS = (
+    "(async () => { while (!document.querySelector('#card-1 .main-svg'))"
+    " await new Promise(r => setTimeout(r, 5)); return performance.now() })()"
+)
+_PICTURES = "document.querySelectorAll('#card-1 :is(.still, .main-svg)').length"
 
 
 def repeated(document, count):
@@ -63,13 +74,21 @@ def traces(document, outcome, count):
     return Traces({run["name"]: packed[place % len(packed)] for place, run in enumerate(runs)})
 
 
+def cards(outcome):
+    """Return the figures of the answer's cards."""
+    curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
+    return [shown(figure) for figure in card_figures(Friction(curves, {}, {}, {}, {}, ()))]
+
+
 def measure(page_file, profile):
-    """Return the load time [s] and the times of what a reader does [s]."""
+    """Return when the page is shown and answers, and the times of what a reader does [s]."""
     loads, spent = [], {}
+    for number in range(3):
+        with chromium(f"{profile}-{number}") as browser, browser.page(page_file) as page:
+            shown = page.run(_PAINTED)
+            assert page.run(_PICTURES) > 0, "shown with its first figure"
+            loads.append((shown / 1e3, page.run(_ANSWERS) / 1e3))
     with chromium(profile) as browser:
-        for _ in range(3):
-            with browser.page(page_file) as page:
-                loads.append(page.run(_PAINTED) / 1e3)
         with browser.page(page_file) as page:
             acts = {
                 "sort": "document.querySelector('#runs-table [data-name=fastest] button').click()",
@@ -95,6 +114,7 @@ def main(counts):
         )
         outcome = run_campaign(file, jobs=1)
         document = json.loads((outcome.folder / "report.json").read_text(encoding="utf-8"))
+        figures = cards(outcome)
         for count in counts:
             folder = place / f"results{count}"
             folder.mkdir()
@@ -102,13 +122,14 @@ def main(counts):
             many = repeated(document, count)
             chosen = traces(many, outcome, count)
             fine = sum(len(one.fine) for one in chosen.values()) / 1e6
-            write_page(many, folder, lambda many=many: iter(many["runs"]), chosen)
+            write_page(many, folder, lambda many=many: iter(many["runs"]), chosen, figures)
             size = (folder / "report.html").stat().st_size / 1e6
-            load, spent = measure(folder / "report.html", place / f"profile{count}")
+            (load, answers), spent = measure(folder / "report.html", place / f"profile{count}")
             acts = ", ".join(f"{name} {took:.2f} s" for name, took in spent.items())
             print(
                 f"{count} runs: page {size:.1f} MB, {fine:.1f} MB of it finer traces before the "
-                f"details are packed; shown after {load:.2f} s; {acts}",
+                f"details are packed; shown after {load:.2f} s, "
+                f"answers after {answers:.2f} s; {acts}",
                 flush=True,
             )
 

@@ -140,7 +140,7 @@ report.Picture = (() => {
         const name = ({ label, unit }) => text(unit ? `${label} (${unit})` : label ?? "");
         const side = (kind, what) => ({
           type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
-          title: { text: kind === "x" && !last ? "" : name(what), standoff: 8 }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
+          title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
           minorloglabels: "none", nticks: narrow ? 5 : 8, range: this.range(kind, row),
         });
