@@ -127,6 +127,7 @@ def test_the_logs_of_a_run_are_read_back_by_the_name_of_the_first(tmp_path):
     assert set(found.friction_force.values.round(3)) <= written
 
 
+@pytest.mark.slow
 def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
     code = (
         "import IPython, json\n"

@@ -293,6 +293,7 @@ def test_the_first_screen_has_its_figures_before_any_script_is_done(browser, res
         assert all(marks > 0 and height > 150 for marks, height in pictures)
 
 
+@pytest.mark.slow
 def test_no_two_figures_show_the_same_numbers(whole, original):
     for folder in (whole, original.parent / "results"):
         seen = {}

@@ -243,6 +243,7 @@ def test_where_nothing_can_be_kept_the_page_says_so_and_asks_before_it_closes(br
         assert page.console == page.stopped == []
 
 
+@pytest.mark.slow
 def test_the_page_says_when_it_was_made_and_which_decisions_it_holds(original, reviewed):
     banner = re.compile(r'<p class="made">(.*?)</p>', re.DOTALL)
     held = re.compile(r'<details id="decisions-held">(.*?)</details>', re.DOTALL)

@@ -42,6 +42,7 @@ def fits(measured, spectra):
     return tl.fit_shear_stresses(measured, xu2026.contact, spectra, "1.4 Pa s", load, **GRID)
 
 
+@pytest.mark.slow
 def test_each_condition_has_the_fit_that_it_has_alone(fits, measured, spectra):
     for surface, force, load in (("Sb-S", 31.0, 310.0), ("Sb-S", 91.0, 910.0), ("Sb-R", 31.0, 310)):
         alone = tl.fit_shear_stress(
@@ -59,6 +60,7 @@ def test_each_condition_has_the_fit_that_it_has_alone(fits, measured, spectra):
         np.testing.assert_array_equal(computed, alone.curve.friction_coefficient)
 
 
+@pytest.mark.slow
 def test_what_was_not_measured_is_not_fitted_and_says_so(fits):
     stress = fits.to_dataset().shear_stress
     assert set(stress.dims) == {"surface", "normal_force"} and stress.attrs["units"] == "Pa"
@@ -71,6 +73,7 @@ def test_what_was_not_measured_is_not_fitted_and_says_so(fits):
     assert fits._repr_html_().split("<details>")[0].count("<tr>") == 1 + 3
 
 
+@pytest.mark.slow
 def test_a_condition_that_cannot_be_fitted_is_named(measured, spectra):
     few = measured.isel(sliding_speed=slice(0, 1))
     with pytest.raises(AnalysisError, match=r"(?s)Sb-S.*at least 2"):
