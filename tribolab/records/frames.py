@@ -69,11 +69,13 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
     pandas.DataFrame
         Columns are called as the variables with their unit; text stays text.
     """
-    names = [str(n) for n in data.variables if data[n].dims == (dim,)]
+    # not data[name], which puts coordinates around each: of a hundred variables that takes longer
+    # than all the rest
+    names = [str(n) for n, variable in data.variables.items() if variable.dims == (dim,)]
     ordered = [n for n in first if n in names] + [n for n in names if n not in first]
     columns = {}
     for name in ordered:
-        values = np.asarray(data[name])
+        values = data.variables[name].values
         columns[name if values.dtype.kind in "OUS" else column(name)] = values
     return pd.DataFrame(columns)
 
