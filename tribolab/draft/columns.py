@@ -11,7 +11,7 @@ import pandas as pd
 from tribolab.draft.header import converts, is_unit
 from tribolab.draft.layout import Layout
 from tribolab.draft.model import DraftColumn, Kind, Understood, time_unit
-from tribolab.draft.words import Match, matches, split_unit
+from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.headers import split_name, split_row
@@ -26,7 +26,6 @@ _SIGNALS = {
     "shear_stress",
     "film_thickness",
 }
-_SURE = 0.7  # a name of which so much is a known word is no guess
 
 
 def understand(layout: Layout) -> Understood:
@@ -176,6 +175,7 @@ def _assigned(
     kind: Kind,
 ) -> list[DraftColumn]:
     """Give each quantity to the column whose name fits best."""
+    matched = _without_axes(bare, matched)
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = np.isfinite(numbers).any(axis=0)
     proposals: dict[str, list[_Proposal]] = {}
@@ -209,6 +209,20 @@ def _assigned(
                 note = f"also looks like {name}; column {best.place + 1} is used"
                 result[index] = columns[index]._replace(quantity=name, note=note)
     return result
+
+
+def _without_axes(
+    bare: list[tuple[str, str | None, bool]], matched: list[list[Match]]
+) -> list[list[Match]]:
+    """Where something turns, the axes of the machine's stage are no sliding position."""
+    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
+        return matched
+    return [
+        [option for option in options if option.quantity != "position"]
+        if is_axis(name) and options and options[0].quantity == "position"
+        else options
+        for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
 
 
 def _told_by(unit: str, si_unit: str) -> bool:
@@ -246,7 +260,7 @@ def _column(
     _, unit, say_unit = bare
     si_unit = quantity(option.quantity).unit
     guessed = []
-    if option.score < _SURE:
+    if option.score < SURE:
         guessed.append(f"the name means {quantity(option.quantity).long_name}")
     if several:
         guessed.append(f"of several columns for {option.quantity} it is the one meant")

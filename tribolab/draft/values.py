@@ -84,5 +84,5 @@ def _value(said: re.Match[str]) -> DraftValue:
 
 
 def _name(key: str) -> str:
-    words = [squeezed(word) for word in re.split(r"\W+|_", key)]
+    words = [squeezed(word).encode("ascii", "ignore").decode() for word in re.split(r"\W+|_", key)]
     return "_".join(word for word in words if word) or "value"

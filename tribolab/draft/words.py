@@ -1,130 +1,27 @@
-"""The one vocabulary of column names, English and German, from which quantities are proposed."""
+"""Which quantities the name of a column may stand for."""
 
 from __future__ import annotations
 
+import functools
 import re
+import unicodedata
 from typing import NamedTuple
 
 from tribolab.draft.header import converts, is_unit
+from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, Word
 from tribolab.quantities import quantity
 
-
-class Word(NamedTuple):
-    """A quantity and how columns that hold it are called.
-
-    Symbols are whole names; stems may stand anywhere in a name. Both are written small, without
-    blanks and umlauts; of two symbols for one quantity the first is the better.
-    """
-
-    quantity: str
-    symbols: tuple[str, ...]
-    stems: tuple[str, ...]
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(text.split())
-
-
-RUN_WORDS = (
-    Word(
-        "time",
-        _words("t time zeit"),
-        _words("steptime testtime elapsedtime time zeit elapsed dauer uhr seconds sekunden"),
-    ),
-    Word(
-        "friction_force",
-        _words("fx ff fr ft freib ffric fq"),
-        _words(
-            "frictionforce frictionalforce tangentialforce lateralforce tractionforce shearforce "
-            "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung force "
-            "kraft"
-        ),
-    ),
-    Word(
-        "normal_force",
-        _words("fn fz fnorm fnormal w l"),
-        _words(
-            "normalforce normalload verticalforce balload ballload appliedload contactforce "
-            "normalkraft anpresskraft auflast normallast load last belastung"
-        ),
-    ),
-    Word(
-        "friction_coefficient",
-        _words("mu cof my mue ffn fxfz"),
-        _words(
-            "frictioncoefficient frictioncoeff coefficientoffriction coeffoffriction coffriction "
-            "coefffriction tractioncoefficient tractioncoeff reibwert reibungszahl reibzahl "
-            "reibungskoeffizient reibkoeffizient friction cof reibung"
-        ),
-    ),
-    Word(
-        "sliding_velocity",
-        _words("v vx vel us"),
-        _words(
-            "slidingspeed slidingvelocity slipspeed gleitgeschwindigkeit velocity geschwindigkeit "
-            "speed"
-        ),
-    ),
-    Word(
-        "position",
-        _words("x s pos xpos"),
-        _words(
-            "position displacement displ stroke slidingdistance distance verschiebung auslenkung "
-            "gleitweg strecke weg hub travel"
-        ),
-    ),
-    Word(
-        "set_speed",
-        _words("vset vsoll"),
-        _words("setspeed setvelocity targetspeed speedset sollgeschwindigkeit geschwindigkeitsoll"),
-    ),
-    Word(
-        "set_normal_force",
-        _words("fset fsoll fzset fnset"),
-        _words("setload setforce setnormalforce targetload targetforce sollkraft solllast"),
-    ),
-    Word(
-        "rolling_speed", (), _words("rollingspeed entrainmentspeed entrainment rollgeschwindigkeit")
-    ),
-    Word("slide_roll_ratio", ("srr",), _words("slideroll slidetoroll schlupf")),
-    Word("rotation_speed", _words("rpm n omega"), _words("rotation drehzahl rotary angularspeed")),
-    Word(
-        "normal_stress", ("sigman",), _words("normalstress normalspannung contactpressure pressung")
-    ),
-    Word("shear_stress", ("tau",), _words("shearstress frictionstress schubspannung stress")),
-    Word("shear_rate", (), _words("shearrate scherrate schergefaelle")),
-    Word("viscosity", ("eta",), _words("viscosity viskositaet")),
-    Word(
-        "temperature",
-        _words("t temp theta"),
-        _words("lubetemp lubertdtemp contacttemp temperature temperatur temp"),
-    ),
-    Word(
-        "ambient_pressure", ("p",), _words("ambientpressure airpressure luftdruck pressure druck")
-    ),
-    Word("film_thickness", (), _words("filmthickness averagefilm schmierfilm filmdicke film")),
-    Word("height_displacement", ("z",), _words("height wear verschleiss depth lvdt hoehe")),
-    Word(
-        "electrical_contact_resistance", ("ecr",), _words("contactresistance uebergangswiderstand")
-    ),
-    Word("voltage", ("u",), _words("voltage spannung")),
-    Word("step", _words("step schritt segment stage"), _words("stepno stepnumber")),
-    Word("cycle", _words("cycle zyklus lap laps revolution"), _words("cycleno cyclenumber")),
-)
-
-SCAN_WORDS = (
-    Word(
-        "x", ("x",), _words("lateral position distance messweg weg strecke laenge length abstand")
-    ),
-    Word("y", ("y",), ()),
-    Word(
-        "height",
-        _words("z h"),
-        _words("height hoehe profile profil amplitude topography depth tiefe raw"),
-    ),
-)
-
-_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "µ": "mu", "μ": "mu"})
+_SPELT = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "µ": "mu", "μ": "mu"}
+_SPELT |= {"τ": "tau", "ω": "omega", "η": "eta", "θ": "theta", "ϑ": "theta", "σ": "sigma"}
+_LETTERS = str.maketrans(_SPELT)
+_ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
+_VAGUE = 0.6  # of the score of a word that names this quantity alone
+_OF_DEVICE = 0.98
+SURE = 0.7  # a name of which so much is a known word is no guess
+# "Stage.X", "DAQ.Fz": letters on both sides of the last point
+_DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
+_AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
+_WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": {"g": "gf", "kg": "kgf"}}
 
@@ -138,12 +35,34 @@ class Match(NamedTuple):
 
 
 def squeezed(name: str) -> str:
-    """Return a name without blanks, signs, capitals and umlauts.
+    """Return a name without blanks, signs, capitals, umlauts and accents.
 
-    >>> squeezed("# Höhe_1")
-    'hoehe1'
+    >>> squeezed("# Höhe_1"), squeezed("Déplacement (x)"), squeezed("摩擦係数 ①")
+    ('hoehe1', 'deplacementx', '摩擦係数1')
     """
-    return re.sub(r"[^a-z0-9]", "", name.lower().translate(_UMLAUTS))
+    text = unicodedata.normalize("NFKC", name).lower().translate(_LETTERS)
+    text = _ACCENTS.sub("", unicodedata.normalize("NFD", text))
+    return "".join(filter(str.isalnum, unicodedata.normalize("NFC", text)))
+
+
+def device_of(name: str) -> tuple[str, str]:
+    """Separate the device that some programs put before a point from a channel's own name.
+
+    >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
+    (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
+    """
+    parts = _DEVICE.match(name.strip())
+    return (parts["device"], parts["name"]) if parts else ("", name)
+
+
+def is_axis(name: str) -> bool:
+    """Whether a name says that it is a place of a machine's axis: 'Stage.X', 'X axis position'.
+
+    >>> is_axis("XYStage.X"), is_axis("Position")
+    (True, False)
+    """
+    device, own = device_of(name)
+    return bool(_AXIS.search(squeezed(device or own)))
 
 
 def split_unit(label: str) -> tuple[str, str | None]:
@@ -151,7 +70,12 @@ def split_unit(label: str) -> tuple[str, str | None]:
 
     >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
+    >>> split_unit("时间（s）")
+    ('时间', 's')
     """
+    wide = _WIDE_BRACKETS.match(label.strip())
+    if wide and is_unit(wide["unit"].strip()):
+        return wide["name"], wide["unit"].strip()
     known = {symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols}
     if squeezed(label) in known:
         return label, None
@@ -183,20 +107,35 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     ('friction_force', 'temperature')
     """
     text = squeezed(name)
+    own = squeezed(device_of(name)[1]) if "." in name else ""
     if not text:
         return []
     options = []
+    alone = unit is not None and not scan and _kinds(unit) == 1
     for word in SCAN_WORDS if scan else RUN_WORDS:
-        score = _score(text, word)
+        score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
         known = quantity(word.quantity)
         read_as = _MEANT.get(known.unit, {}).get(unit or "")
         if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
+            # what only this quantity is measured in tells it, whatever else the name says
+            score = SURE + (1 - SURE) * score if alone else score
             options.append(Match(word.quantity, score, read_as))
     return sorted(options, key=lambda match: -match.score)
+
+
+@functools.lru_cache(maxsize=256)
+def _kinds(unit: str) -> int:
+    """Return the number of quantities of a run that are measured in a unit."""
+    known = [quantity(word.quantity) for word in RUN_WORDS]
+    return sum(converts(unit, one.unit, one.bare) for one in known)
 
 
 def _score(text: str, word: Word) -> float:
     if text in word.symbols:
         return 1.0 - 0.01 * word.symbols.index(text)
-    covered = max((len(stem) for stem in word.stems if stem in text), default=0)
-    return covered / len(text) if covered else 0.0
+    return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
+
+
+def _share(text: str, stems: tuple[str, ...]) -> float:
+    """Part of a name that the longest stem in it makes up."""
+    return max((len(stem) for stem in stems if stem in text), default=0) / len(text)

@@ -1,0 +1,68 @@
+"""Names of columns in seven languages, and those that programs make of devices and channels."""
+
+import numpy as np
+import pytest
+from drafts import drafted
+
+from tribolab.draft.draft import draft_dialect
+from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
+from tribolab.draft.words import squeezed
+
+TABLES = {
+    "French": "Temps (s);Force de frottement (N);Charge (N);Vitesse de glissement (mm/s);"
+    "Déplacement (mm)",
+    "Spanish": "Tiempo [s];Fuerza de fricción [N];Carga [N];Velocidad [mm/s];Posición [mm]",
+    "Italian": "Tempo [s];Forza di attrito [N];Forza normale [N];Velocità [mm/s];Spostamento [mm]",
+    "Chinese": "时间（s）;摩擦力（N）;法向载荷（N）;滑动速度（mm/s）;位移（mm）",
+    "Japanese": "時間[s];摩擦力[N];垂直荷重[N];すべり速度[mm/s];変位[mm]",
+    "German": "Zeit [s];Reibkraft [N];Anpresskraft [N];Gleitgeschwindigkeit [mm/s];Weg [mm]",
+    "symbols": "t [s];Ftan [N];Fn [N];Vx [mm/s];enc [mm]",
+    "devices": "DAQ.Time [s];DAQ.Fx [N];DAQ.Fz [N];Stage.Velocity [mm/s];Stage.X [mm]",
+}
+QUANTITIES = ["time", "friction_force", "normal_force", "sliding_velocity", "position"]
+
+
+@pytest.mark.parametrize("language", TABLES)
+def test_a_header_is_understood_without_a_guess_in_any_of_the_languages(language, tmp_path):
+    file = tmp_path / "table.txt"
+    rows = "\n".join(f"{n / 10};{n % 3};30;{5 + n % 2};{n / 2}" for n in range(30))
+    file.write_text(f"{TABLES[language]}\n{rows}\n", encoding="utf-8")
+    data, draft = drafted(file, tmp_path)
+    assert [column.quantity for column in draft.understood.columns] == QUANTITIES
+    assert (draft.guesses, dict(draft.to_fill_in)) == ((), {})
+    np.testing.assert_allclose(data.friction_force, [n % 3 for n in range(30)])
+    np.testing.assert_allclose(data.position, [n / 2000 for n in range(30)])
+
+
+def test_the_axes_of_a_stage_are_no_sliding_position_where_something_turns(tmp_path):
+    file = tmp_path / "disc.csv"
+    head = "Time [s],DAQ.Ft [N],DAQ.Fn [N],Stage.X [mm],Rotary.Velocity [rpm]"
+    file.write_text(head + "\n" + "\n".join(f"{n / 10},{n % 3},30,{n},60" for n in range(30)))
+    data, draft = drafted(file, tmp_path)
+    assert "position" not in data and draft.dialect.speed.source == "none"
+    np.testing.assert_allclose(data.rotation_speed, 2 * np.pi)
+    file.write_text(file.read_text().replace(",Rotary.Velocity [rpm]", ",Oil [degC]"))
+    assert drafted(file, tmp_path / "..")[0].position.values[-1] == pytest.approx(0.029)
+
+
+@pytest.mark.parametrize("name", ["Load Cell", "Force", "Kraft", "力"])
+def test_a_force_that_may_be_another_is_a_guess(name, tmp_path):
+    file = tmp_path / "gauge.csv"
+    file.write_text(f"Time [s],{name} [N]\n0,1\n1,2\n2,2\n", encoding="utf-8")
+    draft = draft_dialect(file)
+    assert draft.understood.columns[1].quantity == "friction_force"
+    assert any("the name means friction force" in guess for guess in draft.guesses)
+
+
+def test_the_vocabulary_is_written_as_names_are_compared_and_says_nothing_twice():
+    for words in (RUN_WORDS, SCAN_WORDS):
+        for word in words:
+            for text in (*word.symbols, *word.stems, *word.vague):
+                assert squeezed(text) == text
+            assert len(set(word.stems)) == len(word.stems)
+
+
+def test_marks_of_kana_stay_and_accents_go():
+    assert squeezed("すべり速度 [ｍｍ]") == "すべり速度mm"
+    assert squeezed("すへり速度") != squeezed("すべり速度")
+    assert squeezed("Coefficient d’attrito È") == "coefficientdattritoe"

@@ -1,0 +1,191 @@
+"""The one vocabulary of column names in seven languages, from which quantities are proposed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Word(NamedTuple):
+    """A quantity and how columns that hold it are called.
+
+    Symbols are whole names; stems may stand anywhere in a name. Both are written as
+    `tribolab.draft.words.squeezed` leaves them; of two symbols for one quantity the first is the
+    better. A vague stem is one that other quantities are called by, too: it is always a guess.
+    """
+
+    quantity: str
+    symbols: tuple[str, ...]
+    stems: tuple[str, ...]
+    vague: tuple[str, ...] = ()
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(text.split())
+
+
+RUN_WORDS = (
+    Word(
+        "time",
+        _words("t time zeit ts"),
+        _words(
+            "steptime testtime elapsedtime timestamp time zeit elapsed dauer uhr seconds sekunden "
+            "temps duree tiempo tempo durata 时间 時間 经过时间 経過時間 時刻"
+        ),
+    ),
+    Word(
+        "friction_force",
+        _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs"),
+        _words(
+            "frictionforce frictionalforce tangentialforce lateralforce tractionforce shearforce "
+            "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung "
+            "forcex xforce sledforce pullforce pullingforce zugkraft "
+            "forcedefrottement efforttangentiel forcetangentielle frottement "
+            "fuerzadefriccion fuerzaderozamiento fuerzatangencial friccion rozamiento "
+            "forzadiattrito forzadattrito forzatangenziale attrito "
+            "摩擦力 切向力 剪切力 せん断力 接線力"
+        ),
+        _words("force kraft loadcell kraftmessdose kraftaufnehmer effort fuerza forza 力 测力"),
+    ),
+    Word(
+        "normal_force",
+        _words("fn fz fnorm fnormal w l nf"),
+        _words(
+            "normalforce normalload verticalforce balload ballload appliedload contactforce "
+            "normalkraft anpresskraft auflast normallast load last belastung forcez zforce "
+            "forcenormale effortnormal charge fuerzanormal carga forzanormale carico "
+            "法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
+        ),
+        _words("loadcell"),
+    ),
+    Word(
+        "friction_coefficient",
+        _words("mu cof my mue ffn fxfz cf"),
+        _words(
+            "frictioncoefficient frictioncoeff coefficientoffriction coeffoffriction coffriction "
+            "coefffriction tractioncoefficient tractioncoeff reibwert reibungszahl reibzahl "
+            "reibungskoeffizient reibkoeffizient friction cof reibung "
+            "coefficientdefrottement coeffdefrottement coeffrottement frottement "
+            "coeficientedefriccion coeficientederozamiento friccion rozamiento "
+            "coefficientediattrito coefficientedattrito coeffdiattrito coeffdattrito attrito "
+            "摩擦系数 摩擦係數 摩擦因数 摩擦係数"
+        ),
+    ),
+    Word(
+        "sliding_velocity",
+        _words("v vx vel us"),
+        _words(
+            "slidingspeed slidingvelocity slipspeed linearspeed linearvelocity "
+            "gleitgeschwindigkeit velocity geschwindigkeit speed "
+            "vitessedeglissement vitesselineaire vitesse velocidaddedeslizamiento velocidadlineal "
+            "velocidad velocitadiscorrimento velocitadistrisciamento velocitalineare velocita "
+            "滑动速度 滑動速度 线速度 すべり速度 滑り速度 摺動速度 速度"
+        ),
+    ),
+    Word(
+        "position",
+        _words("x s pos xpos enc disp"),
+        _words(
+            "position displacement displ stroke slidingdistance distance verschiebung auslenkung "
+            "gleitweg strecke weg hub travel encoder "
+            "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "
+            "位移 位置 行程 滑动距离 変位 ストローク 摺動距離"
+        ),
+        _words("lvdt"),
+    ),
+    Word(
+        "set_speed",
+        _words("vset vsoll"),
+        _words(
+            "setspeed setvelocity targetspeed speedset sollgeschwindigkeit geschwindigkeitsoll "
+            "vitessedeconsigne 设定速度 設定速度"
+        ),
+    ),
+    Word(
+        "set_normal_force",
+        _words("fset fsoll fzset fnset"),
+        _words(
+            "setload setforce setnormalforce targetload targetforce sollkraft solllast "
+            "chargedeconsigne 设定载荷 設定荷重"
+        ),
+    ),
+    Word(
+        "rolling_speed", (), _words("rollingspeed entrainmentspeed entrainment rollgeschwindigkeit")
+    ),
+    Word("slide_roll_ratio", ("srr",), _words("slideroll slidetoroll schlupf")),
+    Word(
+        "rotation_speed",
+        _words("rpm n omega"),
+        _words(
+            "rotation drehzahl rotary angularspeed angularvelocity rotationalspeed "
+            "vitessederotation velocidaddegiro velocidadderotacion giri velocitadirotazione "
+            "转速 轉速 回転数 回転速度"
+        ),
+        _words("speed velocity geschwindigkeit vitesse velocidad velocita 速度"),
+    ),
+    Word(
+        "normal_stress",
+        ("sigman",),
+        _words("normalstress normalspannung contactpressure pressung contraintenormale 法向应力"),
+    ),
+    Word(
+        "shear_stress",
+        ("tau",),
+        _words("shearstress frictionstress schubspannung stress cisaillement 剪切应力 せん断応力"),
+    ),
+    Word("shear_rate", (), _words("shearrate scherrate schergefaelle 剪切速率 せん断速度")),
+    Word("viscosity", ("eta",), _words("viscosity viskositaet viscosite viscosita 粘度 黏度")),
+    Word(
+        "temperature",
+        _words("t temp theta"),
+        _words(
+            "lubetemp lubertdtemp contacttemp temperature temperatur temp temperatura 温度 溫度"
+        ),
+    ),
+    Word(
+        "ambient_pressure",
+        ("p",),
+        _words("ambientpressure airpressure luftdruck pressure druck pression presion pressione")
+        + _words("气压 圧力 压力"),
+    ),
+    Word("film_thickness", (), _words("filmthickness averagefilm schmierfilm filmdicke film 膜厚")),
+    Word(
+        "height_displacement",
+        ("z",),
+        _words(
+            "height wear verschleiss depth hoehe usure desgaste usura penetration eindringtiefe "
+            "磨损 磨損 摩耗"
+        ),
+        _words("lvdt"),
+    ),
+    Word(
+        "electrical_contact_resistance",
+        ("ecr",),
+        _words("contactresistance uebergangswiderstand resistancedecontact 接触电阻 接触抵抗"),
+    ),
+    Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
+    Word(
+        "step",
+        _words("step schritt segment stage etape paso passo 步骤"),
+        _words("stepno stepnumber"),
+    ),
+    Word(
+        "cycle",
+        _words("cycle zyklus lap laps revolution cycles ciclo tour tours vuelta giro n循环"),
+        _words("cycleno cyclenumber cyclecount zykluszahl 循环 循環 サイクル 圈数 回数"),
+    ),
+)
+
+SCAN_WORDS = (
+    Word(
+        "x", ("x",), _words("lateral position distance messweg weg strecke laenge length abstand")
+    ),
+    Word("y", ("y",), ()),
+    Word(
+        "height",
+        _words("z h"),
+        _words(
+            "height hoehe profile profil amplitude topography depth tiefe raw hauteur altura "
+            "altezza 高度 高さ"
+        ),
+    ),
+)
