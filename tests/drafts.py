@@ -1,8 +1,8 @@
 """What the tests of drafted dialects share."""
 
 from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.read import read
 from tribolab.io.dialects.find import load_dialect
-from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 
 

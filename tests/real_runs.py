@@ -4,7 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.io.read import read
+from tribolab.draft.read import read
 
 
 def actuator(folder: Path, name: str) -> xr.Dataset:

@@ -8,8 +8,8 @@ import pytest
 from drafts import drafted
 
 from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.read import read
 from tribolab.errors import OutputError, ReadError
-from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 

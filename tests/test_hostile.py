@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from tribolab.cli import app
 from tribolab.draft.draft import draft_dialect
+from tribolab.draft.read import read
 from tribolab.errors import TribolabError
-from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 
 _QUICK = re.compile(

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 from tribolab.app.checks import check_files
+from tribolab.draft.read import read
 from tribolab.errors import ConfigError, ReadError
-from tribolab.io.read import read
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run_checks import RUN_CHECKS, check_run
 from tribolab.rig import (

@@ -9,8 +9,8 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tribolab.draft.read import read
 from tribolab.errors import ConfigError
-from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.schema import load_schema, validate

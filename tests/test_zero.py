@@ -8,6 +8,7 @@ from real_runs import actuator, rock
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.draft.read import read
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
@@ -17,7 +18,6 @@ from tribolab.friction.zero.offsets import wander
 from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
-from tribolab.io.read import read
 from tribolab.qc.run_checks import check_run
 
 MU, LOAD, SPEED = 0.3, 31.0, 1e-3

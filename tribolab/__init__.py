@@ -21,7 +21,7 @@ from tribolab.version import __version__
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
-    "read": "tribolab.io.read",
+    "read": "tribolab.draft.read",
     "variables": "tribolab.variables",
     "draft_dialect": "tribolab.draft.draft",
     "read_netcdf": "tribolab.io.netcdf",
@@ -161,6 +161,7 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.draft.draft import draft_dialect
+    from tribolab.draft.read import read
     from tribolab.errors import TribolabError
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
@@ -176,7 +177,6 @@ if TYPE_CHECKING:
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
-    from tribolab.io.read import read
     from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.relative_factors import relative_flow_factors

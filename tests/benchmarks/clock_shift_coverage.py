@@ -23,9 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.read import read
 from tribolab.errors import ReadError
 from tribolab.io.clocks.merge import merge
-from tribolab.io.read import read
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

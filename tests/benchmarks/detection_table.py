@@ -18,8 +18,8 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from tribolab.draft.read import read
 from tribolab.errors import ReadError
-from tribolab.io.read import read
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run_checks import check_run
 from tribolab.rig import FAULTS, Protocol, Rig, simulate_run

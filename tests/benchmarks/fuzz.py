@@ -40,9 +40,9 @@ import numpy as np
 from mutations import MADE, mutate
 
 from tribolab.draft.draft import draft_dialect
+from tribolab.draft.read import read
 from tribolab.errors import TribolabError
 from tribolab.io.netcdf import read_netcdf
-from tribolab.io.read import read
 from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 

@@ -16,10 +16,10 @@ from rich.table import Table
 from tribolab.app.file_info import read_scan
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
+from tribolab.draft.on_the_fly import holds_run, read_run
 from tribolab.errors import ConfigError, TribolabError, told
 from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.logs import group_files
-from tribolab.io.runs import read_run
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run_checks import check_run
@@ -112,7 +112,7 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
     def plan(self) -> list[CheckTask]:
         """Put together what is to be compared."""
         kinds = {
-            group: kind_of(group[0], self._instrument) if len(group) == 1 else "run"
+            group: _kind_of(group[0], self._instrument) if len(group) == 1 else "run"
             for group in self.groups
         }
         scans = [g[0] for g, kind in kinds.items() if kind not in ("run", "results")]
@@ -141,6 +141,11 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
     def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
         """Return what was found."""
         return record
+
+
+def _kind_of(path: Path, instrument: str | Path | None) -> str:
+    kind = kind_of(path, instrument)
+    return "run" if kind == "unknown" and holds_run(path) else kind
 
 
 def check_files(

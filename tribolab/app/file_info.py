@@ -9,12 +9,13 @@ from typing import Any
 
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
+from tribolab.draft.on_the_fly import describe, holds_run, read_run
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.kinds import kind_of
-from tribolab.io.runs import describe, read_run
+from tribolab.io.runs import read_run as known_run
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
@@ -36,6 +37,8 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         If there is no such instrument.
     """
     kind = kind_of(path, instrument)
+    if kind == "unknown" and holds_run(path):
+        return run_lines(describe(path))
     if kind == "run":
         described = describe(path, instrument)
         return run_lines(described) + companion_lines(describe_companion(path, instrument))
@@ -94,10 +97,12 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
         [scan] = read_scans([path], instrument, stack=False)
     except ReadError as error:
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
+            # a map or profile, but for its units
+            bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
             try:
-                read_run(path)  # says which instruments there are
+                known_run(path) if bare else read_run(path)  # says what is missing
             except ReadError as as_run:
-                if isinstance(error, NotSaidError):
+                if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
                     raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
                 raise

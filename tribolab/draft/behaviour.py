@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.draft.model import other_units, time_unit
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 
 if TYPE_CHECKING:
@@ -87,7 +88,13 @@ def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn
     x_unit, z_unit = _scan_units(part, 2)
     units = (x_unit, x_unit, z_unit)
     axes = [
-        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
+        column._replace(
+            quantity=q,
+            unit=u,
+            used=True,
+            guessed=(f"it is {q} in {u}",),
+            options=other_units("m", u),
+        )
         for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
     ]
     return axes, ["it is a map: columns 1 and 2 fill a grid"]
@@ -95,7 +102,13 @@ def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn
 
 def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
     axes = [
-        column._replace(quantity=q, unit=u, used=True, guessed=(f"it is {q} in {u}",))
+        column._replace(
+            quantity=q,
+            unit=u,
+            used=True,
+            guessed=(f"it is {q} in {u}",),
+            options=other_units("m", u),
+        )
         for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
     ]
     return axes, ["it is a profile: two columns, the first rises in even steps"]
@@ -104,8 +117,6 @@ def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftCo
 def _run(
     columns: list[DraftColumn], part: np.ndarray, time: int
 ) -> tuple[list[DraftColumn], list[str]]:
-    from tribolab.draft.model import time_unit
-
     unit = time_unit(part[:, time])
     rises = "it rises in every row"
     if (np.diff(part[:, time]) <= 0).any():
@@ -113,6 +124,7 @@ def _run(
     why = f"it is time in {unit}: {rises}"
     result = list(columns)
     result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
+    result[time] = result[time]._replace(options=(*other_units("s", unit), "not used"))
     others = [i for i in range(part.shape[1]) if i != time]
     kin = _kin(part, others)
     smooth = [i for i in others if _runs_to_and_fro(part[:, i])]
@@ -124,7 +136,11 @@ def _run(
     if position is not None:
         why = "it is the position in mm: it runs smoothly to and fro"
         result[position] = columns[position]._replace(
-            quantity="position", unit="mm", used=True, guessed=(why,)
+            quantity="position",
+            unit="mm",
+            used=True,
+            guessed=(why,),
+            options=(*other_units("m", "mm"), "not used"),
         )
     return result, []
 

@@ -46,10 +46,10 @@ def find_clock(
         twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
         lossless = (twin | np.isnan(others).all(axis=1))[bad].all()
         on_repeat = "drop" if lossless else "interpolate"
-        done = "are left out: they say nothing new" if lossless else "get times between the others'"
-        notes.append(f"{int(bad.sum())} rows whose time is not later than before {done}")
-    columns = [
-        c._replace(guessed=(*c.guessed, *dict.fromkeys(notes))) if c.place == column.place else c
-        for c in columns
-    ]
-    return on_repeat, restart, columns
+        told = f"{int(bad.sum())} rows whose time is not later than before"
+        if lossless:  # no guess: nothing else could be done with them
+            column = column._replace(note=f"{told} are left out: they say nothing new")
+        else:
+            notes.append(f"{told} get times between the others'")
+    column = column._replace(guessed=(*column.guessed, *dict.fromkeys(notes)))
+    return on_repeat, restart, [column if c.place == column.place else c for c in columns]

@@ -10,7 +10,7 @@ import pandas as pd
 
 from tribolab.draft.header import converts, is_unit
 from tribolab.draft.layout import Layout
-from tribolab.draft.model import DraftColumn, Kind, Understood, time_unit
+from tribolab.draft.model import DraftColumn, Kind, Understood, other_units, time_unit
 from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
@@ -185,6 +185,7 @@ def _assigned(
             # of names used twice the later counts: exporters repeat first what was plotted
             rank = (option.score, bool(filled[index]), index)
             proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
+    _give_way(proposals, matched)
     result = list(columns)
     for index, column in enumerate(columns):
         if not column.label:
@@ -198,17 +199,39 @@ def _assigned(
             result[index] = column._replace(note="the name is not known")
     for name, rivals in proposals.items():
         best = max(rivals)
+        names = [f"column {place + 1}" for place in sorted(r.place for r in rivals)]
         for _, index, option in rivals:
             if index == best.place:
                 second = sorted(rivals)[-2] if len(rivals) > 1 else None
                 several = second is not None and second.rank[0] > best.rank[0] - 0.05
-                result[index] = _column(
+                others = [o.quantity for o in matched[index] if o.quantity != name]
+                column = _column(
                     columns[index], bare[index], option, numbers[:, index], kind, several
                 )
+                if several:
+                    own = f"column {index + 1}"
+                    column = column._replace(
+                        options=(*column.options, *(n for n in names if n != own))
+                    )
+                if option.score < SURE:
+                    column = column._replace(options=(*column.options, *others, "not used"))
+                result[index] = column
             else:
                 note = f"also looks like {name}; column {best.place + 1} is used"
                 result[index] = columns[index]._replace(quantity=name, note=note)
     return result
+
+
+def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]]) -> None:
+    """Let a vague name mean what nothing else is called, where a better one has its quantity."""
+    for rivals in list(proposals.values()):
+        best = max(rivals)
+        for rival in [r for r in rivals if r is not best and r.option.score < SURE]:
+            others = [o for o in matched[rival.place] if o.score >= rival.option.score - 0.05]
+            free = [o for o in others if o.quantity not in proposals]
+            if free and best.option.score >= SURE:
+                rivals.remove(rival)
+                proposals[free[0].quantity] = [rival._replace(option=free[0])]
 
 
 def _without_axes(
@@ -260,6 +283,7 @@ def _column(
     _, unit, say_unit = bare
     si_unit = quantity(option.quantity).unit
     guessed = []
+    options: tuple[str, ...] = ()
     if option.score < SURE:
         guessed.append(f"the name means {quantity(option.quantity).long_name}")
     if several:
@@ -273,16 +297,20 @@ def _column(
         if option.quantity == "time":
             written = time_unit(values)
             guessed.append(f"time is in {written}")
+            options = other_units("s", written)
         elif kind == "scan":
             written = "mm" if option.quantity in ("x", "y") else "um"
             guessed.append(f"{option.quantity} is in {written}")
+            options = other_units("m", written)
         else:
             fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
+            options = other_units(si_unit)
     finite = values[np.isfinite(values)]
     sign = 1
     if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():
         sign = -1
         guessed.append("the normal force is counted negative")
+        options = (*options, "counted positive")
     used, note = not fill_in, ""
     if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
         used, note, fill_in = False, "it stands still", ""
@@ -293,6 +321,7 @@ def _column(
         optional=not finite.size and option.quantity != "time",
         used=used and (bool(finite.size) or option.quantity != "time"),
         guessed=tuple(guessed),
+        options=options,
         note=note or ("" if finite.size else "no value in this file"),
         fill_in=fill_in,
     )

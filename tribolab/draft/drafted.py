@@ -56,6 +56,12 @@ class Drafted(NamedTuple):
         return Dialect.model_validate(tomllib.loads(self.toml)) if self.toml else None
 
     @property
+    def named(self) -> bool:
+        """Whether names in a header, and not the numbers alone, say what the columns hold."""
+        columns = self.understood.columns if self.understood else ()
+        return any(column.label and column.quantity for column in columns)
+
+    @property
     def guesses(self) -> tuple[str, ...]:
         """What was guessed, in the order of the file."""
         if self.layout is None or self.understood is None:
@@ -67,7 +73,12 @@ class Drafted(NamedTuple):
             for column in self.understood.columns
             for guess in column.guessed
         ]
-        return (*self.layout.guesses, *self.understood.guesses, *columns)
+        return (
+            *self.layout.notes,
+            *self.layout.guesses,
+            *self.understood.guesses,
+            *columns,
+        )
 
     @property
     def to_fill_in(self) -> Mapping[int, str]:

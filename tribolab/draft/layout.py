@@ -43,6 +43,7 @@ class Layout(NamedTuple):
     end: str | None
     skip_lines: str | None
     whole: bool
+    notes: tuple[str, ...]
     guesses: tuple[str, ...]
 
     @property
@@ -84,7 +85,8 @@ def find_layout(file: File) -> Layout:
     ReadError
         If it holds no table of numbers.
     """
-    encoding, guesses = find_encoding(file.head)
+    encoding, notes = find_encoding(file.head)
+    guesses: list[str] = []
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
     lines = tuple(line_feeds(text).split("\n"))
@@ -141,6 +143,7 @@ def find_layout(file: File) -> Layout:
         end=end,
         skip_lines=skip_lines,
         whole=file.size <= HEAD,
+        notes=tuple(notes),
         guesses=tuple(guesses),
     )
 

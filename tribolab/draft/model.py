@@ -14,6 +14,7 @@ class DraftColumn(NamedTuple):
 
     `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
+    `options` is what it may be instead, where something is guessed.
     """
 
     place: int
@@ -27,6 +28,7 @@ class DraftColumn(NamedTuple):
     optional: bool = False
     used: bool = False
     guessed: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
     note: str = ""
     fill_in: str = ""
 
@@ -46,6 +48,28 @@ class Understood(NamedTuple):
     on_repeat: Literal["", "drop", "interpolate"]
     restart: bool
     guesses: tuple[str, ...]
+
+
+_UNITS = {
+    "s": ("s", "ms", "min"),
+    "m": ("mm", "um", "m"),
+    "N": ("N", "mN", "gf"),
+    "m/s": ("mm/s", "m/s", "um/s"),
+    "rad/s": ("1/min", "Hz", "rad/s"),
+    "K": ("degC", "K"),
+    "Pa": ("MPa", "kPa", "bar", "Pa"),
+    "V": ("V", "mV"),
+    "Pa s": ("mPa s", "Pa s"),
+}
+
+
+def other_units(si_unit: str, chosen: str = "") -> tuple[str, ...]:
+    """Return units that instruments write for what is measured in an SI unit, but the chosen one.
+
+    >>> other_units("s", "ms")
+    ('s', 'min')
+    """
+    return tuple(unit for unit in _UNITS.get(si_unit, (si_unit,)) if unit != chosen)
 
 
 def time_unit(values: np.ndarray) -> str:

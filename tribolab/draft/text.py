@@ -67,7 +67,7 @@ class Grammar:
 
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
-    """Return the encoding, and what was guessed of it."""
+    """Return the encoding, and what was guessed of it (which changes no number)."""
     if head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16", []
     try:

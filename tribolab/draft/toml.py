@@ -54,7 +54,10 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
         f"name = {_text(name)}",
         f"title = {_text('files like ' + file)}",
     ]
-    lines += [f"# guessed: {_comment(guess)}" for guess in (*layout.guesses, *understood.guesses)]
+    lines += [
+        f"# guessed: {_comment(guess)}"
+        for guess in (*layout.notes, *layout.guesses, *understood.guesses)
+    ]
     if layout.others:
         lines.append(f"# {layout.others} more tables stand in the file; they are not read")
     return "\n".join(lines) + "\n"
@@ -102,7 +105,7 @@ def _time_table(understood: Understood) -> str:
             lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
             lines.append('# source = "rate"\n# rate = "? Hz"')
     if understood.on_repeat == "drop":
-        lines.append('on_repeat = "drop"    # guessed: leave out rows that repeat the one before')
+        lines.append('on_repeat = "drop"    # rows that repeat the one before are left out')
     elif understood.on_repeat:
         lines.append(
             'on_repeat = "interpolate"    # guessed: rows that are not later get times between'

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from tribolab.io.dialects.find import Dialect, known_dialects, load_dialect
+from tribolab.io.dialects.find import Dialect, Instrument, known_dialects, load_dialect
 
 PathLike = str | Path
 
 
 def group_files(
-    paths: Iterable[PathLike], instrument: str | Path | None = None
+    paths: Iterable[PathLike], instrument: Instrument | None = None
 ) -> list[list[Path]]:
     """Put the files of each run together: two logs where the instrument writes two, else one.
 

@@ -18,7 +18,14 @@ from tribolab.io.content.model import Content
 from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.derived import add_derived
-from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, recognise
+from tribolab.io.dialects.find import (
+    Dialect,
+    Instrument,
+    is_scan,
+    known_dialects,
+    load_dialect,
+    recognise,
+)
 from tribolab.io.dialects.model import FRICTION
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike, companion_path
@@ -38,7 +45,7 @@ from tribolab.untyped import Json
 
 def read_run(
     path: PathLike | Sequence[PathLike],
-    instrument: str | Path | None = None,
+    instrument: Instrument | None = None,
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
@@ -121,7 +128,7 @@ class FileFacts(TypedDict):
     metadata: dict[str, object]
 
 
-def describe(path: PathLike, instrument: str | Path | None = None) -> FileFacts:
+def describe(path: PathLike, instrument: Instrument | None = None) -> FileFacts:
     """Say what was understood of one raw file.
 
     Parameters
@@ -180,7 +187,7 @@ def describe(path: PathLike, instrument: str | Path | None = None) -> FileFacts:
     }
 
 
-def _dialects(paths: list[Path], instrument: str | Path | None) -> list[Dialect]:
+def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]:
     """Dialect of each file; a companion log has its own, told by the ending of its name."""
     if instrument is None:
         return [recognise(path) for path in paths]

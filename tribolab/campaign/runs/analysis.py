@@ -118,7 +118,7 @@ def _examined(
 
 
 def _read(run: PlannedRun) -> xr.Dataset:
-    from tribolab.io.runs import read_run
+    from tribolab.draft.on_the_fly import read_run
 
     files = list(run.files)
     return read_run(

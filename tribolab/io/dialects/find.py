@@ -18,6 +18,8 @@ from tribolab.untyped import Json
 
 __all__ = [
     "Dialect",
+    "Instrument",
+    "UnknownFileError",
     "is_scan",
     "json_schema",
     "known_dialects",
@@ -28,7 +30,12 @@ __all__ = [
 ]
 
 
+Instrument = str | Path | Dialect  # a name, a TOML file, or what it says
 _SHOWN = 5  # mistakes of a dialect that are told at once
+
+
+class UnknownFileError(ReadError):
+    """No dialect describes such a file; one may be drafted from it."""
 
 
 def known_dialects() -> dict[str, Path]:
@@ -42,13 +49,13 @@ def known_dialects() -> dict[str, Path]:
     return {path.stem: path for path in sorted((schema_folder() / "instruments").glob("*.toml"))}
 
 
-def load_dialect(name_or_path: str | Path) -> Dialect:
+def load_dialect(name_or_path: Instrument) -> Dialect:
     """Return the dialect of a known instrument, or of a TOML file of your own.
 
     Parameters
     ----------
     name_or_path
-        Name of a known instrument, or path of a TOML file.
+        Name of a known instrument, path of a TOML file, or a dialect, which is returned as it is.
 
     Raises
     ------
@@ -60,6 +67,8 @@ def load_dialect(name_or_path: str | Path) -> Dialect:
     >>> load_dialect("linear_slider").text.delimiter
     ','
     """
+    if isinstance(name_or_path, Dialect):
+        return name_or_path
     known = known_dialects()
     if str(name_or_path) in known:
         return _load(known[str(name_or_path)])
@@ -107,14 +116,14 @@ def recognise(path: str | Path) -> Dialect:
     raise unknown(file, cures.RUN)
 
 
-def unknown(file: File, table: str) -> ReadError:
+def unknown(file: File, table: str) -> UnknownFileError:
     """Return what is said of a file that no dialect fits."""
     what = f"no known instrument writes such a file ({file.format})"
     if file.format != "text":
         folder = "describe it as raw_data_schema/README.md says"
         cure = cures.name_instrument(table, say=f"{folder}, and name that with")
-        return ReadError(what, where=file.path, cure=cure)
-    return ReadError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
+        return UnknownFileError(what, where=file.path, cure=cure)
+    return UnknownFileError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
 
 
 def is_scan(dialect: Dialect) -> bool:

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, overload
 
 import xarray as xr
 
+from tribolab.draft.on_the_fly import read_run
 from tribolab.errors import ReadError
+from tribolab.io.dialects.find import Instrument
 from tribolab.io.logs import PathLike, group_files
 from tribolab.io.patterns import is_pattern, matching
-from tribolab.io.runs import read_run
 from tribolab.untyped import Arguments
 
 
 @overload
 def read(
     path: PathLike,
-    instrument: str | Path | None = None,
+    instrument: Instrument | None = None,
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
@@ -29,7 +29,7 @@ def read(
 @overload
 def read(
     path: Sequence[PathLike],
-    instrument: str | Path | None = None,
+    instrument: Instrument | None = None,
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
@@ -39,7 +39,7 @@ def read(
 
 def read(
     path: PathLike | Sequence[PathLike],
-    instrument: str | Path | None = None,
+    instrument: Instrument | None = None,
     *,
     pair: bool = True,
     clock_shift: str | float | None = None,
@@ -54,8 +54,10 @@ def read(
         ``"raw/*.csv"`` (``**`` stands for folders, too); or a list: the two logs of a run, or the
         files of consecutive cycles, in any order if they say when they start.
     instrument
-        Name of a known instrument, or path of a TOML description of your own. Without it the
-        instrument is recognised by the file's content.
+        Name of a known instrument, path of a TOML description of your own, or a dialect such as
+        ``tl.draft_dialect(path).dialect``. Without it the instrument is recognised by the file's
+        content; text that none is known to write is read all the same where its header says
+        what every column is, and ``instrument`` is then "drafted from the file".
     pair
         Also read the companion log, if the instrument writes one and it lies beside the file.
     clock_shift
@@ -77,7 +79,8 @@ def read(
     ------
     ReadError
         If a file cannot be read, or no file is called as the pattern says; the message says what,
-        where and how to mend it.
+        where and how to mend it. Of a file of an unknown instrument it says what would have to be
+        guessed, with what else it may be.
     ConfigError
         If there is no such instrument.
 
@@ -103,7 +106,7 @@ def read(
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
     settings: Arguments = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
-    if not isinstance(path, str | Path) or not is_pattern(path):
+    if not isinstance(path, PathLike) or not is_pattern(path):
         return read_run(path, instrument, **settings)
     files = [file for file in matching(path) if file.is_file()]
     if not files:

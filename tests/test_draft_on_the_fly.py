@@ -1,0 +1,131 @@
+"""Files that no dialect knows: read by what they say themselves, or asked about all at once."""
+
+import pickle
+import re
+import tomllib
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import tribolab as tl
+from tribolab import cli
+from tribolab.draft.questions import GuessedError
+from tribolab.errors import ReadError
+
+GOOD = "Temps (s);Force de frottement (N);Charge (N);Vitesse (mm/s)"
+OPEN = "Zeit;Reibkraft;Load Cell [N];Weg [mm]"
+
+
+def table(header, n=400):
+    rng = np.random.default_rng(1)
+    t = np.arange(n) / 10
+    columns = [t, 6 + 0.1 * rng.standard_normal(n), 30 + 0.1 * rng.standard_normal(n)]
+    columns.append(10 + 0.01 * rng.standard_normal(n))
+    rows = "\n".join(";".join(f"{v:.4f}" for v in row) for row in zip(*columns, strict=True))
+    return f"{header}\n{rows}\n"
+
+
+@pytest.fixture
+def good(tmp_path):
+    file = tmp_path / "bon essai.csv"
+    file.write_text(table(GOOD), encoding="latin-1")
+    return file
+
+
+@pytest.fixture
+def unclear(tmp_path):
+    file = tmp_path / "odd.csv"
+    file.write_text(table(OPEN))
+    return file
+
+
+def command(*words):
+    return CliRunner().invoke(cli.app, [str(word) for word in words])
+
+
+def test_a_file_that_says_everything_is_read_and_says_how_to_keep_the_draft(good):
+    run = tl.read(good)
+    assert run.attrs["instrument"] == "drafted from the file"
+    assert run.attrs["to_keep_it"] == "tribolab dialect 'bon essai.csv'"
+    mu = tl.friction_coefficient(run, tl.find_segments(run, trim=0.1))
+    assert float(mu.friction_coefficient[0]) == pytest.approx(0.2, abs=0.002)
+    [same] = tl.read(good.parent / "*.csv")
+    assert same.friction_force.equals(run.friction_force)
+    by_hand = tl.read(good, tl.draft_dialect(good).dialect)
+    assert by_hand.friction_force.equals(run.friction_force)
+
+
+def test_several_files_of_one_run_are_read_by_the_draft_of_the_first(good):
+    header, *rows = good.read_bytes().splitlines(keepends=True)
+    whole = tl.read(good).friction_force.values
+    second = good.with_name("z.csv")
+    good.write_bytes(header + b"".join(rows[:150]))
+    second.write_bytes(header + b"".join(rows[150:]))
+    run = tl.read([good, second])
+    np.testing.assert_array_equal(run.friction_force, whole)
+    assert np.unique(run.cycle).tolist() == [1, 2]
+
+
+def test_what_is_open_is_asked_all_at_once_with_the_alternatives(unclear):
+    with pytest.raises(GuessedError) as caught:
+        tl.read(unclear)
+    error = pickle.loads(pickle.dumps(caught.value))
+    told = str(error)
+    assert re.search(r"column 1 'Zeit' +time is in s +or: ms, min\n", told)
+    assert re.search(r"column 2 'Reibkraft' +friction_force, in which unit\? +or: N, mN, gf", told)
+    assert re.search(r"column 3 'Load Cell \[N\]' +the name means normal force +or: frict", told)
+    assert told.endswith("'tribolab dialect odd.csv' drafts a description of it: "
+                         "name it with instrument=")  # fmt: skip
+    assert "\n" not in error.told("campaign") and "in which unit?" in error.told("campaign")
+    assert "linear_slider" not in told  # nor any other of the known
+
+
+def test_numbers_without_names_are_asked_about_and_not_read(tmp_path):
+    file = tmp_path / "bare.txt"
+    position = 20 * np.sin(np.arange(900) / 60)
+    force = np.random.default_rng(0).normal(0, 1, 900)
+    np.savetxt(file, np.column_stack([np.arange(900) * 10, position, force]), fmt="%.4f")
+    with pytest.raises(GuessedError, match="it is the position in mm"):
+        tl.read(file)
+    told = command("info", file)
+    assert told.exit_code == 3 and "it is time in ms" in told.stderr
+    assert "or: s, min, not used" in told.stderr
+
+
+def test_the_commands_take_the_same_way(good, unclear, tmp_path):
+    told = command("info", good, unclear)
+    assert told.exit_code == 3 and "bon essai.csv: drafted from the file\n" in told.stdout
+    assert "to_keep_it: tribolab dialect 'bon essai.csv'" in told.stdout
+    assert "column 2 'Reibkraft'" in told.stderr and "name it with --instrument" in told.stderr
+    checked = command("check", good)
+    assert checked.exit_code != 3 and "unreadable" not in checked.stdout
+    (tmp_path / "raw").mkdir()
+    for file in (good, unclear):
+        file.rename(tmp_path / "raw" / file.name)
+    (tmp_path / "campaign.toml").write_text(
+        f'[campaign]\nname = "a"\n[[run]]\nfiles = "{good.name}"\n'
+        f'[[run]]\nfiles = "{unclear.name}"\n'
+    )
+    made = command("run", tmp_path / "campaign.toml", "-q", "-j", "1", "--figures", "none")
+    assert made.exit_code == 3 and "odd failed: " in made.stderr
+    assert "column 1 'Zeit': time is in s (or ms, min); column 2" in made.stderr
+    friction = (tmp_path / "results/tables/friction.csv").read_text()
+    assert "bon_essai" in friction
+
+
+def test_a_table_that_is_no_run_stays_unknown(tmp_path):
+    file = tmp_path / "dma.csv"
+    file.write_text("f,E_stor\nHz,MPa\n1,2\n2,3\n")
+    with pytest.raises(ReadError, match="no known instrument writes such a file") as caught:
+        tl.read(file)
+    assert not isinstance(caught.value, GuessedError)
+
+
+def test_writing_the_draft_down_and_naming_it_reads_the_same(good, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert command("dialect", good.name).exit_code == 0
+    run = tl.read(good, "bon_essai.toml")
+    assert run.attrs["instrument"] == "bon_essai"
+    assert run.friction_force.equals(tl.read(good).friction_force)
+    assert tomllib.loads((tmp_path / "bon_essai.toml").read_text("utf-8"))["name"] == "bon_essai"

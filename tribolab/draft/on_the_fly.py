@@ -1,0 +1,119 @@
+"""Read a run of any instrument: one that is not known is described from its file, if that says all.
+
+The face of `tribolab.io.runs` for whoever does not know beforehand what wrote a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.errors import ReadError
+from tribolab.io import cures, runs
+from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
+from tribolab.io.dialects.signature import peek
+from tribolab.io.logs import PathLike
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.draft.draft import Draft
+
+DRAFTED = "drafted from the file"
+
+
+def read_run(
+    path: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    pair: bool = True,
+    clock_shift: str | float | None = None,
+    zero: str | None = None,
+) -> xr.Dataset:
+    """Read one run; a text file that no dialect knows is read by one that is drafted from it.
+
+    Parameters
+    ----------
+    path, instrument, pair, clock_shift, zero
+        As for `tribolab.read`, but for patterns.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `tribolab.read`. Of what was drafted, ``instrument`` says so, and ``to_keep_it``
+        how to write it down.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read; of one that says too little itself, with the guesses.
+    ConfigError
+        If there is no such instrument.
+    """
+    try:
+        return runs.read_run(path, instrument, pair=pair, clock_shift=clock_shift, zero=zero)
+    except UnknownFileError as error:
+        paths = [Path(path)] if isinstance(path, PathLike) else [Path(one) for one in path]
+        if error.where != str(paths[0]):
+            raise  # some files of the run are a known instrument's
+        dialect = _drafted(paths[0], error)
+    run = runs.read_run(path, dialect, pair=False, clock_shift=clock_shift, zero=zero)
+    return run.assign_attrs(_told(paths[0]))
+
+
+def describe(path: PathLike, instrument: Instrument | None = None) -> runs.FileFacts:
+    """Say what was understood of one raw file, as `tribolab.io.runs.describe` does.
+
+    Raises
+    ------
+    ReadError
+        As for `read_run`.
+    """
+    try:
+        return runs.describe(path, instrument)
+    except UnknownFileError as error:
+        dialect = _drafted(Path(path), error)
+    facts = runs.describe(path, dialect)
+    told = _told(Path(path))
+    facts["instrument"], facts["title"] = told.pop("instrument"), ""
+    facts["metadata"] = {**facts["metadata"], **told}
+    return facts
+
+
+def holds_run(path: Path, *, by_name: bool = True) -> bool:
+    """Whether a text file that no dialect knows holds a run, by names in its header or at all."""
+    draft = _draft(path)
+    return draft is not None and draft.kind == "run" and (draft.named or not by_name)
+
+
+def _drafted(path: Path, error: UnknownFileError) -> Dialect:
+    """Return the dialect that a file's own header makes; else say what it leaves open."""
+    from tribolab.draft.questions import GuessedError, questions
+
+    draft = _draft(path)
+    if draft is None or draft.kind == "table":
+        raise error
+    if asked := questions(draft):
+        raise GuessedError(path, asked) from error
+    if draft.kind == "scan":
+        what = "no known instrument writes such a file (text); it looks like a profile or map"
+        raise ReadError(what, where=path, cure=cures.PROFILE) from error
+    assert draft.dialect is not None  # only tables have none
+    return draft.dialect
+
+
+def _draft(path: Path) -> Draft | None:
+    """Draft a dialect; None of what is no text, or holds no table."""
+    from tribolab.draft.draft import draft_dialect
+
+    try:
+        return draft_dialect(path) if peek(path).format == "text" else None
+    except ReadError:
+        return None
+
+
+def _told(path: Path) -> dict[str, str]:
+    from tribolab.draft.questions import how_to_keep
+
+    return {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
