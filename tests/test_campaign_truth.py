@@ -1,11 +1,14 @@
 """Found against true: what is found, missed and extra, and whether the error bars hold."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
 from campaigns import simulated
 
+from tribolab.app.demo import run_demo
 from tribolab.app.truth import compare_run, compare_with_truth, summary
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
@@ -85,3 +88,13 @@ def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
     np.testing.assert_allclose(speed, 1, atol=0.02)
     np.testing.assert_allclose(table["start_s"], table["true_start_s"], atol=0.5)
     assert result.within_3 > 0.9
+
+
+@pytest.mark.slow
+def test_the_demo_leaves_the_truth_beside_its_results(tmp_path):
+    outcome, compared = run_demo(simulated(tmp_path).parent, jobs=1)
+    tables = Path(outcome.folder) / "tables"
+    for name in ("truth", "truth_surfaces", "truth_shear_stress", "paper"):
+        assert pd.read_csv(tables / f"{name}.csv").shape[1] > 5, name
+    written = pd.read_csv(tables / "truth.csv")
+    assert len(written) == len(compared.runs.table) == 24
