@@ -74,7 +74,8 @@ def read_run(
     if not paths:
         raise ReadError("no file is given")
     shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
-    if len(paths) == 1 and peek(paths[0]).format == "netcdf":
+    other = instrument is not None and load_dialect(instrument).format in ("hdf5", "binary")
+    if len(paths) == 1 and not other and peek(paths[0]).format == "netcdf":
         from tribolab.io.own_run import read_own_run
 
         return read_own_run(paths[0])

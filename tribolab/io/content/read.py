@@ -13,7 +13,7 @@ from tribolab.io.content.model import LARGEST, Content, Piece
 from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, symbols
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, peek
+from tribolab.io.dialects.signature import File, fits, peek
 from tribolab.pieces import anywhere
 from tribolab.provenance import sha256_of_file
 
@@ -41,8 +41,8 @@ def read_content(path: Path, dialect: Dialect) -> Content:
     ReadError
         If the file is not what the dialect says.
     """
-    file = peek(path)
-    if file.format != dialect.format:
+    file = peek(path, binary=dialect.format == "binary")
+    if not fits(file.format, dialect.format):
         raise ReadError(
             f"{path}: this is a {file.format} file, instrument '{dialect.name}' writes "
             f"{dialect.format}"
@@ -50,13 +50,19 @@ def read_content(path: Path, dialect: Dialect) -> Content:
     if dialect.format == "mat":
         from tribolab.io.content.mat import read_mat
 
-        content = read_mat(path, dialect)
+        content = read_mat(file.path, dialect)
     elif dialect.format == "tdms":
         from tribolab.io.content.tdms import read_tdms
 
-        content = read_tdms(path, dialect)
+        content = read_tdms(file.path, dialect)
+    elif dialect.format != "text":
+        from tribolab.io.content.columnar import read_columnar
+
+        content = read_columnar(file.path, dialect)
     else:
         content = _read_text(file, dialect)
+    if file.path != path:  # it was compressed
+        content = content._replace(path=path, sha256=sha256_of_file(path))
     return _checked(content, dialect)
 
 

@@ -11,6 +11,7 @@ import contextlib
 import re
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -76,6 +77,17 @@ Pattern = Annotated[str, AfterValidator(_is_pattern)]
 Encoding = Annotated[str, AfterValidator(_is_encoding)]
 QuantityName = Annotated[str, AfterValidator(_is_quantity)]
 Formula = Annotated[str, AfterValidator(_is_formula)]
+
+
+def _is_field(text: str) -> str:
+    name, _, kind = text.strip().rpartition(" ")
+    if not name.strip() or not _BINARY_TYPE.fullmatch(kind):
+        raise ValueError(f"'{shown(text)}' is not a name and a type, e.g. 'Fx <f4'")
+    return text
+
+
+_BINARY_TYPE = re.compile(r"[<>|=]?[fiu][1248]")
+BinaryField = Annotated[str, AfterValidator(_is_field)]
 ZeroText = Annotated[str, AfterValidator(_is_zero)]
 Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
 Sign = Literal[1, -1]
@@ -134,6 +146,7 @@ class Header(_Strict):
         None, description="group 1 is the step's number in the text before its header"
     )
     skip: NonNegativeInt = Field(0, description="lines to pass over after the header")
+    sheet: str | None = Field(None, description="Excel only: name of the sheet; else the first")
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -385,12 +398,31 @@ class Marks(_Strict):
     labels: Pattern | None = Field(None, description="properties of the group that hold labels")
 
 
+class Binary(_Strict):
+    """Binary only: records of one kind, one behind the other."""
+
+    offset: NonNegativeInt = Field(0, description="bytes before the first record")
+    fields: tuple[BinaryField, ...] = Field(
+        min_length=1,
+        description="name and type of each field in order, '<f8', '<f4', '>i2' ... as in numpy: "
+        "'Fx <f4'; the names are those of [[column]]",
+    )
+
+    @property
+    def record(self) -> np.dtype[np.void]:
+        """Type of a record."""
+        return np.dtype([tuple(field.rsplit(maxsplit=1)) for field in self.fields])
+
+
 class Dialect(_Strict):
     """One instrument's raw files."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="what the instrument is, for people")
-    format: Literal["text", "mat", "tdms"] = "text"
+    format: Literal["text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "binary"] = Field(
+        "text",
+        description="hdf5 is MATLAB 7.3, too; files of all formats may be compressed (gz, zip)",
+    )
     recognise: Recognise = Recognise()
     text: Text = Text()
     header: Header = Header()
@@ -399,6 +431,7 @@ class Dialect(_Strict):
     speed: Speed = Speed()
     pair: Pair | None = None
     marks: Marks | None = None
+    binary: Binary | None = None
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
     derived: tuple[Derived, ...] = ()
@@ -415,6 +448,8 @@ class Dialect(_Strict):
         _check_formulas(self.derived, names, [v.name for v in self.value if v.unit is not None])
         if ("time" in names) != (self.time.source == "column"):
             raise ValueError("a column for 'time' and time.source = 'column' belong together")
+        if (self.format == "binary") != (self.binary is not None):
+            raise ValueError("format = 'binary' and [binary] belong together")
         without_header = self.header.line is None and self.header.pattern is None
         if self.format == "text" and without_header:
             for column in self.column:

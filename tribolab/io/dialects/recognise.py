@@ -11,7 +11,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.headers import find_tables, split_row
 from tribolab.io.dialects.model import Dialect, Recognise
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.dialects.signature import File
+from tribolab.io.dialects.signature import File, fits
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
 _FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
@@ -30,7 +30,7 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         The dialect in question.
     """
     rules = dialect.recognise
-    if dialect.format != file.format:
+    if not fits(file.format, dialect.format):
         return f"it is {file.format}, not {dialect.format}"
     if rules == Recognise():
         return "the dialect has no rules to recognise it by"
@@ -44,6 +44,10 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         from tribolab.io.tables.tdms_file import channel_names
 
         return _names_missing(rules, channel_names(file.path))
+    if dialect.format != "text":
+        from tribolab.io.dialects.columnar import column_names
+
+        return _names_missing(rules, column_names(file.path, dialect))
     return _text_mismatch(file, dialect)
 
 

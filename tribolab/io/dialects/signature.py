@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.patterns import why_missing
+from tribolab.io.unpacked import ZIP, unpacked
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -18,12 +20,15 @@ _MAGIC = {
     b"\x89HDF\r\n\x1a\n": "netcdf",
     b"CDF\x01": "netcdf",
     b"CDF\x02": "netcdf",
+    b"MATLAB 7.3": "hdf5",
+    b"PAR1": "parquet",
+    b"ARROW1": "feather",
+    b"FEA1": "feather",
+    b"\xd0\xcf\x11\xe0": "excel",
 }
+_SAME = {("netcdf", "hdf5"), ("text", "binary")}  # what else a file of a format may be
 _FOREIGN = {
     b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
-    b"MATLAB 7.3": "a MAT file of version 7.3; save it with '-v7'",
-    b"\xd0\xcf\x11\xe0": "an old Office file; export the table as text (csv)",
-    b"\x1f\x8b": "compressed (gzip); unpack it first",
     b"%PDF": "a PDF",
 }
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
@@ -39,8 +44,15 @@ class File(NamedTuple):
     head: bytes
 
 
-def peek(path: str | Path) -> File:
-    """Look at the start of a file.
+def peek(path: str | Path, *, binary: bool = False) -> File:
+    """Look at the start of a file; of a compressed one, at its content.
+
+    Parameters
+    ----------
+    path
+        The file.
+    binary
+        Whether it may be binary of no format that is known, because a dialect describes it.
 
     Raises
     ------
@@ -58,16 +70,32 @@ def peek(path: str | Path) -> File:
         raise ReadError(f"{path}: {why_missing(path)}") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
+    inner = unpacked(path, head)
+    if inner != path:
+        return peek(inner)
     wide = head.startswith(_UTF16)
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
-    return File(path, _format(path, head), size, head)
+    return File(path, _format(path, head, binary=binary), size, head)
 
 
-def _format(path: Path, head: bytes) -> str:
+def fits(format_of_file: str, format_of_dialect: str) -> bool:
+    """Whether a file of a format may be what a dialect describes.
+
+    >>> fits("netcdf", "hdf5"), fits("text", "mat")
+    (True, False)
+    """
+    return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
+
+
+def _format(path: Path, head: bytes, *, binary: bool) -> str:
     for magic, name in _MAGIC.items():
         if head.startswith(magic):
             return name
+    if head.startswith(ZIP) and _is_workbook(path):
+        return "excel"
+    if binary and b"\0" in head:
+        return "binary"
     for magic, name in _FOREIGN.items():
         if head.startswith(magic):
             profile = magic in _PERHAPS_PROFILE
@@ -81,6 +109,14 @@ def _format(path: Path, head: bytes) -> str:
             cure=cures.PERHAPS_PROFILE,
         )
     return "text"
+
+
+def _is_workbook(path: Path) -> bool:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return any(n.startswith("xl/workbook") for n in archive.namelist())
+    except (zipfile.BadZipFile, OSError, ValueError):
+        return False
 
 
 _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)

@@ -1,0 +1,171 @@
+"""Files that hold columns by name: Parquet, Feather, HDF5, MATLAB 7.3, Excel, and plain records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+
+_MOST_CELLS = 50_000_000  # of a sheet
+
+
+class Layout(NamedTuple):
+    """Where columns and their names are: of a sheet, or records behind a header of some bytes."""
+
+    sheet: str | None = None
+    line: int = 1
+    units_below: bool = False
+    skip: int = 0
+    record: np.dtype[np.void] | None = None
+    offset: int = 0
+
+
+class Columns(NamedTuple):
+    """Names of columns, their units where the file says them, and what gives their numbers."""
+
+    names: list[str]
+    units: list[str | None]
+    column: Callable[[int], np.ndarray]
+
+
+def open_columns(path: Path, form: str, layout: Layout) -> Columns:
+    """Open a file of columns.
+
+    Parameters
+    ----------
+    path
+        The file.
+    form
+        "parquet", "feather", "hdf5", "excel" or "binary".
+    layout
+        Where its columns are.
+
+    Raises
+    ------
+    ReadError
+        If it has no such sheet, or is shorter than a record.
+    ImportError
+        If the library for it is not installed; other libraries' own errors if it is damaged.
+    """
+    return _READERS[form](path, layout)
+
+
+def _of_arrow(table: object) -> Columns:
+    import pyarrow as pa
+
+    assert isinstance(table, pa.Table)
+    names = list(table.column_names)
+
+    def column(place: int) -> np.ndarray:
+        values: np.ndarray = table.column(place).to_numpy()
+        return values
+
+    return Columns(names, [None] * len(names), column)
+
+
+def _parquet(path: Path, layout: Layout) -> Columns:
+    import pyarrow.parquet as pq
+
+    return _of_arrow(pq.read_table(path))
+
+
+def _feather(path: Path, layout: Layout) -> Columns:
+    from pyarrow import feather
+
+    return _of_arrow(feather.read_table(path))
+
+
+def _hdf5(path: Path, layout: Layout) -> Columns:
+    import h5py
+
+    names: list[str] = []
+    units: list[str | None] = []
+    arrays: list[np.ndarray] = []
+    with h5py.File(path, "r") as file:
+
+        def take(name: str, item: object) -> None:
+            if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu":
+                return
+            if item.size == 0 or item.size != max(item.shape, default=0):
+                return  # not one column
+            unit = item.attrs.get("units", item.attrs.get("unit"))
+            unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
+            names.append(name)
+            units.append(str(unit) if unit is not None else None)
+            arrays.append(item[()].ravel())
+
+        file.visititems(take)
+    return Columns(names, units, arrays.__getitem__)
+
+
+def _excel(path: Path, layout: Layout) -> Columns:
+    from python_calamine import CalamineWorkbook
+
+    book = CalamineWorkbook.from_path(path)
+    sheet = layout.sheet or book.sheet_names[0]
+    if sheet not in book.sheet_names:
+        there = ", ".join(map(shown, book.sheet_names[:8]))
+        raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
+    page = book.get_sheet_by_name(sheet)
+    if page.total_height * page.total_width > _MOST_CELLS:
+        raise ReadError(f"sheet '{shown(sheet)}' is larger than a table of numbers", where=path)
+    rows = page.to_python(skip_empty_area=False)
+    line = layout.line
+    if len(rows) <= line:
+        raise ReadError(f"sheet '{shown(sheet)}' ends before row {line + 1}", where=path)
+    names = [str(cell) for cell in rows[line - 1]]
+    units: list[str | None] = [None] * len(names)
+    first = line + layout.skip
+    if layout.units_below:
+        units = [str(cell).strip("[]() ") or None for cell in rows[line]]
+        units += [None] * (len(names) - len(units))
+        first += 1
+    body = rows[first:]
+
+    def column(place: int) -> np.ndarray:
+        cells = [row[place] if place < len(row) else "" for row in body]
+        # an empty row ends the table
+        filled = [n for n, cell in enumerate(cells) if cell != ""]
+        return np.array([_cell(path, cell) for cell in cells[: filled[-1] + 1 if filled else 0]])
+
+    return Columns(names, units[: len(names)], column)
+
+
+def _cell(path: Path, cell: object) -> float:
+    if isinstance(cell, int | float):
+        return float(cell)
+    text = str(cell).strip()
+    if not text:
+        return np.nan
+    try:
+        return float(text.replace(",", "."))
+    except ValueError as error:
+        raise ReadError(f"'{shown(text, 40)}' is not a number", where=path) from error
+
+
+def _binary(path: Path, layout: Layout) -> Columns:
+    record, offset = layout.record, layout.offset
+    assert record is not None  # a dialect of this format has one
+    size = path.stat().st_size - offset
+    if size < record.itemsize:
+        raise ReadError(
+            f"the file has {max(size, 0)} bytes behind its header, a record has {record.itemsize}",
+            where=path,
+        )
+    count = size // record.itemsize
+    rows = np.memmap(path, dtype=record, mode="r", offset=offset, shape=count)
+    names = list(record.names or ())
+    return Columns(names, [None] * len(names), lambda place: np.array(rows[names[place]]))
+
+
+_READERS: dict[str, Callable[[Path, Layout], Columns]] = {
+    "parquet": _parquet,
+    "feather": _feather,
+    "hdf5": _hdf5,
+    "excel": _excel,
+    "binary": _binary,
+}

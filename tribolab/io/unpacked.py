@@ -1,0 +1,103 @@
+"""Compressed files: unpacked once for a process, and read like any other."""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import gzip
+import shutil
+import tempfile
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Protocol
+
+from tribolab.errors import ReadError, shown
+
+GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
+_OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
+_MOST = 64  # GB of what is unpacked
+_TIMES = 1000  # the size of the archive: beyond it, it is a bomb
+_CHUNK = 1 << 20
+_SMALL = 1 << 26  # bytes that may be unpacked whatever the ratio
+
+
+class _Source(Protocol):
+    def read(self, size: int = -1, /) -> bytes: ...
+
+
+def unpacked(path: Path, head: bytes) -> Path:
+    """Return where the content of a compressed file lies; the file itself where it is none.
+
+    Parameters
+    ----------
+    path
+        The file.
+    head
+        Its first bytes.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged, or an archive of several files.
+    """
+    if head.startswith(GZIP):
+        state = path.stat()
+        return _unpacked(path.resolve(), state.st_size, state.st_mtime_ns, "gz")
+    if head.startswith(ZIP) and _members(path) is not None:
+        state = path.stat()
+        return _unpacked(path.resolve(), state.st_size, state.st_mtime_ns, "zip")
+    return path
+
+
+def _members(path: Path) -> list[str] | None:
+    """Names of the files in a plain archive; None if it is an Office file, an x3p or no archive."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = [info.filename for info in archive.infolist() if not info.is_dir()]
+    except (zipfile.BadZipFile, OSError, ValueError):
+        return None
+    if any(name.split("/")[-1] in _OFFICE for name in names):
+        return None
+    return [name for name in names if not name.startswith("__MACOSX/")]
+
+
+@functools.lru_cache(maxsize=64)
+def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    try:
+        if kind == "gz":
+            target = folder / (path.stem if path.suffix.lower() in (".gz", ".z") else path.name)
+            with gzip.open(path) as source:
+                _copy(source, target, size, path)
+            return target
+        names = _members(path) or []
+        if len(names) != 1:
+            told = ", ".join(shown(name, 40) for name in names[:5])
+            raise ReadError(
+                f"this archive holds {len(names)} files ({told}); unpack it, and name the raw "
+                "files",
+                where=path,
+            )
+        target = folder / (Path(names[0]).name or "content")
+        with zipfile.ZipFile(path) as archive, archive.open(names[0]) as source:
+            _copy(source, target, size, path)
+        return target
+    except (OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError) as error:
+        raise ReadError(f"this compressed file is damaged: {error}", where=path) from error
+
+
+def _copy(source: _Source, target: Path, size: int, path: Path) -> None:
+    """Copy what is unpacked, and stop where it becomes larger than data can be."""
+    done = 0
+    with target.open("wb") as file:
+        while part := source.read(_CHUNK):
+            done += len(part)
+            if done > max(_SMALL, _TIMES * size) or done > _MOST * 1e9:
+                raise ReadError(
+                    f"this compressed file unpacks to more than {done / 1e6:.0f} MB: that is no "
+                    "measurement",
+                    where=path,
+                )
+            file.write(part)
