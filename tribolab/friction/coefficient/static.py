@@ -84,6 +84,21 @@ def static_friction(
     ----------
     .. [1] Dieterich (1972), J. Geophys. Res. 77, 3690-3697. doi:10.1029/JB077i020p03690
        (static friction grows with the time of rest)
+
+    Examples
+    --------
+    A contact that lets go at 0.6 and slides at 0.4, after 4 s of rest:
+
+    >>> time = np.arange(0, 20, 0.01)
+    >>> ratio = np.interp(time, [0, 3.5, 4, 4.5, 20], [0, 0, 0.6, 0.4, 0.4])
+    >>> data = {"sliding_velocity": 1e-3 * (time > 4), "friction_force": 10 * ratio}
+    >>> data["normal_force"] = np.full(time.size, 10.0)
+    >>> run = xr.Dataset({name: ("time", v) for name, v in data.items()}, {"time": time})
+    >>> from tribolab.friction.segments.find import find_segments
+    >>> run.attrs["friction_force_zero_uncertainty_N"] = 0.01
+    >>> starts = static_friction(run, find_segments(run))
+    >>> starts.static_friction_coefficient.values.round(1), starts.waiting_time.values.round()
+    (array([0.6]), array([4.]))
     """
     signal = "friction_force" if "friction_force" in run else "friction_coefficient"
     if signal not in run:
