@@ -1,6 +1,7 @@
 """A run too long for the memory comes to the same, in scratch files and in many pieces."""
 
 import dataclasses
+import mmap
 import os
 from pathlib import Path
 
@@ -198,6 +199,37 @@ def test_bad_rows_in_the_middle_are_told_the_same_way(name, time, tmp_path, cut_
     assert whole[1][0].done or whole[1][0].reason
     cut_up(997)
     same(whole, come_to(run, tmp_path))
+
+
+def test_the_files_of_one_run_come_to_the_same(tmp_path, cut_up):
+    columns = strokes()
+    half = columns["Time [s]"].size // 2
+    run = written(tmp_path, {name: values[:half] for name, values in columns.items()})
+    (tmp_path / "long.csv").rename(tmp_path / "first.csv")
+    columns = {name: values[half:] for name, values in columns.items()}
+    columns["Time [s]"] -= columns["Time [s]"][0]
+    written(tmp_path, columns, time=TIMES["joined"])
+    names = ("first.csv", "long.csv")
+    run = dataclasses.replace(run, files=tuple(tmp_path / n for n in names), labels=names)
+    whole = come_to(run, tmp_path)
+    assert whole[1][0].segments >= 4 and "cycle" in whole[0]["run"]
+    cut_up(997)
+    same(whole, come_to(run, tmp_path))
+
+
+def test_a_long_data_file_is_read_into_scratch_files(tmp_path, cut_up):
+    run = written(tmp_path, strokes())
+    come_to(run, tmp_path)
+    file = tmp_path / "data/long.nc"
+    whole = read_groups(file, ["run"])["run"]
+    cut_up(997)
+    again = read_groups(file, ["run"])["run"]
+    assert again.identical(whole)
+    for name in ("friction_force", "friction_force_qc"):
+        base = again[name].values
+        while isinstance(base, np.ndarray):
+            base = base.base
+        assert isinstance(base.obj, mmap.mmap), name
 
 
 def test_two_logs_and_a_persons_decisions_come_to_the_same(reviewed, tmp_path, cut_up):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -124,6 +124,54 @@ def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray
         before = bool(now[-1])
     end = np.array([count] if before else [], dtype=int)
     return np.concatenate([*edges, end]).reshape(-1, 2)
+
+
+def concatenated(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the parts of a record one behind the other.
+
+    Examples
+    --------
+    >>> concatenated([np.array([1.0, 2.0]), np.array([3.0])]).tolist()
+    [1.0, 2.0, 3.0]
+    """
+    whole = room(sum(len(part) for part in parts), np.result_type(*parts))
+    end = 0
+    for part in parts:
+        for first, last in pieces(0, len(part)):
+            whole[end + first : end + last] = part[first:last]
+        end += len(part)
+    return whole
+
+
+def chosen(values: np.ndarray, keep: np.ndarray) -> np.ndarray:
+    """Return the samples that are kept.
+
+    Examples
+    --------
+    >>> chosen(np.array([1.0, 2.0, 3.0]), np.array([True, False, True])).tolist()
+    [1.0, 3.0]
+    """
+    left = room(int(np.count_nonzero(keep)), values.dtype)
+    end = 0
+    for first, last in pieces(0, values.size):
+        some = values[first:last][keep[first:last]]
+        left[end : end + some.size] = some
+        end += some.size
+    return left
+
+
+def lowered(values: np.ndarray, by: float) -> np.ndarray:
+    """Return values without a constant.
+
+    Examples
+    --------
+    >>> lowered(np.array([1.0, 2.0]), 0.5).tolist()
+    [0.5, 1.5]
+    """
+    result = room(values.size)
+    for first, last in pieces(0, values.size):
+        result[first:last] = values[first:last] - by
+    return result
 
 
 def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:

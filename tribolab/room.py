@@ -24,7 +24,9 @@ LONG = 1 << 24  # samples; a signal of fewer takes 128 MB at most
 _mapped: weakref.WeakSet[mmap.mmap] = weakref.WeakSet()
 
 
-def room(count: int, kind: type[np.generic] = np.float64) -> np.ndarray:
+def room(
+    count: int, kind: type[np.generic] | np.dtype = np.float64, of: int | None = None
+) -> np.ndarray:
     """Return an array to be filled: in memory, or, if it is long, in a scratch file.
 
     Parameters
@@ -33,13 +35,15 @@ def room(count: int, kind: type[np.generic] = np.float64) -> np.ndarray:
         Samples.
     kind
         Of each.
+    of
+        Samples of the record, if the array is a part of it.
 
     Examples
     --------
     >>> room(3, np.int8).shape
     (3,)
     """
-    if is_long(count):
+    if count and is_long(max(count, of or 0)):
         mapped = _scratch(count * np.dtype(kind).itemsize)
         if mapped is not None:
             return np.frombuffer(mapped, kind, count)

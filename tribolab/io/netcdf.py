@@ -15,6 +15,8 @@ from tribolab.errors import ReadError, TribolabError, brief, shown
 from tribolab.io.attributes import decoded
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
 from tribolab.io.storage import write_into
+from tribolab.pieces import pieces
+from tribolab.room import is_long, room
 
 if TYPE_CHECKING:
     import netCDF4
@@ -251,9 +253,20 @@ def _load(
         ) from error
 
 
+def _loaded(data: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose values are read, long ones into scratch files."""
+    for name, variable in list(data.data_vars.items()):
+        if variable.ndim == 1 and variable.dtype.kind in "fiu" and is_long(variable.size):
+            values = room(variable.size, variable.dtype)
+            for first, last in pieces(0, variable.size):
+                values[first:last] = variable.variable[first:last].values
+            data[name] = variable.variable.copy(data=values)
+    return data.load()
+
+
 def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
     store = xr.backends.NetCDF4DataStore(file, group=group)
-    data = xr.open_dataset(store, decode_times=False, mask_and_scale=False).load()
+    data = _loaded(xr.open_dataset(store, decode_times=False, mask_and_scale=False))
     data.attrs = decoded(data.attrs)
     for name in data.variables:
         data[name].attrs = decoded(data[name].attrs)

@@ -36,6 +36,7 @@ from tribolab.io.row_counts import (
     with_companion_rows,
 )
 from tribolab.io.zero_reading import take_zeros
+from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
@@ -229,7 +230,8 @@ def _companion(path: Path, dialect: Dialect) -> Logs:
 def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
     """Make one run of the files of one instrument."""
     dialect = logs[0][1]
-    contents = [read_content(path, dialect) for path, _ in logs]
+    size = sum(peek(path).size for path, _ in logs) if len(logs) > 1 else 0
+    contents = [read_content(path, dialect, size) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
     starts = [content.pieces[0].started for content in contents]
@@ -247,8 +249,9 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
     mended = mended_time(columns.pop("time"), where, dialect)
     time = mended.time
     if mended.keep is not None:
-        time = time[mended.keep]
-        columns = {name: values[mended.keep] for name, values in columns.items()}
+        time = chosen(time, mended.keep)
+        for name in columns:  # one by one, so that what is left out does not stay in memory
+            columns[name] = chosen(columns[name], mended.keep)
     origin = float(time[0])
     time -= origin
     rules = {column.key: column.zero for column in dialect.column if column.zero}
@@ -300,7 +303,7 @@ def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]
         columns = dict(pieces[0].columns)
     else:
         columns = {
-            name: np.concatenate(
+            name: concatenated(
                 [
                     piece.columns.get(name, np.full(length, np.nan))
                     for piece, length in zip(pieces, lengths, strict=True)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import Cure, ReadError, UnitError, shown
+from tribolab.pieces import lowered
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 from tribolab.untyped import Json
@@ -115,7 +116,7 @@ def take_zeros(
         batches = np.array([part.mean() for part in np.array_split(values, _BATCHES) if part.size])
         zero = float(values.mean())
         error = float(batches.std(ddof=1) / np.sqrt(batches.size))
-        columns[name] = columns[name] - zero
+        columns[name] = lowered(columns[name], zero)
         unit = quantity(name).unit
         ending = "" if unit == "1" else f"_{unit}"
         attrs |= {f"{name}_zero{ending}": zero, f"{name}_zero_sem{ending}": error}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab.errors import AnalysisError
-from tribolab.pieces import pieces
+from tribolab.pieces import lowered, pieces
 from tribolab.room import room
 
 if TYPE_CHECKING:
@@ -36,12 +36,7 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
 
 def _without(data: xr.DataArray, offset: float) -> np.ndarray:
     values = np.asarray(data, float)
-    if not offset:
-        return values  # a long record is not copied for nothing
-    moved = room(values.size)
-    for first, last in pieces(0, values.size):
-        moved[first:last] = values[first:last] - offset
-    return moved
+    return lowered(values, offset) if offset else values  # a long record is not copied for nothing
 
 
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:

@@ -18,9 +18,11 @@ import xarray as xr
 from tribolab.friction.decisions.decide import DECISIONS
 from tribolab.friction.decisions.decision import ACCEPT, REJECT
 from tribolab.friction.decisions.rejected import rejected
+from tribolab.pieces import pieces
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, GOOD, MISSING, SUSPECT
 from tribolab.qc.register import OBJECTIONS, Result
+from tribolab.room import room
 
 MANUAL, BIT = "manual", 26  # its name and bit in ``<variable>_qc_tests``, as of a check
 ACCEPTED, REJECTED = "accepted", "rejected"
@@ -86,12 +88,12 @@ def _samples(
     for row in rows:
         if row["action"] not in masks:
             continue
-        pieces = tuple(slice(first[n - 1], last[n - 1]) for n in row["segments"])
+        parts = tuple(slice(first[n - 1], last[n - 1]) for n in row["segments"])
         if row["start_s"] is None:
-            pieces = (slice(None),)
-        for piece in pieces:
-            masks[row["action"]][piece] = True
-        decisions.append(_Heard(row["action"], row["author"], pieces))
+            parts = (slice(None),)
+        for part in parts:
+            masks[row["action"]][part] = True
+        decisions.append(_Heard(row["action"], row["author"], parts))
     return _Reviewed(masks[ACCEPT] & ~masks[REJECT], masks[REJECT], tuple(decisions))
 
 
@@ -114,11 +116,14 @@ def _marked(flagged: xr.Dataset, seen: _Reviewed) -> xr.Dataset:
     decided = seen.accepted | seen.rejected
     for name in [str(n) for n in flagged.data_vars if f"{n}_qc" in flagged]:
         severity, tests = flagged[f"{name}_qc"], flagged[f"{name}_qc_tests"]
-        values = severity.values
-        objected = (values == SUSPECT) | (values == FAIL)
-        values = np.where(seen.accepted & objected, np.int8(GOOD), values)
-        values = np.where(seen.rejected & (values != MISSING), np.int8(FAIL), values)
-        mask = np.where(decided, tests.values | np.int32(1 << BIT), tests.values)
+        values, mask = room(decided.size, np.int8), room(decided.size, np.int32)
+        for first, last in pieces(0, decided.size):
+            part = slice(first, last)
+            flags, bits = severity.values[part], tests.values[part]
+            objected = (flags == SUSPECT) | (flags == FAIL)
+            flags = np.where(seen.accepted[part] & objected, np.int8(GOOD), flags)
+            values[part] = np.where(seen.rejected[part] & (flags != MISSING), np.int8(FAIL), flags)
+            mask[part] = np.where(decided[part], bits | np.int32(1 << BIT), bits)
         result[f"{name}_qc"] = severity.copy(data=values)
         result[f"{name}_qc_tests"] = tests.copy(data=mask)
     return result

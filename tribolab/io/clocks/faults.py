@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.pieces import pieces
+from tribolab.pieces import chosen, pieces
+from tribolab.room import room
 
 _BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
 _MANY = 10_000  # small falls that are looked at one by one; a clock with more of them jitters
@@ -51,10 +52,12 @@ class Faults(NamedTuple):
 
     def offsets(self) -> np.ndarray:
         """Return what has to be added to each row's time for the clock to go on [s] (time)."""
-        steps = np.zeros(self.astray.size)
-        for start in self.starts:
-            steps[start.row] = start.ahead
-        return np.cumsum(steps)
+        edges = [0, *(start.row for start in self.starts), self.astray.size]
+        ahead = np.concatenate([[0.0], np.cumsum([start.ahead for start in self.starts])])
+        result = room(self.astray.size)
+        for first, last, by in zip(edges, edges[1:], ahead, strict=False):
+            result[first:last] = by
+        return result
 
 
 def first_fault(time: np.ndarray) -> int | None:
@@ -88,11 +91,15 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
     ()
     """
     missing = ~np.isfinite(time)
-    rows = np.flatnonzero(~missing)
-    search = _Search(time[rows], wrap)
+    if not missing.any():
+        search = _Search(time, wrap)
+        search.run()
+        return Faults(tuple(search.starts), search.astray, missing)
+    search = _Search(chosen(time, ~missing), wrap)
     search.run()
     astray = np.zeros(time.size, dtype=bool)
-    astray[rows] = search.astray
+    astray[~missing] = search.astray
+    rows = np.flatnonzero(~missing)
     starts = tuple(start._replace(row=int(rows[start.row])) for start in search.starts)
     return Faults(starts, astray, missing)
 
@@ -108,9 +115,24 @@ def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
         What is wrong with it.
     """
     good = ~(faults.missing | faults.astray)
-    highest = np.fmax.accumulate(np.where(good, time, np.nan))
-    good[1:] &= ~(time[1:] <= highest[:-1])
+    highest = np.nan
+    for first, last in pieces(0, time.size):
+        own = np.where(good[first:last], time[first:last], np.nan)
+        before = np.fmax.accumulate(np.concatenate([[highest], own]))
+        good[first:last] &= ~(time[first:last] <= before[:-1])
+        highest = before[-1]
     return ~good
+
+
+def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
+    """Median of the steps forward, and their median distance from it."""
+    rising = chosen(steps, steps > 0)
+    if not rising.size:
+        return 1.0, 0.0
+    usual = float(np.median(rising, overwrite_input=True))
+    for first, last in pieces(0, rising.size):  # in any order
+        rising[first:last] = np.abs(rising[first:last] - usual)
+    return usual, float(np.median(rising, overwrite_input=True))
 
 
 class _Search:
@@ -118,10 +140,10 @@ class _Search:
 
     def __init__(self, time: np.ndarray, wrap: float):
         self.time, self.wrap = time, wrap
-        self.steps = np.diff(time)
-        rising = self.steps[self.steps > 0]
-        self.usual = float(np.median(rising)) if rising.size else 1.0
-        spread = float(np.median(np.abs(rising - self.usual))) if rising.size else 0.0
+        self.steps = room(max(time.size - 1, 0))
+        for first, last in pieces(0, self.steps.size):
+            self.steps[first:last] = np.diff(time[first : last + 1])
+        self.usual, spread = _usual_and_spread(self.steps)
         self.scatter = _SCATTER * 1.4826 * spread
         self.small = _SMALL * self.usual + self.scatter
         self.astray = np.zeros(time.size, dtype=bool)

@@ -21,7 +21,7 @@ _T = TypeVar("_T")
 _PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
 
 
-def read_content(path: Path, dialect: Dialect) -> Content:
+def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
     """Read one raw file.
 
     Parameters
@@ -30,6 +30,8 @@ def read_content(path: Path, dialect: Dialect) -> Content:
         The file.
     dialect
         The instrument's dialect.
+    size
+        Bytes of all files of the run, if it has more than one.
 
     Returns
     -------
@@ -60,13 +62,13 @@ def read_content(path: Path, dialect: Dialect) -> Content:
 
         content = read_columnar(file.path, dialect)
     else:
-        content = _read_text(file, dialect)
+        content = _read_text(file, dialect, size)
     if file.path != path:  # it was compressed
         content = content._replace(path=path, sha256=sha256_of_file(path))
     return _checked(content, dialect)
 
 
-def _read_text(file: File, dialect: Dialect) -> Content:
+def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     from tribolab.io.dialects.headers import find_tables
     from tribolab.io.dialects.rows_outside import rows_outside
     from tribolab.io.dialects.text import Hasher, read_table
@@ -82,7 +84,7 @@ def _read_text(file: File, dialect: Dialect) -> Content:
     for table in raw.tables:
         where = f"{file.path}" if len(raw.tables) == 1 else f"{file.path}: line {table.line}"
         signals, not_used = resolve(where, table.names, table.units, table.width, dialect)
-        columns, incomplete = read_table(raw, table, signals, dialect, hasher)
+        columns, incomplete = read_table(raw, table, signals, dialect, hasher, size)
         cut += incomplete
         labels.update({s.quantity: f"{s.label} [{s.unit}]" for s in signals})
         unused.update(dict.fromkeys(not_used))

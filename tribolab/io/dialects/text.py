@@ -57,6 +57,7 @@ def read_table(
     signals: list[ReadColumn],
     dialect: Dialect,
     hasher: Hasher | None = None,
+    size: int = 0,
 ) -> tuple[dict[str, np.ndarray], int]:
     """Read the columns of one table, in SI.
 
@@ -70,6 +71,8 @@ def read_table(
         How the numbers are written.
     hasher
         Given every byte of the file in passing, those around the table too.
+    size
+        Bytes of all tables of the run, if it has more than this one.
 
     Returns
     -------
@@ -83,7 +86,7 @@ def read_table(
         If a cell is no number or a row has the wrong number of cells.
     """
     parser = _Parser(raw, table, signals, dialect)
-    columns = _Columns(signals, table.stop - table.start)
+    columns = _Columns(signals, table.stop - table.start, size)
     try:
         with _opened(raw) as file, ThreadPoolExecutor(_WORKERS) as workers:
             if hasher:
@@ -272,8 +275,9 @@ def _is_number(cell: str, decimal: str) -> bool:
 class _Columns:
     """Arrays that grow as blocks come in; each number is brought to SI as it is stored."""
 
-    def __init__(self, signals: list[ReadColumn], size: int):
+    def __init__(self, signals: list[ReadColumn], size: int, of: int):
         self._signals, self._size = signals, size
+        self._parts = max(1.0, of / max(size, 1))  # of the run, of this one's size
         self._arrays: list[np.ndarray] = []
         self._used = 0
 
@@ -302,12 +306,21 @@ class _Columns:
         if not self._arrays:
             # what is allocated but never touched takes no memory, so guess high
             guess = max(rows, min(rows * (self._size // BLOCK + 2), self._size // 2 + 1))
-            self._arrays = [_room(guess) for _ in self._signals]
+            self._arrays = [self._room(guess) for _ in self._signals]
         if self._used + rows > len(self._arrays[0]):
             for k, array in enumerate(self._arrays):
-                self._arrays[k] = _room(max(2 * len(array), self._used + rows))
+                self._arrays[k] = self._room(max(2 * len(array), self._used + rows))
                 self._arrays[k][: self._used] = array[: self._used]
                 let_go()
+
+    def _room(self, rows: int) -> np.ndarray:
+        """Return an array for that many rows: of a long run in a scratch file, else of arrow's.
+
+        Numpy's asks for huge pages, and where memory is in many pieces the system first clears
+        them.
+        """
+        of = int(rows * self._parts)
+        return room(rows, of=of) if is_long(of) else np.frombuffer(pa.allocate_buffer(8 * rows))
 
     def finished(self) -> dict[str, np.ndarray]:
         """Arrays by quantity, cut to the rows that came."""
@@ -315,14 +328,6 @@ class _Columns:
         return {
             s.quantity: array[: self._used] for s, array in zip(self._signals, arrays, strict=True)
         }
-
-
-def _room(rows: int) -> np.ndarray:
-    """Return an array of that length: a long one in a scratch file, else of arrow's memory.
-
-    Numpy's asks for huge pages, and where memory is in many pieces the system first clears them.
-    """
-    return room(rows) if is_long(rows) else np.frombuffer(pa.allocate_buffer(8 * rows))
 
 
 def _scaled(numbers: np.ndarray, scale: float, out: np.ndarray) -> None:
