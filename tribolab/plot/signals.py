@@ -77,8 +77,8 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
 
 def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: float) -> np.ndarray:
     """Return the ratio of two signals without their zeros, where there is a load."""
+    least = _LOADED * _usual(load, load_zero)
     ratio = room(load.size)
-    least = _LOADED * _usual(load, load_zero, ratio)
     for first, last in pieces(0, load.size):
         pressing = load[first:last] - load_zero
         pressed = (pressing > least) & (pressing > 0)
@@ -88,15 +88,15 @@ def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: fl
     return ratio
 
 
-def _usual(load: np.ndarray, zero: float, scratch: np.ndarray) -> float:
+def _usual(load: np.ndarray, zero: float) -> float:
     """Return what 95 % of the readings above a zero do not exceed."""
-    count = 0
+    finite, count = np.empty(load.size), 0
     for first, last in pieces(0, load.size):
         some = load[first:last] - zero
         some = some[np.isfinite(some)]
-        scratch[count : count + some.size] = some
+        finite[count : count + some.size] = some
         count += some.size
-    return float(np.percentile(scratch[:count], 95, overwrite_input=True)) if count else np.inf
+    return float(np.percentile(finite[:count], 95, overwrite_input=True)) if count else np.inf
 
 
 class Stroke(NamedTuple):

@@ -16,7 +16,7 @@ from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.pieces import one_by_one, pieces, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
-from tribolab.room import filled, room
+from tribolab.room import filled
 from tribolab.words import number as number_text
 from tribolab.words import speed_text
 
@@ -135,7 +135,7 @@ class RunSubject:
         """Return the median magnitude of a signal within the segments, else of all of it."""
         values = self.signals[name]
         inside = self.in_segments if self.in_segments.any() else np.ones(values.size, dtype=bool)
-        sizes = room(int(np.count_nonzero(inside)))
+        sizes = np.empty(int(np.count_nonzero(inside)))
         end = 0
         for first, last in pieces(0, values.size):
             some = values[first:last][inside[first:last]]

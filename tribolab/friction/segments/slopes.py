@@ -27,7 +27,7 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
     """
     if time.size < 3:
         return 0.0
-    off = room(time.size - 2)
+    off = np.empty(time.size - 2)  # sorted as a whole: no piece of it at a time
     for first, last in pieces(0, off.size):
         off[first:last] = _off_chord(time[first : last + 2], position[first : last + 2])
     noise = float(np.median(off, overwrite_input=True) / 0.6745)

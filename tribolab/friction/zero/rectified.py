@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.pieces import anywhere, one_by_one
-from tribolab.room import room
 
 DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
 TOUCH = 5.0  # standard deviations from zero within which a force touches it
@@ -39,7 +38,7 @@ class Pressed:
     @cached_property
     def _least(self) -> float:
         assert self._normal is not None  # `within` asks
-        loads = room(sum(self._normal[part].size for part in self._parts))
+        loads = np.empty(sum(self._normal[part].size for part in self._parts))
         end = 0
         for part in one_by_one(self._parts):
             begin, end = end, end + self._normal[part].size
