@@ -12,6 +12,7 @@ everywhere. Where there is no room for them, or no such system call, arrays are 
 
 from __future__ import annotations
 
+import gc
 import mmap
 import os
 import tempfile
@@ -74,6 +75,13 @@ def let_go() -> None:
     """Give back the memory that looking at long arrays took; they are read again when needed."""
     for mapped in list(_mapped):
         mapped.madvise(mmap.MADV_DONTNEED)
+
+
+def tidy() -> None:
+    """Free the scratch files of arrays that nobody needs any more, circles of references or not."""
+    if _mapped:
+        gc.collect()
+        let_go()
 
 
 def _scratch(size: int) -> mmap.mmap | None:

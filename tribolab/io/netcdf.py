@@ -21,6 +21,7 @@ from tribolab.room import is_long, room
 if TYPE_CHECKING:
     import netCDF4
 
+_CACHE = 1 << 20  # bytes of a long variable that the library keeps
 GROUPS = "groups"  # attribute of the root of a file of groups
 # What netCDF4 and xarray raise on a file that is damaged.
 _DAMAGE = (
@@ -266,6 +267,9 @@ def _loaded(data: xr.Dataset) -> xr.Dataset:
 
 def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
     store = xr.backends.NetCDF4DataStore(file, group=group)
+    for variable in (file if group is None else file[group]).variables.values():
+        if is_long(variable.size):  # else the library keeps much of it, until the file is closed
+            variable.set_var_chunk_cache(_CACHE)
     data = _loaded(xr.open_dataset(store, decode_times=False, mask_and_scale=False))
     data.attrs = decoded(data.attrs)
     for name in data.variables:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.pieces import one_by_one
 from tribolab.plot.reduce import envelope_index
 from tribolab.plot.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points
 from tribolab.records.parts import FlaggedSpan, PageTrace
+from tribolab.room import let_go
 from tribolab.untyped import Json
 from tribolab.words import speed_text
 
@@ -179,8 +181,9 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int)
         if name in run and np.ptp(np.asarray(run[name], float)) > 0:
             signals.append((name, np.asarray(run[name], float)))
             break
+    let_go()
     packed = []
-    for name, values in signals:
+    for name, values in one_by_one(signals):
         chosen = _chosen(time, values, bounds, points)
         known = quantity(name)
         # speeds span decades: packed as they are drawn, linear only below the slowest segment
@@ -261,7 +264,7 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
         return []
     near = (time[-1] - time[0]) / 1000
     spans: list[FlaggedSpan] = []
-    for name in sorted(str(n) for n in run.data_vars if f"{n}_qc" in run):
+    for name in one_by_one(sorted(str(n) for n in run.data_vars if f"{n}_qc" in run)):
         flags = np.asarray(run[f"{name}_qc"])
         tests = np.asarray(run[f"{name}_qc_tests"]) if f"{name}_qc_tests" in run else None
         for severity, code in (("suspect", SUSPECT), ("fail", FAIL)):

@@ -21,6 +21,7 @@ from tribolab.provenance import made
 from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
+from tribolab.room import tidy
 from tribolab.untyped import Json
 from tribolab.words import explain
 
@@ -149,7 +150,9 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
     @staticmethod
     def work(task: RunTask) -> RunAnswer:
         """Process one run."""
-        return process_run(task)
+        answer = process_run(task)
+        tidy()
+        return answer
 
     def failed(self, task: RunTask, error: BaseException) -> RunAnswer:
         """Return the record of a run whose worker died."""
