@@ -32,7 +32,7 @@ def test_one_value_and_a_pure_number_are_said_once_and_without_a_unit(tmp_path):
     file.write_text("Time [s],Fx [N],mu [1],Dev [V]\n0,1,0.5,0.004\n1,2,0.6,0.004\n2,3,0.7,0.004\n")
     draft = draft_dialect(file, name="mine")
     save_draft(draft, tmp_path / "mine.toml")
-    assert ": 0.004;" in (tmp_path / "mine.toml").read_text("utf-8")
+    assert ": 0.004\n" in (tmp_path / "mine.toml").read_text("utf-8")
     columns = {
         "mu": {"label": "", "unit": "1", "minimum": 1.0, "maximum": 2.0},
         "step": {"label": "", "unit": "1", "minimum": 4.0, "maximum": 4.0},
@@ -54,7 +54,8 @@ def test_the_command_shows_writes_and_tells_what_comes_next(tmp_path, monkeypatc
     done = command("dialect", file.name)
     assert (done.exit_code, done.stderr) == (0, "")
     assert "numbers parted by semicolon, decimal comma" in done.stdout
-    assert re.search(r"position +m +0.0001 +0.0002", done.stdout)
+    rows = r"row +time s +position m\s[^\w]+1 +0 +0\.0001 *\n 2 +0\.5 +0\.0002"
+    assert re.search(rows, done.stdout)
     line = int(re.search(r"fill in odd_one.toml line (\d+)", done.stdout)[1])
     assert "FILL IN" in (tmp_path / "odd_one.toml").read_text().splitlines()[line - 1]
     [following] = re.findall(r"next:  tribolab (.*)", done.stdout)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -320,7 +321,9 @@ def info(
 
 @app.command()
 def dialect(
-    file: Annotated[Path, typer.Argument(help="A raw text file of an instrument not known yet.")],
+    files: Annotated[
+        list[Path], typer.Argument(help="Raw text files of one instrument that is not known yet.")
+    ],
     output: Annotated[
         Path | None,
         typer.Option(
@@ -340,31 +343,53 @@ def dialect(
     force: Annotated[
         bool, typer.Option("--force", help="Replace the .toml file if there is one.")
     ] = False,
+    ask: Annotated[
+        bool | None,
+        typer.Option(
+            "--ask/--no-ask",
+            help="Ask which column is what; Enter takes the guess.",
+            show_default="in a terminal",
+        ),
+    ] = None,
     debug: Debug = False,
 ) -> None:
-    """Draft the description of an unknown instrument's files from one of them.
+    """Draft the description of an unknown instrument's files from one or several of them.
 
-    Shows the file as it was understood and what was guessed, writes the description (TOML), and
-    says which of its lines want to be filled in. The raw file is only read.
+    Shows the file as it was understood and what was guessed, asks about it in a terminal, writes
+    the description (TOML), tries it on the files, and says which of its lines want to be filled
+    in. What is not in all of the files is optional. The raw files are only read.
 
         tribolab dialect odd.txt
 
-        tribolab dialect odd.txt --output instruments/my_tribometer.toml
+        tribolab dialect raw/*.csv --output instruments/my_tribometer.toml
     """
     with _reported(debug):
+        from tribolab.app.dialect import ask_about, try_on
         from tribolab.app.terminal import console
-        from tribolab.draft.draft import draft_dialect, save_draft
-        from tribolab.draft.show import print_draft
+        from tribolab.draft.draft import check_target, save_draft
+        from tribolab.draft.examples import draft_of_examples
+        from tribolab.draft.show import print_draft, print_next, print_signals
 
-        draft = draft_dialect(file, name)
+        draft = draft_of_examples(files, name)
         target = output or Path(f"{draft.name}.toml")
         print_draft(draft, console())
         if draft.toml:
-            from tribolab.draft.show import print_next
+            check_target(target, force=force)
+        if ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty()):
+            before = draft
+            draft = ask_about(draft, _prompt, say)
+            if draft is not before:
+                print_signals(draft, console())
+        if not draft.toml:
+            _fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+        written = save_draft(draft, target, force=force)
+        for line in try_on(files, written, draft.kind):
+            say(line)
+        print_next(draft, written, console())
 
-            print_next(draft, save_draft(draft, target, force=force), console())
-        else:
-            _fail(f"{file}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+
+def _prompt(question: str, default: str) -> str:
+    return str(typer.prompt(question, default=default))
 
 
 def _pool(

@@ -10,7 +10,14 @@ import pandas as pd
 
 from tribolab.draft.header import converts, is_unit
 from tribolab.draft.layout import Layout
-from tribolab.draft.model import DraftColumn, Kind, Understood, other_units, time_unit
+from tribolab.draft.model import (
+    UNKNOWN_NAME,
+    DraftColumn,
+    Kind,
+    Understood,
+    other_units,
+    time_unit,
+)
 from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
@@ -194,9 +201,9 @@ def _assigned(
         if unit is not None and not matched[index]:
             same = [q for q in _SIGNALS if _told_by(unit, quantity(q).unit)]
             hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
-            result[index] = column._replace(note=hint or "the name is not known")
+            result[index] = column._replace(note=hint or UNKNOWN_NAME)
         elif not matched[index]:
-            result[index] = column._replace(note="the name is not known")
+            result[index] = column._replace(note=UNKNOWN_NAME)
     for name, rivals in proposals.items():
         best = max(rivals)
         names = [f"column {place + 1}" for place in sorted(r.place for r in rivals)]

@@ -64,7 +64,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     >>> draft.kind, [c.quantity for c in draft.understood.columns]
     ('run', ['time', 'friction_force', 'position'])
     >>> draft.to_fill_in
-    {28: 'the unit of \'Weg\' (position), e.g. "m"'}
+    {27: 'the unit of \'Weg\' (position), e.g. "m"'}
     """
     file = peek(path)
     if file.format != "text":
@@ -107,18 +107,29 @@ def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:
     path = Path(path)
     if not draft.toml:
         raise OutputError(f"{path}: not written, {draft.path.name} has no dialect: {draft.answer}")
-    if path.suffix != ".toml":
-        raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
+    check_target(path, force=force)
     try:
         with path.open("w" if force else "x", encoding="utf-8", newline="\n") as handle:
             handle.write(draft.toml)
-    except FileExistsError as error:
-        raise ConfigError(
-            f"{path}: there is such a file already; --force replaces it, --output names another"
-        ) from error
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {os.strerror(error.errno or 0)}") from error
     return path
+
+
+def check_target(path: Path, *, force: bool = False) -> None:
+    """Refuse a file that a dialect cannot be written to, before anybody is asked anything.
+
+    Raises
+    ------
+    ConfigError
+        If there is such a file already, or its name does not end in ``.toml``.
+    """
+    if path.suffix != ".toml":
+        raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
+    if path.exists() and not force:
+        raise ConfigError(
+            f"{path}: there is such a file already; --force replaces it, --output names another"
+        )
 
 
 def dialect_name(text: PathLike) -> str:

@@ -16,7 +16,7 @@ from tribolab.errors import shown
 from tribolab.io.dialects.model import Dialect
 from tribolab.quantities import unit_conversion
 
-SHOWN = 5  # rows shown as understood
+SHOWN = 10  # rows shown as understood
 
 
 class Drafted(NamedTuple):

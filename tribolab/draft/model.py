@@ -6,6 +6,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+UNKNOWN_NAME = "the name is not known"
+
 Kind = Literal["run", "scan", "table"]
 
 

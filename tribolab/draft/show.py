@@ -14,11 +14,14 @@ from rich.table import Table
 
 from tribolab.draft.drafted import Drafted
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.sparks import BLOCKS, PLAIN, sparks
 from tribolab.errors import shown as cut
 from tribolab.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # of raw cells that are shown side by side
+_WIDE = 40  # of a signal that is shown as a line of them
+_ABREAST = 5  # quantities side by side
 _LISTED = 60  # columns that are not used and shown all the same
 
 
@@ -40,13 +43,29 @@ def print_draft(draft: Drafted, console: Console) -> None:
         console.print(f"  the known instrument '{draft.known}' reads it already")
     if draft.understood is not None and draft.toml:
         console.print(_columns_table(draft))
-        console.print(_rows_table(draft))
+        print_signals(draft, console)
     else:
         console.print(_cells_table(draft))
     if draft.toml and draft.guesses:
         console.print("guessed, so look at it:")
         for guess in draft.guesses:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
+
+
+def print_signals(draft: Drafted, console: Console) -> None:
+    """Print the first rows in SI as they were understood, and each signal as a line of blocks."""
+    for table in _rows_tables(draft):
+        console.print(table)
+    if draft.understood is None or not draft.toml:
+        return
+    table = _table("signals", "", "from", "to")
+    blocks = BLOCKS if console.encoding.startswith("utf") else PLAIN
+    table.columns[1].no_wrap = True
+    for name, values in draft.first_rows(len(draft.understood.numbers)).items():
+        known = values[np.isfinite(values)]
+        ends = (f"{known.min():.4g}", f"{known.max():.4g}") if known.size else ("", "")
+        table.add_row(_with_unit(name), sparks(values, _WIDE, blocks), *ends)
+    console.print(table)
 
 
 def draft_html(draft: Drafted) -> str:
@@ -130,16 +149,26 @@ def _remark(column: DraftColumn) -> str:
     return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
 
 
-def _rows_table(draft: Drafted) -> Table:
-    """First rows in SI, a line for each quantity: names are longer than numbers."""
+def _rows_tables(draft: Drafted) -> list[Table]:
+    """First rows in SI, a column for each quantity; a handful of them side by side."""
     rows = draft.first_rows()
-    shown = max((len(values) for values in rows.values()), default=0)
-    table = _table("first rows in SI", "", *(f"row {number + 1}" for number in range(shown)))
-    for name, values in rows.items():
-        unit = quantity(name).unit
-        cells = ["" if np.isnan(value) else f"{value:.6g}" for value in values]
-        table.add_row(name, "" if unit == "1" else unit, *cells)
-    return table
+    names = list(rows)
+    tables = []
+    for start in range(0, len(names), _ABREAST):
+        part = names[start : start + _ABREAST]
+        table = _table("row", *(_with_unit(name) for name in part))
+        for number in range(max(len(rows[name]) for name in part)):
+            cells = [rows[name][number] for name in part]
+            table.add_row(
+                str(number + 1), *("" if np.isnan(value) else f"{value:.6g}" for value in cells)
+            )
+        tables.append(table)
+    return tables
+
+
+def _with_unit(name: str) -> str:
+    unit = quantity(name).unit
+    return name if unit == "1" else f"{name} {unit}"
 
 
 def _cells_table(draft: Drafted) -> Table:

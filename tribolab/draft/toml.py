@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.layout import Layout
-from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Understood
 from tribolab.draft.values import DraftValue, find_values
 from tribolab.quantities import quantity
 
@@ -29,8 +29,8 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     columns = understood.columns
     used = [column for column in columns if column.used]
     parts = [_head(name, layout, understood)]
-    if layout.heading and any(column.name for column in used):
-        names = dict.fromkeys(column.name for column in used if column.name)
+    names = dict.fromkeys(c.name for c in used if c.name and not c.optional)
+    if layout.heading and names:
         parts.append("[recognise]\nheader = [" + ", ".join(map(_text, names)) + "]\n")
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
@@ -64,7 +64,9 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
 
 
 def _text_table(layout: Layout, understood: Understood) -> str:
-    lines = ["[text]", f"delimiter = {_text(layout.delimiter)}"]
+    lines = ["[text]"]
+    if layout.delimiter != ",":
+        lines.append(f"delimiter = {_text(layout.delimiter)}")
     if layout.encoding != "utf-8":
         lines.insert(1, f"encoding = {_text(layout.encoding)}")
     if layout.decimal != ".":
@@ -75,7 +77,7 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.append(f"end = {_pattern(layout.end)}")
     if layout.skip_lines:
         lines.append(f"skip_lines = {_pattern(layout.skip_lines)}    # guessed: the table goes on")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
 def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
@@ -86,7 +88,9 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
         else:
             lines.append(f"line = {layout.header_line}")
         units = "row" if layout.heading.units is not None else "brackets"
-        lines.append(f'units = "{units if layout.heading.aligned else "dialect"}"')
+        units = units if layout.heading.aligned else "dialect"
+        if units != "brackets":
+            lines.append(f'units = "{units}"')
         if layout.repeats:
             lines.append("repeats = true")
         if layout.step:
@@ -139,12 +143,19 @@ def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:
         str(c.place) for c in columns if not c.label and not filled[c.place - 1] and not c.note
     ]
     others = [column for column in columns if str(column.place) not in empty]
+    plain = [c for c in others if c.label and not c.quantity and c.note == UNKNOWN_NAME]
+    others = [column for column in others if column not in plain]
     parts = []
     if others:
         parts.append(
             "# Not used. To use a column remove the '#' before it and put in what is '?'.\n"
         )
     parts += [_column(column, numbers[:, column.place - 1]) for column in others]
+    if plain:
+        told = (
+            f"#   {c.place} '{_comment(c.label)}': {_range(numbers[:, c.place - 1])}" for c in plain
+        )
+        parts.append("\n".join(["# Not used, their names are not known: column", *told]) + "\n")
     if empty:
         parts.append(f"# Empty: column {', '.join(empty)}\n")
     return "\n".join(parts)

@@ -1,0 +1,128 @@
+"""`tribolab dialect`: answers of a person, several examples, and the trial on the files."""
+
+import re
+import tomllib
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import tribolab as tl
+from tribolab import cli
+from tribolab.draft.answers import corrected
+from tribolab.draft.draft import draft_dialect
+from tribolab.draft.examples import draft_of_examples
+from tribolab.errors import ReadError
+
+
+def log(n=400, force=6.0, load=-30.0):
+    rng = np.random.default_rng(2)
+    noise = rng.standard_normal((3, n))
+    return {
+        "A1": 100 * np.arange(n),
+        "A2": 1e3 * (force + 0.05 * noise[0]),
+        "A3": load + 0.1 * noise[1],
+        "Speed [mm/s]": 10 + 0.01 * noise[2],
+    }
+
+
+def write(file, columns):
+    rows = zip(*columns.values(), strict=True)
+    body = "\n".join(",".join(f"{v:.4f}" for v in row) for row in rows)
+    file.write_text(f"{','.join(columns)}\n{body}\n")
+    return file
+
+
+def command(*words, typed=None):
+    return CliRunner().invoke(cli.app, [str(word) for word in words], input=typed)
+
+
+def test_answers_make_a_dialect_that_reads_the_file_without_mending(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = write(tmp_path / "odd.csv", log())
+    typed = "1\nms\n2\nmN\nA3\nN\nyes\n\n-\n"
+    done = command("dialect", file.name, "--ask", typed=typed)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert re.search(r"tried:  odd\.csv: 400 rows over 39\.9 s, 1 segment, friction coefficient "
+                     r"0\.(199|200|201|2)\d*$", done.stdout, re.MULTILINE)  # fmt: skip
+    assert "fill in" not in done.stdout.split("tried:")[1]
+    run = tl.read(file, "odd.toml")
+    assert float(run.normal_force.mean()) == pytest.approx(30, abs=0.05)
+    assert float(run.friction_force.mean()) == pytest.approx(6, abs=0.02)
+    toml = (tmp_path / "odd.toml").read_text()
+    assert "guessed:" not in toml and "sign = -1" in toml
+
+
+def test_a_wrong_answer_is_told_and_asked_for_again(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = write(tmp_path / "odd.csv", log())
+    typed = "9\n1\nkg\n1\nms\n2\nmN\n3\nN\n\n\n\n"
+    done = command("dialect", file.name, "--ask", typed=typed)
+    assert done.exit_code == 0, done.stdout
+    assert "there is no column '9'" in done.stdout
+    assert "column 1 needs a unit of time, e.g. 's'" in done.stdout
+    assert tl.read(file, "odd.toml").sizes["time"] == 400
+
+
+def test_without_a_terminal_nothing_is_asked_and_the_guess_is_tried(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    columns = log(load=30.0)
+    good = dict(zip(["Time [ms]", "Fx [mN]", "Fz [N]", "v [mm/s]"], columns.values(), strict=True))
+    file = write(tmp_path / "good.csv", good)
+    done = command("dialect", file.name)
+    assert done.exit_code == 0 and "which column" not in done.stdout
+    assert "friction coefficient 0.2" in done.stdout
+    assert re.search(r"friction_force N +[▁-█]{40} +5\.\d+ +6\.\d+", done.stdout)
+    assert re.search(r"\n 10 +0\.9 ", done.stdout)  # ten rows as understood
+
+
+def test_columns_that_differ_between_examples_are_optional(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = ["Time [ms]", "Fx [mN]", "Fz [N]", "v [mm/s]"]
+    first = dict(zip(names, log(load=30.0).values(), strict=True))
+    second = {name: values for name, values in first.items() if name != "v [mm/s]"}
+    second["Temperature [degC]"] = np.full(400, 23.5)
+    files = [write(tmp_path / "a.csv", first), write(tmp_path / "b.csv", second)]
+    done = command("dialect", *files, "--output", "both.toml")
+    assert done.exit_code == 0
+    both = tomllib.loads((tmp_path / "both.toml").read_text())
+    rules = {column["quantity"]: column for column in both["column"]}
+    assert {name for name, rule in rules.items() if rule.get("optional")} == {
+        "sliding_velocity",
+        "temperature",
+    }
+    one, two = (tl.read(file, "both.toml") for file in files)
+    assert "sliding_velocity" in one and "temperature" not in one
+    assert "sliding_velocity" not in two
+    np.testing.assert_allclose(two.temperature, 296.65)
+    assert "tried:  a.csv: 400 rows" in done.stdout and "tried:  b.csv: 400 rows" in done.stdout
+    semicolons = tmp_path / "c.csv"
+    semicolons.write_text(files[0].read_text().replace(",", ";"))
+    with pytest.raises(ReadError, match="dialect of its own"):
+        draft_of_examples([files[0], semicolons])
+
+
+def test_only_what_is_unusual_stands_in_the_toml(tmp_path):
+    file = tmp_path / "plain.csv"
+    file.write_text("Time [s],Fx [N],v [mm/s]\n0,1,1\n1,2,1\n2,2,1\n")
+    rules = tomllib.loads(draft_dialect(file).toml)
+    assert rules.pop("column") == [
+        {"quantity": "time", "name": "Time"},
+        {"quantity": "friction_force", "name": "Fx"},
+        {"quantity": "sliding_velocity", "name": "v"},
+    ]
+    assert set(rules) == {"name", "title", "recognise", "header"}
+    assert rules["header"] == {"line": 1}
+
+
+def test_a_correction_takes_a_quantity_from_the_column_that_had_it(tmp_path):
+    file = tmp_path / "two.csv"
+    file.write_text("Time [s],Fx [N],Fy [N]\n0,1,5\n1,2,6\n2,2,7\n")
+    draft = corrected(draft_dialect(file), "friction_force", 3)
+    [held] = [c for c in draft.understood.columns if c.quantity == "friction_force"]
+    assert held.place == 3
+    assert draft.dialect.column[1].name == "Fy"
+    with pytest.raises(ReadError, match="columns 1 to 3"):
+        corrected(draft, "friction_force", 4)
+    with pytest.raises(ReadError, match="needs a unit of normal_force"):
+        corrected(draft, "normal_force", 1)

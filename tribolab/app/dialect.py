@@ -1,0 +1,165 @@
+"""What `tribolab dialect` does beside drafting: it asks, and tries the draft on the files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from tribolab.draft.answers import column_of, corrected, fits
+from tribolab.draft.draft import Draft
+from tribolab.draft.model import DraftColumn, other_units
+from tribolab.errors import TribolabError, shown
+from tribolab.quantities import quantity
+from tribolab.words import Count
+
+NONE = "-"
+_RUN = {
+    "time": "time",
+    "friction_force": "the friction force",
+    "normal_force": "the normal force",
+    "friction_coefficient": "the friction coefficient",
+    "sliding_velocity": "the sliding speed",
+    "position": "the position along the direction of sliding",
+}
+_SCAN = {"x": "the coordinate along the profile", "height": "the height"}
+
+
+class Ask(Protocol):
+    """How a question is asked: it returns what was typed, or the default."""
+
+    def __call__(self, question: str, default: str) -> str:
+        """Ask."""
+
+
+def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
+    """Ask a person which column is what, in which unit, and how it is counted.
+
+    Parameters
+    ----------
+    draft
+        What was understood; its guesses are the defaults.
+    ask
+        How to ask.
+    say
+        How to say why an answer cannot be taken; it is then asked for again.
+
+    Returns
+    -------
+    Draft
+        The draft with the answers in it, which are no guesses any more.
+    """
+    if draft.layout is None or draft.understood is None:
+        return draft
+    for name, words in (_SCAN if draft.kind == "scan" else _RUN).items():
+        draft = _ask_for(draft, name, words, ask, say)
+    return draft
+
+
+def _ask_for(draft: Draft, name: str, words: str, ask: Ask, say: Callable[[str], None]) -> Draft:
+    held = column_of(draft, name)
+    if name == "friction_coefficient" and held is None and column_of(draft, "friction_force"):
+        return draft  # it is their ratio
+    while True:
+        typed = ask(
+            f"which column is {words}? (its number; {NONE} for none)",
+            str(held.place) if held else NONE,
+        )
+        if typed == NONE:
+            return draft if held is None else corrected(draft, name, None)
+        try:
+            column = _column(draft, typed)
+            if held and column.place == held.place and held.used and not held.guessed:
+                return draft
+            unit = _ask_unit(column, name, ask)
+            return corrected(draft, name, column.place, unit, _ask_sign(draft, column, name, ask))
+        except TribolabError as error:
+            say(str(error.what))
+
+
+def _column(draft: Draft, typed: str) -> DraftColumn:
+    """Return the column that was named by its number or by its name."""
+    columns = draft.understood.columns if draft.understood else ()
+    for column in columns:
+        if typed.strip() in (str(column.place), column.label, column.name):
+            return column
+    raise TribolabError(f"there is no column '{shown(typed)}': type a number from 1 on")
+
+
+def _ask_unit(column: DraftColumn, name: str, ask: Ask) -> str | None:
+    """Return the unit to be written down; None if the file says it and it may be taken."""
+    si_unit = quantity(name).unit
+    said = column.file_unit is not None and fits(column.file_unit, name)
+    if si_unit == "1" or (said and column.unit is None):
+        return None
+    guess = column.unit if column.unit and fits(column.unit, name) else other_units(si_unit)[0]
+    return ask(f"in which unit does column {column.place} write it?", guess).strip()
+
+
+def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
+    """Ask how a force is counted whose numbers are on one side of zero only, the wrong one."""
+    if name != "normal_force" or draft.understood is None:
+        return 1
+    values = draft.understood.numbers[:, column.place - 1]
+    values = values[np.isfinite(values)]
+    if not values.size or not values.min() < 0:
+        return 1
+    counted = f"{values.min():.4g} to {values.max():.4g}"
+    guess = "yes" if column.sign < 0 or values.max() <= 0 else "no"
+    typed = ask(f"column {column.place} goes from {counted}: is pressing negative?", guess)
+    return -1 if typed.strip().lower().startswith(("y", "j", "o", "s")) else 1
+
+
+def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
+    """Read files with a dialect and say what comes of it: mu of the segments, or what is missing.
+
+    Parameters
+    ----------
+    files
+        The files that it was drafted from.
+    dialect
+        The TOML file.
+    kind
+        ``run`` or ``scan``.
+    """
+    lines = []
+    for file in files:
+        try:
+            said = _run_said(file, dialect) if kind == "run" else _scan_said(file, dialect)
+        except TribolabError as error:
+            said = error.told("terminal").removeprefix(f"{file}: ")
+        lines.append(f"tried:  {file.name}: {said}")
+    return lines
+
+
+def _run_said(file: Path, dialect: Path) -> str:
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.segments.find import find_segments
+    from tribolab.io.runs import read_run
+
+    run = read_run(file, dialect, pair=False)
+    time = run["time"].values
+    said = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
+    try:
+        segments = find_segments(run)
+        friction = friction_coefficient(run, segments)
+    except TribolabError as error:
+        why = error.told("terminal").removeprefix(f"{file.name}: ")
+        return f"{said}; no friction coefficient: {why}"
+    mu = np.atleast_1d(friction["friction_coefficient"].values)
+    mu = mu[np.isfinite(mu)]
+    said += f", {Count(segments.sizes['segment']):segment|segments}"
+    if not mu.size:
+        return said
+    span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
+    return f"{said}, friction coefficient {span}"
+
+
+def _scan_said(file: Path, dialect: Path) -> str:
+    from tribolab.io.scans.read import read_scans
+
+    height = read_scans(file, dialect)["height"]
+    span = float(height.max() - height.min())
+    return f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
