@@ -191,7 +191,12 @@ TIMES = {
 
 @pytest.mark.parametrize(
     ("name", "time"),
-    [(name, time) for name in SPOILT for time in TIMES if time == "as it is" or "time" in name],
+    [
+        pytest.param(name, time, marks=[pytest.mark.slow] * (time != "as it is"))
+        for name in SPOILT
+        for time in TIMES
+        if time == "as it is" or "time" in name
+    ],
 )
 def test_bad_rows_in_the_middle_are_told_the_same_way(name, time, tmp_path, cut_up):
     run = written(tmp_path, strokes(), SPOILT[name], TIMES[time])
@@ -232,6 +237,7 @@ def test_a_long_data_file_is_read_into_scratch_files(tmp_path, cut_up):
         assert isinstance(base.obj, mmap.mmap), name
 
 
+@pytest.mark.slow
 def test_two_logs_and_a_persons_decisions_come_to_the_same(reviewed, tmp_path, cut_up):
     campaign = load_campaign(reviewed[0])
     runs = [run for run in planned_runs(campaign) if run.decisions][:2]
