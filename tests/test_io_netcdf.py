@@ -253,3 +253,10 @@ def test_what_cannot_be_written_or_read_is_our_error(tmp_path):
     (tmp_path / "text.nc").write_text("no netCDF")
     with pytest.raises(ReadError, match="not a netCDF"):
         read_netcdf(tmp_path / "text.nc")
+
+
+def test_of_a_group_only_the_wanted_variables_are_read(tmp_path):
+    run = xr.Dataset({"a": ("time", [1.0, 2.0]), "b": ("time", [3.0, 4.0])}, {"time": [0.0, 0.1]})
+    path = write_netcdf(run, tmp_path / "run.nc", "run")
+    found = read_groups(path, ["run"], only={"run": ("b", "c")})["run"]
+    assert found.identical(run[["b"]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -202,7 +202,11 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
 
 
 def read_groups(
-    path: str | Path, groups: Iterable[str | None], *, optional: bool = False
+    path: str | Path,
+    groups: Iterable[str | None],
+    *,
+    optional: bool = False,
+    only: Mapping[str, Collection[str]] | None = None,
 ) -> dict[str | None, xr.Dataset]:
     """Read several groups of a file, which is opened but once; as `read_netcdf` does it.
 
@@ -214,6 +218,9 @@ def read_groups(
         Their names; None stands for the root.
     optional
         Whether groups that the file has not are passed over.
+    only
+        Variables that are read, by group, where not all are wanted; those that are not there are
+        passed over.
 
     Raises
     ------
@@ -228,11 +235,14 @@ def read_groups(
             try_out(path)
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
-    return _load(path, list(groups), optional)
+    return _load(path, list(groups), optional, only or {})
 
 
 def _load(
-    path: Path, groups: Sequence[str | None], optional: bool = False
+    path: Path,
+    groups: Sequence[str | None],
+    optional: bool,
+    only: Mapping[str, Collection[str]],
 ) -> dict[str | None, xr.Dataset]:
     try:
         with opened(path) as file:
@@ -241,7 +251,7 @@ def _load(
             for name in groups:
                 group = ("run" if "run" in there else None) if name == "run?" else name
                 if group is None or group in there:
-                    datasets[name] = _group(file, group)
+                    datasets[name] = _group(file, group, only.get(name or ""))
                 elif not optional:
                     raise ReadError(
                         f"{path}: there is no group '{shown(group)}'; there are "
@@ -265,12 +275,15 @@ def _loaded(data: xr.Dataset) -> xr.Dataset:
     return data.load()
 
 
-def _group(file: netCDF4.Dataset, group: str | None) -> xr.Dataset:
+def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | None) -> xr.Dataset:
     store = xr.backends.NetCDF4DataStore(file, group=group)
     for variable in (file if group is None else file[group]).variables.values():
         if is_long(variable.size):  # else the library keeps much of it, until the file is closed
             variable.set_var_chunk_cache(_CACHE)
-    data = _loaded(xr.open_dataset(store, decode_times=False, mask_and_scale=False))
+    data = xr.open_dataset(store, decode_times=False, mask_and_scale=False)
+    if only is not None:
+        data = data[[name for name in data.data_vars if name in only]]
+    data = _loaded(data)
     data.attrs = decoded(data.attrs)
     for name in data.variables:
         data[name].attrs = decoded(data[name].attrs)

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 _LOADED = 0.2
 
 
+# what `main_signal` looks at, where it is there
+LOOKED_AT = ("friction_force", "normal_force", "friction_coefficient")
+
+
 class Signal(NamedTuple):
     """Name of the quantity, its values (time), and what was removed, in words."""
 

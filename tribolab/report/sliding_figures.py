@@ -13,6 +13,7 @@ from tribolab import plot
 from tribolab.campaign.curves import SLIP
 from tribolab.friction.decisions.rejected import kept
 from tribolab.io.netcdf import read_groups, read_netcdf
+from tribolab.plot.signals import LOOKED_AT
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.records.parts import number_of
 from tribolab.records.run_record import RunRecord
@@ -201,7 +202,8 @@ def _traces(what: SlipFigure, folder: Path) -> Made:
     surface = what.title.partition(":")[0]
     for medium, file, segment in what.shown:
         if file not in opened:
-            groups = read_groups(folder / file, ("run", "segments", "friction"))
+            wanted = ("run", "segments", "friction")
+            groups = read_groups(folder / file, wanted, only={"run": LOOKED_AT})
             opened[file] = list(groups.values())
         run, segments, friction = opened[file]
         speed = speed_text(float(segments["sliding_speed"][segment]))

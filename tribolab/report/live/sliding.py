@@ -187,9 +187,11 @@ class _Open(NamedTuple):
 
 def _opened(one: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     from tribolab.io.netcdf import read_groups
+    from tribolab.plot.signals import LOOKED_AT
 
     assert one.slow is not None
-    groups = read_groups(folder / one.slow.file, ("run", "segments", "friction", "stick_slip"))
+    wanted = ("run", "segments", "friction", "stick_slip")
+    groups = read_groups(folder / one.slow.file, wanted, only={"run": LOOKED_AT})
     run, segments, friction, slip = groups.values()
     traces = tuple(
         (speed, *_trace(run, segments, friction, number)) for number, speed in one.slow.segments
