@@ -10,6 +10,7 @@ import pandas as pd
 
 from tribolab.draft.header import converts, is_unit
 from tribolab.draft.layout import Layout
+from tribolab.draft.lvm import units_above
 from tribolab.draft.model import (
     UNKNOWN_NAME,
     DraftColumn,
@@ -33,6 +34,8 @@ _SIGNALS = {
     "shear_stress",
     "film_thickness",
 }
+# beside friction: which of several such columns is taken changes no coefficient of friction
+_ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement", "set_normal_force"}
 
 
 def understand(layout: Layout) -> Understood:
@@ -124,6 +127,7 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     cells += [""] * (layout.width - len(cells))
     row = list(heading.unit_cells if heading else ()) + [""] * layout.width
     columns: list[DraftColumn] = []
+    above = units_above(layout)
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
@@ -133,13 +137,24 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
             name, unit = cell, row[place - 1].strip("[]() ") or None
         seen[name] = seen.get(name, 0) + 1
         known = name if name and heading and heading.aligned else None
-        columns.append(DraftColumn(place, cell, known, seen[name] if known else 1, file_unit=unit))
+        columns.append(
+            DraftColumn(
+                place,
+                cell,
+                known,
+                seen[name] if known else 1,
+                file_unit=unit,
+                unit=above.get(place) if unit is None else None,
+            )
+        )
     return columns
 
 
 def _bare(column: DraftColumn) -> tuple[str, str | None, bool]:
     """Name without its unit, the unit, and whether the dialect has to say it."""
     name = split_name(column.label)[0] if column.name is None else column.name
+    if column.unit is not None:
+        return name, column.unit, True
     if column.file_unit is not None:
         return name, column.file_unit, column.name is None
     name, unit = split_unit(name)
@@ -293,7 +308,7 @@ def _column(
     options: tuple[str, ...] = ()
     if option.score < SURE:
         guessed.append(f"the name means {quantity(option.quantity).long_name}")
-    if several:
+    if several and option.quantity not in _ASIDE:
         guessed.append(f"of several columns for {option.quantity} it is the one meant")
     written = unit if say_unit else None
     if option.unit:

@@ -126,7 +126,9 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
         return False
     if re.match(r"\s*(#|%|//|;)", line) and re.search(r"[:=]", line):
         return False  # a comment that says something: "# rate: 10 Hz"
-    if any(cell.endswith((":", "=")) for cell in filled) or not re.search(r"\w", line):
+    # "Interval data:" may stand before the names of all columns, "Operator:" before a name
+    first = 1 if len(cells) == width and len(filled) > 3 else 0
+    if any(cell.endswith((":", "=")) for cell in filled[first:]) or not re.search(r"\w", line):
         return False
     if grammar.delimiter == "whitespace" and len(cells) != width:
         return False

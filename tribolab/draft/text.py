@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from tribolab.io.dialects.headers import split_row
 from tribolab.io.dialects.signature import HEAD
 
+_BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
 _VOTERS = 300  # lines at the start and at the end that decide on the delimiter
 DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
 _NUMBER = {
@@ -108,6 +109,7 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
                 width, merit = grammar.merit(line)
                 votes[width] += merit
             top = max(votes.values(), default=0)
-            if top > highest:  # in the order of DELIMITERS: a tab is also a blank
+            # in the order of DELIMITERS: a tab is also a blank, which joins a few lines more
+            if top > (_BLANKS if delimiter == "whitespace" else 1.0) * highest:
                 best, highest = grammar, top
     return best

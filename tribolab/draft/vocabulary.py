@@ -26,7 +26,7 @@ def _words(text: str) -> tuple[str, ...]:
 RUN_WORDS = (
     Word(
         "time",
-        _words("t time zeit ts"),
+        _words("t time zeit ts xvalue"),
         _words(
             "steptime testtime elapsedtime timestamp time zeit elapsed dauer uhr seconds sekunden "
             "temps duree tiempo tempo durata 时间 時間 经过时间 経過時間 時刻"
