@@ -215,12 +215,17 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
             else:
                 scale = max(min(n_flat, n), 4)
                 u = np.linspace(0.0, np.arcsinh(n / scale), m)
-                steps = np.unique((scale * np.sinh(u)).astype(np.int64))
+                steps = _each_once((scale * np.sinh(u)).astype(np.int64))
             places.append(k + sign * steps)
-    chosen = np.unique(np.concatenate(places))
+    chosen = _each_once(np.sort(np.concatenate(places)))
     good = (chosen >= 0) & (chosen < len(force_time))
     chosen = chosen[good]
     return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
+
+
+def _each_once(increasing: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Leave out repeats; `numpy.unique` would hash what is sorted already."""
+    return increasing[np.diff(increasing, prepend=-1 - abs(int(increasing[0]))) != 0]
 
 
 class _Fit:
