@@ -74,10 +74,16 @@ def test_middles_of_strokes_are_what_a_crank_measures(folder):
         campaign_of(folder, segments='[segments]\nstroke_middle = "140 %"')
 
 
-def test_a_blank_run_tells_the_zero_and_a_new_one_is_read(folder):
+@pytest.mark.parametrize("said_by", ["the campaign", "the dialect"])
+def test_a_blank_run_tells_the_zero_and_a_new_one_is_read(folder, said_by):
     still = np.zeros(500)
     write(folder, "blank.csv", np.full(500, OFFSET), still)
-    wanted = {"segments": '[segments]\nstroke_middle = "40 %"', "entry": 'zero = "file blank.csv"'}
+    wanted = {"segments": '[segments]\nstroke_middle = "40 %"'}
+    if said_by == "the campaign":
+        wanted["entry"] = 'zero = "file blank.csv"'
+    else:
+        stated = DIALECT.replace('name = "F"', 'name = "F"\nzero = "file blank.csv"')
+        (folder / "crank.toml").write_text(stated, "utf-8")
     run, friction = results(campaign_of(folder, **wanted), folder / "first")
     assert friction.attrs["friction_force_zero_N"] == pytest.approx(OFFSET, abs=0.005)
     assert np.abs(friction["friction_force_offset"].values).max() < 0.01

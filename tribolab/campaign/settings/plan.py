@@ -252,21 +252,25 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     return group_files(files, instrument)
 
 
-def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, Path | None]:
-    """Where the zero is read, and the blank run that it is read from, in the raw folder."""
-    if entry.zero is None:
-        return None, None
-    name = parse_zero(entry.zero).file
-    if not name:
-        return entry.zero, None
-    blank = campaign.raw / name
-    return f"file {blank}", blank
+def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, list[Path]]:
+    """Where the zero is read, and the blank runs in the raw folder that zeros are read from."""
+    if entry.zero is not None:
+        name = parse_zero(entry.zero).file
+        blank = campaign.raw / name
+        return (f"file {blank}", [blank]) if name else (entry.zero, [])
+    if not entry.instrument:
+        return None, []
+    from tribolab.io.dialects.find import load_dialect  # an unchanged campaign may not need it
+
+    dialect = load_dialect(instrument_of(campaign, entry.instrument))
+    rules = [parse_zero(column.zero) for column in dialect.column if column.zero]
+    return None, [campaign.raw / rule.file for rule in rules if rule.file]
 
 
 def _settings(campaign: Campaign, entry: RunEntry) -> Json:
     """Return what all runs of an entry share, with its checksum."""
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
-    zero, blank = _zero(campaign, entry)
+    zero, blanks = _zero(campaign, entry)
     settings: Json = {
         "surface": entry.surface or "",
         "medium": entry.medium or "",
@@ -284,7 +288,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "cycles": entry.cycles,
         "clock_shift": entry.clock_shift,
         "zero": zero,
-        "blank": blank and (sha256_of_file(blank) if blank.is_file() else ""),
+        "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
     return settings | {
         "instrument": instrument,
