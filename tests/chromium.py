@@ -154,6 +154,18 @@ class Page:
         ):
             self._tab.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
+    def double_click(self, point, condition, tries=10):
+        """Click twice until an expression is true: a busy machine may be too slow for one pair."""
+        for _ in range(tries):
+            for _ in range(2):
+                self.mouse([point])
+            end = time.monotonic() + 2
+            while time.monotonic() < end:
+                if self.run(condition):
+                    return
+                time.sleep(0.02)
+        raise AssertionError(f"after {tries} double clicks it did not come true: {condition}")
+
     def touch(self, *fingers):
         """Move fingers along their points, all at once, and lift them: one finger, or two."""
         steps = list(zip(*fingers, strict=True))

@@ -320,9 +320,8 @@ def test_trace_zooms_and_pans_by_mouse_keys_and_buttons(browser, results):
         page.key("+", "+")
         assert span_of(page, 1) != whole
         box = page.run(PANEL)
-        for _ in range(2):
-            page.mouse([(box[0] + box[2] / 2, box[1] + box[3] / 2)])
-        page.wait(f"{state}.startsWith('0 s')")
+        middle = box[0] + box[2] / 2, box[1] + box[3] / 2
+        page.double_click(middle, f"{state}.startsWith('0 s')")
         assert span_of(page, 1) == whole
         assert page.console == []
 
