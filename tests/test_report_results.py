@@ -453,6 +453,14 @@ def unpacked(signal, clock):
     return np.interp(np.cumsum(steps), *clock), value
 
 
+def test_a_gap_in_the_motion_does_not_hide_it():
+    run, segments, friction = made_run(samples=3000)
+    whole = [one["name"] for one in trace(run, segments, friction, 2000)["signals"]]
+    run["sliding_velocity"][700] = np.nan
+    gaps = [one["name"] for one in trace(run, segments, friction, 2000)["signals"]]
+    assert gaps == whole and "sliding_velocity" in whole
+
+
 @pytest.mark.parametrize("fine", [False, True])
 def test_traces_for_the_page_are_the_signals_with_every_extreme(fine):
     run, segments, friction = made_run(samples=3000)

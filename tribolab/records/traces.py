@@ -178,7 +178,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int)
     clock, main = shared
     signals = [(main.name, main.values)]
     for name in _MOTION:
-        if name in run and np.ptp(np.asarray(run[name], float)) > 0:
+        if name in run and _varies(np.asarray(run[name], float)):
             signals.append((name, np.asarray(run[name], float)))
             break
     let_go()
@@ -202,6 +202,11 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int)
         "complete": all(signal["points"] == time.size for signal in packed),
         "signals": packed,
     }
+
+
+def _varies(values: np.ndarray) -> bool:
+    """Whether a signal has more than one value; gaps are none."""
+    return bool(np.fmax.reduce(values) > np.fmin.reduce(values))
 
 
 def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: int) -> np.ndarray:
