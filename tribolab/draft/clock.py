@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribolab.draft.layout import Layout
     from tribolab.draft.model import DraftColumn
 
+_DAY = 86400.0  # [s]
 OnRepeat = Literal["", "drop", "interpolate"]
 
 
@@ -35,9 +36,11 @@ def find_clock(
     bad, notes = np.zeros(len(time), dtype=bool), []
     for first, last in parts:
         faults = find_faults(time[first:last])
-        restart |= bool(faults.starts)
+        # a time of day begins anew at midnight
+        starts = [s for s in faults.starts if not (column.form and s.period == _DAY)]
+        restart |= bool(starts)
         bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
-        periods = {start.period for start in faults.starts if start.period}
+        periods = {start.period for start in starts if start.period}
         notes += [f"its counter wraps every {period:.9g} s" for period in sorted(periods)]
     on_repeat: OnRepeat = ""
     if bad.any():

@@ -22,6 +22,7 @@ from tribolab.draft.model import (
 from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
+from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import split_name, split_row
 from tribolab.quantities import QUANTITIES, quantity
 
@@ -55,6 +56,7 @@ def understand(layout: Layout) -> Understood:
         from tribolab.draft.behaviour import by_behaviour
 
         kind, columns, guesses = by_behaviour(columns, numbers)
+    columns = _dated(columns, layout, numbers, text)
     columns = [
         column._replace(
             used=False,
@@ -62,7 +64,7 @@ def understand(layout: Layout) -> Understood:
             fill_in="",
             note=f"not a number: '{shown(text[column.place - 1])}'",
         )
-        if text[column.place - 1]
+        if text[column.place - 1] and not column.form
         else column
         for column in columns
     ]
@@ -77,6 +79,46 @@ def understand(layout: Layout) -> Understood:
     return Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses)
     )
+
+
+def _dated(
+    columns: list[DraftColumn], layout: Layout, numbers: np.ndarray, text: list[str]
+) -> list[DraftColumn]:
+    """Where no column of numbers is time, take the first of dates, and put its numbers in."""
+    timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
+    if timed or not any(text):
+        return columns
+    from tribolab.draft.dates import find_form
+
+    rows = [split_row(line, layout.delimiter) for line in layout.rows()]
+    for column in columns:
+        index = column.place - 1
+        if not text[index]:
+            continue
+        cells = [row[index] if index < len(row) else "" for row in rows]
+        form, other = find_form(cells)
+        if not form:
+            continue
+        numbers[:, index] = seconds(cells, form)
+        dated = column._replace(
+            quantity="time",
+            unit=None,
+            form=form,
+            used=True,
+            guessed=(f"dates are written {form}",) if other else (),
+            options=(other,) if other else (),
+            note="",
+            fill_in="",
+        )
+        return [
+            dated
+            if c is column
+            else c._replace(quantity=None, used=False)
+            if c.quantity == "time"
+            else c
+            for c in columns
+        ]
+    return columns
 
 
 def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:

@@ -16,7 +16,7 @@ class DraftColumn(NamedTuple):
 
     `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
-    `options` is what it may be instead, where something is guessed.
+    `options` is what it may be instead, where something is guessed; `form` that of its dates.
     """
 
     place: int
@@ -33,11 +33,12 @@ class DraftColumn(NamedTuple):
     options: tuple[str, ...] = ()
     note: str = ""
     fill_in: str = ""
+    form: str = ""
 
     @property
     def read_unit(self) -> str | None:
         """The unit the numbers are read in."""
-        return self.unit or self.file_unit
+        return "s" if self.form else self.unit or self.file_unit
 
 
 class Understood(NamedTuple):

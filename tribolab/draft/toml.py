@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.draft.layout import Layout
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Understood
 from tribolab.draft.values import DraftValue, find_values
+from tribolab.io.dialects.dates import has_day
 from tribolab.quantities import quantity
 
 FILL_IN = "FILL IN"
@@ -102,6 +103,11 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
 
 def _time_table(understood: Understood) -> str:
     lines = ["[time]"]
+    for column in understood.columns:
+        if column.used and column.form:
+            lines.append(f"format = {_text(column.form)}")
+            if not has_day(column.form):
+                lines.append('wrap = "24 h"')
     if not any(c.used and c.quantity == "time" for c in understood.columns):
         lines.append('source = "none"')
         if understood.kind == "run":

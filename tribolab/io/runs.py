@@ -13,7 +13,7 @@ from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
-from tribolab.io.clocks.clock import join_clocks, mended_time, set_time
+from tribolab.io.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.io.content.model import Content
 from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
@@ -355,6 +355,14 @@ def _check_normal_force(
     )
 
 
+_TIME_FROM = {
+    "column": "recorded",
+    "period": "recorded",
+    "rate": "sample rate",
+    "none": "row number",
+}
+
+
 def _speed_from(dialect: Dialect) -> str:
     by_formula = any(rule.quantity == "sliding_velocity" for rule in dialect.derived)
     return "formula" if by_formula else dialect.speed.source
@@ -376,14 +384,12 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
         "columns_used": labels,
         "columns_not_used": "; ".join(unused),
         "time_origin_s": origin,
-        "time_source": {"column": "recorded", "rate": "sample rate", "none": "row number"}[
-            dialect.time.source
-        ],
+        "time_source": _TIME_FROM[dialect.time.source],
         "speed_from": _speed_from(dialect),
     }
-    moment = contents[0].pieces[0].started
-    if moment is not None:
-        attrs["recorded_at"] = moment.isoformat()
+    recorded = recorded_at(contents[0].pieces[0].started, origin, dialect)
+    if recorded is not None:
+        attrs["recorded_at"] = recorded.isoformat()
     for column in dialect.column:
         if column.key in labels:
             attrs.update(column.attributes)

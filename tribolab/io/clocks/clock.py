@@ -21,6 +21,8 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.steps import last_match
+from tribolab.io.dialects.dates import has_day, has_zone
+from tribolab.io.dialects.dates import moment as date_of
 from tribolab.io.dialects.model import Dialect
 from tribolab.pieces import pieces
 from tribolab.room import room
@@ -37,8 +39,11 @@ class Mended(NamedTuple):
 
 
 def set_time(content: Content, dialect: Dialect) -> None:
-    """Give pieces without a time column one from the sample rate (or from the row numbers)."""
+    """Give pieces a time from intervals, from the sample rate, or from the row numbers."""
     if dialect.time.source == "column":
+        return
+    if dialect.time.source == "period":
+        _sum_up(content, dialect)
         return
     step = 1.0
     if dialect.time.rate_pattern:
@@ -57,6 +62,52 @@ def set_time(content: Content, dialect: Dialect) -> None:
         piece.columns["time"] = _even(start, rows, step)
         if dialect.time.restart == "error":
             start += rows
+
+
+def recorded_at(started: dt.datetime | None, origin: float, dialect: Dialect) -> dt.datetime | None:
+    """Return when a run began: as the file says, or by a clock that counts from a date.
+
+    Parameters
+    ----------
+    started
+        What the text before the table says.
+    origin
+        First time of the clock [s].
+    dialect
+        The dialect.
+    """
+    clock = dialect.time
+    if started is not None or not (clock.epoch or (clock.format and has_day(clock.format))):
+        return started
+    try:
+        moment = date_of(clock.epoch or "unix", origin)
+    except OverflowError:
+        return None
+    if clock.format and not has_zone(clock.format):
+        return moment.replace(tzinfo=None)
+    return moment
+
+
+def _sum_up(content: Content, dialect: Dialect) -> None:
+    """Sum intervals: what a row states has passed since the row before."""
+    past = 0.0
+    for piece in content.pieces:
+        time = piece.columns["time"]
+        for first, last in pieces(0, len(time)):
+            part = time[first:last]
+            if (bad := ~(part >= 0)).any():
+                row = first + int(np.argmax(bad)) + 1
+                what = f"the interval of row {row} is {part[row - first - 1]:.9g} s"
+                raise ReadError(
+                    f"{what}; it has to be a number and not negative (instrument "
+                    f"'{dialect.name}', time.source = 'period')",
+                    where=content.path,
+                )
+            np.cumsum(part, out=part)
+            part += past
+            past = float(part[-1])
+        if dialect.time.restart == "continue":
+            past = 0.0
 
 
 def _even(start: int, rows: int, step: float) -> np.ndarray:

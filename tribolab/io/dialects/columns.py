@@ -161,6 +161,8 @@ def _signal(
 ) -> ReadColumn:
     label = names[index] if names else f"column {index + 1}"
     unit = column.unit if column.unit is not None else (units[index] if units else None)
+    if column.key == "time" and dialect.time.format:
+        unit = "s"  # dates are read as seconds
     wanted = column.si_unit(unit)
     if unit is None and (column.symbol or wanted not in ("", "1")):
         raise ReadError(

@@ -23,6 +23,7 @@ from pydantic import (
 )
 
 from tribolab.errors import TribolabError, nearest, shown
+from tribolab.io.dialects.dates import Epoch, is_form
 from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.patterns import PatternError, guarded
 from tribolab.io.zero_reading import parse_zero
@@ -158,10 +159,22 @@ class Header(_Strict):
 
 
 class Time(_Strict):
-    """Where time comes from: a column (the default), a sample rate, or nowhere."""
+    """Where time comes from: a column (the default), intervals, a sample rate, or nowhere."""
 
-    source: Literal["column", "rate", "none"] = Field(
-        "column", description="'none': rows are counted as seconds, and the run says so"
+    source: Literal["column", "period", "rate", "none"] = Field(
+        "column",
+        description="'period': the column of 'time' holds what has passed since the row before, "
+        "and is summed; 'none': rows are counted as seconds, and the run says so",
+    )
+    format: str | None = Field(
+        None,
+        description="the column holds dates and times (or times of day): 'iso', 'iso with zone', "
+        "or as for strptime, e.g. '%d.%m.%Y %H:%M:%S,%f'",
+    )
+    epoch: Epoch | None = Field(
+        None,
+        description="the column counts from a date, which gives `recorded_at`: 'excel' (days "
+        "since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
     )
     rate: str | None = Field(None, description="sample rate with unit, e.g. '2 kHz'")
     rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
@@ -188,6 +201,15 @@ class Time(_Strict):
     def _is_consistent(self) -> Self:
         if (self.source == "rate") != bool(self.rate or self.rate_pattern):
             raise ValueError("source = 'rate' and rate (or rate_pattern) belong together")
+        if self.source != "column" and (self.format or self.epoch):
+            raise ValueError("format and epoch are for source = 'column'")
+        if self.format and self.epoch:
+            raise ValueError("format and epoch exclude one another")
+        if self.format and not is_form(self.format):
+            raise ValueError(
+                f"format: 'iso', 'iso with zone', or codes such as %d and %H; not "
+                f"'{shown(self.format)}'"
+            )
         if self.rate:
             to_si(self.rate, "Hz", "time.rate")
         if self.wrap:
@@ -446,8 +468,10 @@ class Dialect(_Strict):
                     "optional = true for all: the first that is filled is taken"
                 )
         _check_formulas(self.derived, names, [v.name for v in self.value if v.unit is not None])
-        if ("time" in names) != (self.time.source == "column"):
-            raise ValueError("a column for 'time' and time.source = 'column' belong together")
+        if ("time" in names) != (self.time.source in ("column", "period")):
+            raise ValueError(
+                "a column for 'time' and time.source = 'column' or 'period' belong together"
+            )
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
         without_header = self.header.line is None and self.header.pattern is None

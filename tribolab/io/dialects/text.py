@@ -14,6 +14,7 @@ import pyarrow.csv as arrow_csv
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.columns import ReadColumn
+from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import LONGEST_LINE, RawText, Table, endless
 from tribolab.io.dialects.model import Dialect
 from tribolab.room import is_long, let_go, room
@@ -158,6 +159,8 @@ class _Parser:
         names = [str(index) for index in range(table.width)]
         self._wanted = [names[signal.place] for signal in signals]
         delimiter = dialect.text.delimiter
+        dated = dialect.time.format is not None
+        self._dates = {names[s.place] for s in signals if dated and s.quantity == "time"}
         self.incomplete = 0
         self._parse = {"delimiter": "\t" if delimiter == "whitespace" else delimiter}
         self._read = arrow_csv.ReadOptions(
@@ -172,7 +175,9 @@ class _Parser:
 
     def parse(self, view: memoryview, place: int, last: bool) -> list[list[np.ndarray]]:
         """Numbers of one block: for each signal its pieces, still in the file's unit."""
-        types = {name: pa.float64() for name in self._wanted}
+        types = {
+            name: pa.string() if name in self._dates else pa.float64() for name in self._wanted
+        }
         if not view:  # a line longer than a block: it goes on in the next
             return [[] for _ in self._wanted]
         try:
@@ -180,9 +185,23 @@ class _Parser:
         except pa.ArrowInvalid as error:
             table = self._second_try(bytes(view), place, last, types, error)
         return [
-            [piece.to_numpy(zero_copy_only=False) for piece in table[name].chunks]
-            for name in self._wanted
+            [self._numbers(name, piece) for piece in table[name].chunks] for name in self._wanted
         ]
+
+    def _numbers(self, name: str, cells: pa.Array) -> np.ndarray:
+        """Cells as numbers; dates and times as seconds."""
+        if name not in self._dates:
+            return cells.to_numpy(zero_copy_only=False)
+        form = str(self._dialect.time.format)
+        missing = {*_NO_VALUE, *self._convert["null_values"]}
+        try:
+            return seconds(cells.to_pandas(), form, missing)
+        except ValueError as error:
+            raise ReadError(
+                f"'{shown(str(error), 40)}' is no date and time of the form '{shown(form)}'; see "
+                f"[time] format in the dialect '{self._dialect.name}'",
+                where=self._raw.file.path,
+            ) from error
 
     def _arrow(self, block: bytes | memoryview, types: Arguments) -> pa.Table:
         held = block.obj if isinstance(block, memoryview) else block
@@ -240,6 +259,8 @@ class _Parser:
                 )
             for signal in self._signals:
                 cell = cells[signal.place]
+                if str(signal.place) in self._dates:
+                    continue
                 if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
                     told = f"'{shown(cell, 40)}'" if is_table else "what stands there"
                     word = shown(cell, 40) if is_table else "..."
