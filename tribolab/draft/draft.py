@@ -123,10 +123,16 @@ def check_target(path: Path, *, force: bool = False) -> None:
     ------
     ConfigError
         If there is such a file already, or its name does not end in ``.toml``.
+    OutputError
+        If no file can have such a name.
     """
     if path.suffix != ".toml":
         raise ConfigError(f"{path}: the name of a dialect's file ends in .toml")
-    if path.exists() and not force:
+    try:
+        there = path.exists()
+    except OSError as error:  # a name too long for any file
+        raise OutputError(f"{path}: cannot be written: {os.strerror(error.errno or 0)}") from error
+    if there and not force:
         raise ConfigError(
             f"{path}: there is such a file already; --force replaces it, --output names another"
         )

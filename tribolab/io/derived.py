@@ -48,7 +48,8 @@ def add_derived(
         If something that a formula needs is not in this file, or the units do not fit. All that is
         missing is told at once.
     """
-    known = _operands(columns, symbols, attrs, dialect)
+    # only formulas want units, whose library a quick answer does not load
+    known = _operands(columns, symbols, attrs, dialect) if dialect.derived else {}
     missing, said = [], {}
     for rule in dialect.derived:
         lost = sorted(names_in(parse_formula(rule.formula)) - set(known))
