@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drafts import drafted
 
+import tribolab as tl
 from tribolab.draft.draft import draft_dialect
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
 from tribolab.draft.words import squeezed
@@ -66,3 +67,17 @@ def test_marks_of_kana_stay_and_accents_go():
     assert squeezed("すべり速度 [ｍｍ]") == "すべり速度mm"
     assert squeezed("すへり速度") != squeezed("すべり速度")
     assert squeezed("Coefficient d’attrito È") == "coefficientdattritoe"
+
+
+@pytest.mark.parametrize(
+    ("language", "encoding"),
+    [("Chinese", "gbk"), ("Chinese", "gb18030"), ("Japanese", "shift_jis"), ("French", "latin-1")],
+)
+def test_a_header_is_read_in_the_encoding_of_the_place(language, encoding, tmp_path):
+    file = tmp_path / "table.txt"
+    rows = "\n".join(f"{n / 10};{n % 3};30;{5 + n % 2};{n / 2}" for n in range(30))
+    file.write_bytes(f"{TABLES[language]}\n{rows}\n".encode(encoding))
+    data, draft = drafted(file, tmp_path)
+    assert [column.quantity for column in draft.understood.columns] == QUANTITIES
+    np.testing.assert_allclose(data.friction_force, [n % 3 for n in range(30)])
+    np.testing.assert_array_equal(tl.read(file).position, data.position)

@@ -129,3 +129,18 @@ def test_writing_the_draft_down_and_naming_it_reads_the_same(good, tmp_path, mon
     assert run.attrs["instrument"] == "bon_essai"
     assert run.friction_force.equals(tl.read(good).friction_force)
     assert tomllib.loads((tmp_path / "bon_essai.toml").read_text("utf-8"))["name"] == "bon_essai"
+
+
+@pytest.mark.parametrize(
+    "said", ["# Sample rate: 200 Hz", "Abtastrate [kHz];0.2", "Sampling frequency = 0.2 kHz"]
+)
+def test_a_sample_rate_before_the_table_is_its_clock(said, tmp_path):
+    file = tmp_path / "daq.txt"
+    rows = "\n".join(f"{5 + n % 3};30" for n in range(100))
+    file.write_text(f"{said}\nFx [N];Fz [N]\n{rows}\n")
+    run = tl.read(file)
+    assert run.attrs["time_source"] == "sample rate"
+    np.testing.assert_allclose(run.time, np.arange(100) / 200)
+    file.write_text(f"Frequency: 2 Hz\nFx [N];Fz [N]\n{rows}\n")  # of the strokes, it may be
+    with pytest.raises(GuessedError, match="rows are counted as seconds +or: a sample rate"):
+        tl.read(file)

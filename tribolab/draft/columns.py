@@ -19,6 +19,7 @@ from tribolab.draft.model import (
     other_units,
     time_unit,
 )
+from tribolab.draft.values import find_rate
 from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
@@ -76,9 +77,14 @@ def understand(layout: Layout) -> Understood:
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in
         kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
-    return Understood(
+    result = Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses)
     )
+    timed = any(column.used and column.quantity == "time" for column in columns)
+    rate = None if timed or kind != "run" else find_rate(layout)
+    if rate is None:
+        return result
+    return result._replace(rate_pattern=rate.pattern, rate_unit=rate.unit or "Hz")
 
 
 def _dated(

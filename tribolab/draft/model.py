@@ -42,7 +42,10 @@ class DraftColumn(NamedTuple):
 
 
 class Understood(NamedTuple):
-    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written."""
+    """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
+
+    Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there.
+    """
 
     kind: Kind
     columns: tuple[DraftColumn, ...]
@@ -51,6 +54,8 @@ class Understood(NamedTuple):
     on_repeat: Literal["", "drop", "interpolate"]
     restart: bool
     guesses: tuple[str, ...]
+    rate_pattern: str = ""
+    rate_unit: str = ""
 
 
 _UNITS = {

@@ -44,8 +44,10 @@ def questions(draft: Drafted) -> list[Question]:
     asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
     if layout.skip_lines:
         asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
-    if understood.kind == "run" and not any(
-        column.used and column.quantity == "time" for column in understood.columns
+    if (
+        understood.kind == "run"
+        and not understood.rate_pattern
+        and not any(c.used and c.quantity == "time" for c in understood.columns)
     ):
         asked.append(Question("time", "rows are counted as seconds", _RATE))
     for column in understood.columns:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections import Counter
 from collections.abc import Sequence
 
+from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.headers import split_row
 from tribolab.io.dialects.signature import HEAD
 
+_EASTERN = ("gb18030", "cp932", "big5")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
 _VOTERS = 300  # lines at the start and at the end that decide on the delimiter
 DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
@@ -75,9 +78,24 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
         # the head may end inside a character
         head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
     except UnicodeDecodeError:
+        if eastern := _eastern(head):
+            return eastern, [f"the encoding is {eastern}: names of columns are words in it"]
         name = "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
         return name, [f"the encoding is {name}: the file is not UTF-8"]
     return "utf-8", []
+
+
+def _eastern(head: bytes) -> str:
+    """Return the Chinese or Japanese encoding in which a file says known words; "" for none."""
+    known: dict[str, int] = {}
+    for name in _EASTERN:
+        try:
+            text = codecs.getincrementaldecoder(name)().decode(head, final=len(head) < HEAD)
+        except UnicodeDecodeError:
+            continue
+        known[name] = sum(word in text for word in EASTERN_WORDS)
+    best = max(known, key=lambda name: known[name], default="")
+    return best if best and known[best] else ""
 
 
 def find_line_ends(raw: bytes) -> str:

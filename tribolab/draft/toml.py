@@ -108,10 +108,15 @@ def _time_table(understood: Understood) -> str:
             lines.append(f"format = {_text(column.form)}")
             if not has_day(column.form):
                 lines.append('wrap = "24 h"')
-    if not any(c.used and c.quantity == "time" for c in understood.columns):
+    timed = any(c.used and c.quantity == "time" for c in understood.columns)
+    if not timed and understood.rate_pattern:
+        lines += ['source = "rate"', f"rate_pattern = {_pattern(understood.rate_pattern)}"]
+        if understood.rate_unit != "Hz":
+            lines.append(f"rate_unit = {_text(understood.rate_unit)}")
+    elif not timed:
         lines.append('source = "none"')
         if understood.kind == "run":
-            lines[1] += "    # guessed: rows are counted as seconds"
+            lines[-1] += "    # guessed: rows are counted as seconds"
             lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
             lines.append('# source = "rate"\n# rate = "? Hz"')
     if understood.on_repeat == "drop":

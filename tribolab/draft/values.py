@@ -18,6 +18,11 @@ _SAYS = re.compile(
 )
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
+# a sample rate by its name; "Frequency" alone may be that of the strokes
+_RATE = re.compile(
+    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
+    r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
+)
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
@@ -63,6 +68,22 @@ def find_values(layout: Layout) -> list[DraftValue]:
             value = _value(said)
             values.setdefault(value.name, value)
     return list(values.values())
+
+
+def find_rate(layout: Layout) -> DraftValue | None:
+    """Return the sample rate that the text before the table states; None if it states none.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.layout.find_layout`.
+    """
+    for value in find_values(layout):
+        key = _SAYS.match(value.text)
+        rated = key is not None and _RATE.search(squeezed(_BRACKETS.sub("", key["key"])))
+        if rated and value.source == "preamble" and value.unit and converts(value.unit, "Hz"):
+            return value
+    return None
 
 
 def _value(said: re.Match[str]) -> DraftValue:

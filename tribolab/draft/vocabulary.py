@@ -189,3 +189,11 @@ SCAN_WORDS = (
         ),
     ),
 )
+
+# by which a file's encoding is told: a single sign may stand in any wrong reading of other letters
+EASTERN_WORDS = frozenset(
+    stem
+    for word in (*RUN_WORDS, *SCAN_WORDS)
+    for stem in (*word.stems, *word.vague)
+    if len(stem) > 1 and not stem.isascii()
+)
