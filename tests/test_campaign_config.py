@@ -290,7 +290,7 @@ def test_a_name_that_is_not_declared_is_told_how_to_declare_it(folder):
 def test_a_mistake_in_the_only_run_is_one_mistake(folder):
     said = complaint(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "*"\nnormal_force = 2\n')
     assert len(said.splitlines()) == 1 and "run 1, normal_force: 2 has no unit" in said
-    assert "run: is empty" in complaint(folder, 'run = []\n[campaign]\nname = "a"\n')
+    assert "add [[run]] with files" in complaint(folder, 'run = []\n[campaign]\nname = "a"\n')
 
 
 def test_nothing_can_be_changed_after_reading(folder):

@@ -447,14 +447,15 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     crashes = [curve.crash for curve in outcome.curves if curve.crash]
     for crash in crashes if debug else ():
         say(crash, to_stderr=True)
-    if not outcome.segments:
+    nothing = bool(outcome.campaign.run) and not outcome.segments
+    if nothing:
         say("tribolab: no segment of constant speed was found in any run", to_stderr=True)
     spoilt = (
         outcome.failed
         or outcome.lost_decisions
         or any(surface.unreadable for surface in outcome.surfaces)
     )
-    if spoilt or outcome.kept or crashes or not outcome.segments:
+    if spoilt or outcome.kept or crashes or nothing:
         return UNREADABLE
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))

@@ -110,7 +110,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     line += f", {Count(outcome.segments):segment|segments}"
     if reused:
         line += f"; {reused} unchanged since the last time"
-    lines = [line]
+    lines = [line] if outcome.campaign.run else []
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         runs = [run for run in outcome.runs if run.quality == quality]
         # a campaign of hundreds of runs is not read again for a handful of lines

@@ -6,6 +6,7 @@ import datetime as dt
 import json
 import platform
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.store.outcome import Outcome
     from tribolab.records.part_records import FigureRecord
-    from tribolab.records.parts import CurveOutcome, Notice, RunOutcome
+    from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 
 BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
 _HEAD = TypeAdapter(ReportHead)
@@ -86,7 +87,9 @@ def report_head(
     return ReportHead(
         made_at=dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         campaign=_campaign(outcome.campaign),
-        verdict=verdict(runs, rejected, len(outcome.lost_decisions)),
+        verdict=verdict(runs, rejected, len(outcome.lost_decisions))
+        if outcome.campaign.run
+        else _of_surfaces(outcome.surfaces, rejected),
         thresholds=THRESHOLDS,
         findings=tuple(ReportedFinding(*finding) for finding in findings),
         sources=tuple(SourceFile(*source) for source in outcome.sources),
@@ -100,6 +103,17 @@ def report_head(
         model_figures=tuple(figures["model_figures"]),
         sliding_figures=tuple(figures["sliding_figures"]),
     )
+
+
+def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
+    """Return what came of a campaign that measured surfaces only."""
+    scanned = [surface for surface in surfaces if surface.files]
+    done = sum(surface.done for surface in scanned)
+    text = f"{done} of {many(len(scanned), 'surface')}"
+    if rejected:
+        text += f"; scans of {', '.join(rejected)} rejected"
+    status = "complete" if done == len(scanned) and not rejected else "incomplete"
+    return replace(verdict((), rejected), status=status if done else "nothing", text=text)
 
 
 def verdict(

@@ -37,7 +37,7 @@ class Section:
 
 
 SECTIONS = (
-    Section("answer", "What was found", "sections/answer.html.j2"),
+    Section("answer", "What was found", "sections/answer.html.j2", "runs"),
     Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
     Section("model", "Model beside measurement", "sections/model.html.j2", "models"),
     Section(
@@ -45,7 +45,7 @@ SECTIONS = (
     ),
     Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
     Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
-    Section("runs", "Runs", "sections/runs.html.j2"),
+    Section("runs", "Runs", "sections/runs.html.j2", "runs"),
     Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
     Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
     Section("methods", "Methods and words", "sections/methods.html.j2"),

@@ -65,6 +65,8 @@ class Contact(Table):
     """Between which values it is uncertain; model curves get a band from it."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
+    normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
+    """Normal forces at which contact and adhesion are computed, beside those of the runs."""
     modulus_file: Text | None = None
     """Storage and loss modulus over frequency (DMA), relative to the raw folder."""
 
@@ -306,7 +308,7 @@ class Campaign(Table):
     roughness: Roughness = Roughness()
     model: Model = Model()
     surface: tuple[Surface, ...] = ()
-    run: Annotated[tuple[RunEntry, ...], Field(min_length=1)]
+    run: tuple[RunEntry, ...] = ()
     qc: Qc = Qc()
 
     _file: Path = PrivateAttr(default=Path("campaign.toml"))

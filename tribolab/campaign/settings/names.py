@@ -39,6 +39,9 @@ def of_names(campaign: Campaign) -> list[Problem]:
         if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
             what = f"must go from below to above {name}"
             found.append(Problem((*where, f"{name}_range"), what))
+    if not campaign.run and not any(surface.scans for surface in campaign.surface):
+        what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
+        found.append(Problem(("run",), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
             what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(

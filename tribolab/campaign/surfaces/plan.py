@@ -52,7 +52,7 @@ class PlannedSurface:
     contact
         The table [contact]; None where it says nothing.
     forces
-        Normal forces of the runs on this surface [N], increasing.
+        Normal forces of the runs on this surface, and those of [contact] [N], increasing.
     lowest_force
         Lowest normal force of the whole campaign [N], if any is known.
     media
@@ -95,6 +95,8 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
         for run in runs
         if run.normal_force is not None and run.normal_force > 0
     ]
+    stated = [float(f"{force:.4g}") for force in campaign.contact.normal_forces]
+    every = [force for _, force in known] + stated
     media = tuple(
         PlannedMedium(name, work, *(medium.work_of_adhesion_range or (work, work)))
         for name, medium in campaign.medium.items()
@@ -114,8 +116,10 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
             "contact": campaign.contact.line(),
-            "forces": tuple(sorted({force for name, force in known if name == surface.name})),
-            "lowest_force": min((force for _, force in known), default=None),
+            "forces": tuple(
+                sorted({*stated, *(force for name, force in known if name == surface.name)})
+            ),
+            "lowest_force": min(every, default=None),
             "media": media,
             "quality": campaign.scan_quality_options(),
         }

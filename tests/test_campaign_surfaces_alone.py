@@ -1,0 +1,49 @@
+"""A campaign of surfaces alone makes the report on roughness, contact and adhesion."""
+
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+from report_pages import page_of
+from typer.testing import CliRunner
+
+from tribolab import rig
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.cli import app
+from tribolab.errors import ConfigError
+
+
+def campaign_of(folder, more=""):
+    text = (folder / "campaign.toml").read_text("utf-8")
+    head = text[: text.index("[[run]]")]
+    head = head.replace("[contact]\n", '[contact]\nnormal_forces = ["31 N", "91 N"]\n')
+    (folder / "campaign.toml").write_text(head + more, "utf-8")
+    return folder / "campaign.toml"
+
+
+@pytest.mark.slow
+def test_surfaces_without_runs_have_their_report(tmp_path):
+    rig.simulate_campaign(tmp_path / "c", seed=3, small=True)
+    campaign = campaign_of(tmp_path / "c")
+    done = CliRunner().invoke(app, ["run", str(campaign), "-j", "1", "-q"])
+    assert done.exit_code == 0, done.output
+    assert done.output.startswith("2 of 2 surfaces: spectrum, contact, adhesion")
+    results = tmp_path / "c" / "results"
+    report = json.loads((results / "report.json").read_text("utf-8"))
+    assert report["verdict"]["text"] == "2 of 2 surfaces"
+    assert report["verdict"]["status"] == "complete" and report["runs"] == []
+    for name in ("contact", "adhesion"):
+        table = pd.read_csv(results / "tables" / f"{name}.csv")
+        assert set(table["normal_force_N"].dropna()) == {31.0, 91.0}, name
+    page = page_of(results)
+    assert "Report on surfaces" in page and 'id="surfaces"' in page and 'id="runs"' not in page
+    again = CliRunner().invoke(app, ["run", str(campaign), "-j", "1", "-q"])
+    assert again.exit_code == 0 and "2 of 2 surfaces" in again.output
+
+
+def test_a_campaign_of_nothing_is_told_what_it_may_hold(tmp_path):
+    (tmp_path / "campaign.toml").write_text('[campaign]\nname = "empty"\n', "utf-8")
+    with pytest.raises(ConfigError, match=r"add \[\[run\]\].* or \[\[surface\]\]"):
+        load_campaign(tmp_path / "campaign.toml")
