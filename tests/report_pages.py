@@ -10,6 +10,7 @@ import numpy as np
 from reporting import made_outcome, made_run, with_run
 
 from tribolab.qc.flags import attach
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series
 from tribolab.report.results import write_report
 
 RUNS = [
@@ -128,6 +129,15 @@ def figures_of(folder):
     """What the figures of a page show, by their ids."""
     packed = re.findall(PACKED % "", page_of(folder))
     return {figure["id"]: figure for figure in (json.loads(_unpacked(one)) for one in packed)}
+
+
+def live_of(data):
+    """A figure of a page as it was before it became plain data."""
+    axes = ([Axis(**{"label": ""} | panel[side]) for side in "xy"] for panel in data["panels"])
+    panels = tuple(Panel(*pair) for pair in axes)
+    series = tuple(Series(**one) for one in data["series"])
+    words = dict.fromkeys(("section", "title", "note", "alt"), "")
+    return LiveFigure(**words | data | {"panels": panels, "series": series})
 
 
 def _unpacked(text):

@@ -35,6 +35,19 @@ def report(runs, findings=(), **fit):
     }
 
 
+def test_a_sentence_says_of_each_error_what_it_holds():
+    one = report([])
+    for row, runs in zip(one["curves"][0]["points"], (2, 2, 1), strict=True):
+        row["runs"] = runs
+    (card,) = cards(one)
+    assert card.found[0].text == "31 N"
+    assert card.found[0].sentences[0].endswith(" (± between runs and within the run).")
+    for row in one["curves"][0]["points"]:
+        row["runs"] = 1
+    (card,) = cards(one)
+    assert card.found[0].sentences[0].endswith(", the fastest speed (± within the run).")
+
+
 def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     stress = {"shear_stress_Pa": 0.88e6, "shear_stress_low_Pa": 0.8e6}
     words = "the model describes the curve within the errors; largest at 1 mm/s"
@@ -43,7 +56,7 @@ def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     # half of 1.1 lies between the last two points: 100 um/s * 100^((1.05 - 0.55) / 0.85)
     assert found.sentences == (
         "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.5 mm/s; lowest "
-        "0.200 ± 0.010 at 10 mm/s, the fastest speed.",
+        "0.200 ± 0.010 at 10 mm/s, the fastest speed (± between runs).",
         "Steady sliding, no stick-slip at any speed.",
         "Shear stress 0.880 MPa (95 %: 0.800 to 0.950 MPa).",
         "The model describes the curve within the errors.",

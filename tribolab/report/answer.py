@@ -128,9 +128,10 @@ def friction_in_words(points: Sequence[Mapping[str, Any]]) -> str:
     ...             "friction_coefficient_sem": 0.01, "runs": 2}
     >>> friction_in_words([row(1e-6, 1.1), row(1e-5, 1.08), row(1e-3, 0.7), row(1e-2, 0.2)])
     'Plateau of µ = 1.100 ± 0.010 up to 10 µm/s; half of it at 2 mm/s; lowest 0.200 ± 0.010 at \
-10 mm/s, the fastest speed.'
+10 mm/s, the fastest speed (± between runs).'
     >>> friction_in_words([row(1e-6, 1.1), row(1e-2, 1.05)])
-    'µ hardly depends on speed: 1.050 ± 0.010 to 1.100 ± 0.010 from 1 µm/s to 10 mm/s.'
+    'µ hardly depends on speed: 1.050 ± 0.010 to 1.100 ± 0.010 from 1 µm/s to 10 mm/s (± \
+between runs).'
     """
     known = [row for row in points if row["friction_coefficient"] is not None]
     known = sorted(
@@ -140,19 +141,28 @@ def friction_in_words(points: Sequence[Mapping[str, Any]]) -> str:
         return "No friction coefficient at a known speed."
     if len(known) == 1:
         return (
-            f"µ = {_mu(known[0])} at {plain_speed(known[0]['sliding_speed_m_s'])}, the only speed."
+            f"µ = {_mu(known[0])} at {plain_speed(known[0]['sliding_speed_m_s'])}, the only speed"
+            f"{_held(known)}."
         )
     high = max(known, key=lambda row: row["friction_coefficient"])
     low = min(known, key=lambda row: row["friction_coefficient"])
     top, bottom = high["friction_coefficient"], low["friction_coefficient"]
     first, last = (plain_speed(known[k]["sliding_speed_m_s"]) for k in (0, -1))
     if top > 0 and bottom >= _FLAT * top:
-        return f"µ hardly depends on speed: {_mu(low)} to {_mu(high)} from {first} to {last}."
+        values = f"{_mu(low)} to {_mu(high)} from {first} to {last}{_held([low, high])}"
+        return f"µ hardly depends on speed: {values}."
     parts = [_plateau(known, high), _half(known, high)]
     where = plain_speed(low["sliding_speed_m_s"])
     side = {id(known[0]): ", the slowest speed", id(known[-1]): ", the fastest speed"}
     parts.append(f"lowest {_mu(low)} at {where}{side.get(id(low), '')}")
-    return "; ".join(filter(None, parts)) + "."
+    return "; ".join(filter(None, parts)) + f"{_held([high, low])}."
+
+
+def _held(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return what the errors of a sentence hold, in brackets; "" where none is known."""
+    known = [row for row in rows if row["friction_coefficient_sem"] is not None]
+    held = dict.fromkeys("between runs" if row["runs"] > 1 else "within the run" for row in known)
+    return f" (± {' and '.join(held)})" if held else ""
 
 
 def _mu(row: Mapping[str, Any]) -> str:

@@ -91,20 +91,23 @@ report.Picture = (() => {
     }
 
     // Bands may reach far beyond what was measured: the first view is that of points and lines.
+    // The picture that stands here before (live/axes.py) shows the same.
     range(side, panel) {
-      const log = this.isLog(side, panel);
+      const log = this.isLog(side, panel), names = side === "y" ? this.names(panel) : 0;
+      if (names) return [-0.5, names - 0.5];
       let low = Infinity, high = -Infinity;
       const least = side === "y" ? this.data.panels[panel].y.least ?? -Infinity : -Infinity;
       const seen = side === "y" ? this.range("x", panel) : undefined, wide = this.isLog("x", panel);
       const within = (x) => !seen || typeof x !== "number" || ((wide ? Math.log10(x) : x) >= seen[0] && (wide ? Math.log10(x) : x) <= seen[1]);
       for (const one of this.shown()) {
-        if ((one.panel ?? 0) !== panel || one.style === "band" || one.style === "bars" || this.off.get(one.label)) continue;
+        if ((one.panel ?? 0) !== panel || one.style === "band" || this.off.get(one.label)) continue;
         const values = side === "x" ? one.x : one.y;
         for (let k = 0; k < values.length; k++) {
           const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;
-          if (typeof value !== "number") { if (typeof value === "string") return undefined; continue; }
+          if (typeof value !== "number") continue;
           if (side === "y" && !within(one.x[k])) continue;
-          for (const end of [Math.max(value - bar, least), value + bar, value]) {
+          const foot = one.style === "bars" ? [log ? 0.8 * value : 0] : []; // where a bar begins
+          for (const end of [Math.max(value - bar, least), value + bar, value, ...foot]) {
             if (log && !(end > 0)) continue;
             if (log && end < value / 20) continue;
             low = Math.min(low, end);
@@ -119,6 +122,18 @@ report.Picture = (() => {
       else if (!log && side === "y" && low > 0 && low < 0.6 * high) low = 0;
       const room = high > low ? (high - low) * 0.06 : log ? 0.3 : Math.abs(high) * 0.5 || 0.5;
       return [low === 0 && !log ? 0 : low - room, high + room];
+    }
+
+    // Panels below each other share what lies along them.
+    get along() {
+      const ranges = this.data.panels.map((_, row) => this.range("x", row)).filter((one) => one);
+      return ranges.length ? [Math.min(...ranges.map(([low]) => low)), Math.max(...ranges.map(([, high]) => high))] : undefined;
+    }
+
+    // How many rows of names there are up a panel.
+    names(panel) {
+      const shown = this.shown().filter((one) => (one.panel ?? 0) === panel && typeof one.y[0] === "string" && !this.off.get(one.label));
+      return new Set(shown.flatMap((one) => one.y)).size;
     }
 
     layout() {
@@ -142,7 +157,7 @@ report.Picture = (() => {
           type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
           title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
-          minorloglabels: "none", nticks: narrow ? 5 : 8, range: this.range(kind, row),
+          minorloglabels: "none", nticks: narrow ? 5 : 8, range: kind === "x" ? this.along : this.range(kind, row),
         });
         const x = side("x", panel.x), y = side("y", panel.y);
         if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });

@@ -71,6 +71,19 @@ def still(figure: LiveFigure) -> str:
     )
 
 
+def first_view(figure: LiveFigure) -> list[tuple[Scale, Scale]]:
+    """Return what is seen along and up each panel of a figure before anything was chosen."""
+    return _seen(figure, _first(figure))
+
+
+def _seen(figure: LiveFigure, series: Sequence[Series]) -> list[tuple[Scale, Scale]]:
+    seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
+    if len(seen) > 1:  # panels below each other share what lies along them
+        low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
+        seen = [(replace(x, low=low, high=high), y) for x, y in seen]
+    return seen
+
+
 def _first(figure: LiveFigure) -> list[Series]:
     """Return what is seen at first, its values as plain numbers."""
     shown = []
@@ -110,10 +123,7 @@ def _boxes(
     figure: LiveFigure, series: Sequence[Series], width: int, top: float, height: float
 ) -> list[_Box]:
     """Return the panels below each other, with room for what stands left of them."""
-    seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
-    if len(seen) > 1:  # panels below each other share what lies along them
-        low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
-        seen = [(replace(x, low=low, high=high), y) for x, y in seen]
+    seen = _seen(figure, series)
     names = max((len(name) for _, y in seen for name in y.names), default=0)
     left = min(names * _LETTER + 12, 0.45 * width) if names else 58
     count = len(seen)
