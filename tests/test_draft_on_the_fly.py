@@ -144,3 +144,16 @@ def test_a_sample_rate_before_the_table_is_its_clock(said, tmp_path):
     file.write_text(f"Frequency: 2 Hz\nFx [N];Fz [N]\n{rows}\n")  # of the strokes, it may be
     with pytest.raises(GuessedError, match="rows are counted as seconds +or: a sample rate"):
         tl.read(file)
+
+
+def test_a_rotation_and_a_radius_in_the_header_make_the_speed(tmp_path):
+    file = tmp_path / "disc.csv"
+    rows = "\n".join(f"{n / 10},{5 + n % 3},30,{60 if n < 50 else 120}" for n in range(100))
+    table = f"Time [s],Ft [N],Fn [N],Speed [rpm]\n{rows}\n"
+    file.write_text(f"Ball radius: 3 mm\nTrack radius: 20 mm\n{table}")
+    run = tl.read(file)
+    speed = np.repeat([1, 2], 50) * 2 * np.pi * 0.02
+    np.testing.assert_allclose(run.sliding_velocity, speed, rtol=1e-6)
+    assert run.attrs["speed_from"] == "rotation" and run.attrs["track_radius_m"] == 0.02
+    file.write_text(f"Inner radius: 10 mm\nOuter radius: 20 mm\n{table}")
+    assert "sliding_velocity" not in tl.read(file)  # which of the two is not said

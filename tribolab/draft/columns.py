@@ -3,41 +3,21 @@
 from __future__ import annotations
 
 import io
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from tribolab.draft.header import converts, is_unit
+from tribolab.draft.assign import SIGNALS, Bare, assigned
+from tribolab.draft.header import is_unit
 from tribolab.draft.layout import Layout
 from tribolab.draft.lvm import units_above
-from tribolab.draft.model import (
-    UNKNOWN_NAME,
-    DraftColumn,
-    Kind,
-    Understood,
-    other_units,
-    time_unit,
-)
+from tribolab.draft.model import DraftColumn, Kind, Understood
 from tribolab.draft.values import find_rate
-from tribolab.draft.words import SURE, Match, is_axis, matches, split_unit
+from tribolab.draft.words import matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import split_name, split_row
-from tribolab.quantities import QUANTITIES, quantity
-
-_SIGNALS = {
-    "friction_force",
-    "normal_force",
-    "friction_coefficient",
-    "sliding_velocity",
-    "position",
-    "shear_stress",
-    "film_thickness",
-}
-# beside friction: which of several such columns is taken changes no coefficient of friction
-_ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement", "set_normal_force"}
 
 
 def understand(layout: Layout) -> Understood:
@@ -198,7 +178,7 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     return columns
 
 
-def _bare(column: DraftColumn) -> tuple[str, str | None, bool]:
+def _bare(column: DraftColumn) -> Bare:
     """Name without its unit, the unit, and whether the dialect has to say it."""
     name = split_name(column.label)[0] if column.name is None else column.name
     if column.unit is not None:
@@ -224,177 +204,9 @@ def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, lis
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
         {"x", "height"} <= profile
     ):
-        return "scan", _assigned(columns, bare, scan, numbers, "scan")
-    kind: Kind = "run" if best & ({"time"} | _SIGNALS) else "table"
-    return kind, _assigned(columns, bare, run, numbers, kind)
-
-
-class _Proposal(NamedTuple):
-    """A column for a quantity; of several the one of the highest rank is taken."""
-
-    rank: tuple[float, bool, int]
-    place: int
-    option: Match
-
-
-def _assigned(
-    columns: list[DraftColumn],
-    bare: list[tuple[str, str | None, bool]],
-    matched: list[list[Match]],
-    numbers: np.ndarray,
-    kind: Kind,
-) -> list[DraftColumn]:
-    """Give each quantity to the column whose name fits best."""
-    matched = _without_axes(bare, matched)
-    has_units = any(unit is not None for _, unit, _ in bare)
-    filled = np.isfinite(numbers).any(axis=0)
-    proposals: dict[str, list[_Proposal]] = {}
-    for index, options in enumerate(matched):
-        option = _preferred(options, bare[index][1], numbers[:, index], has_units)
-        if option:
-            # of names used twice the later counts: exporters repeat first what was plotted
-            rank = (option.score, bool(filled[index]), index)
-            proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
-    _give_way(proposals, matched)
-    result = list(columns)
-    for index, column in enumerate(columns):
-        if not column.label:
-            continue
-        unit = bare[index][1]
-        if unit is not None and not matched[index]:
-            same = [q for q in _SIGNALS if _told_by(unit, quantity(q).unit)]
-            hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
-            result[index] = column._replace(note=hint or UNKNOWN_NAME)
-        elif not matched[index]:
-            result[index] = column._replace(note=UNKNOWN_NAME)
-    for name, rivals in proposals.items():
-        best = max(rivals)
-        names = [f"column {place + 1}" for place in sorted(r.place for r in rivals)]
-        for _, index, option in rivals:
-            if index == best.place:
-                second = sorted(rivals)[-2] if len(rivals) > 1 else None
-                several = second is not None and second.rank[0] > best.rank[0] - 0.05
-                others = [o.quantity for o in matched[index] if o.quantity != name]
-                column = _column(
-                    columns[index], bare[index], option, numbers[:, index], kind, several
-                )
-                if several:
-                    own = f"column {index + 1}"
-                    column = column._replace(
-                        options=(*column.options, *(n for n in names if n != own))
-                    )
-                if option.score < SURE:
-                    column = column._replace(options=(*column.options, *others, "not used"))
-                result[index] = column
-            else:
-                note = f"also looks like {name}; column {best.place + 1} is used"
-                result[index] = columns[index]._replace(quantity=name, note=note)
-    return result
-
-
-def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]]) -> None:
-    """Let a vague name mean what nothing else is called, where a better one has its quantity."""
-    for rivals in list(proposals.values()):
-        best = max(rivals)
-        for rival in [r for r in rivals if r is not best and r.option.score < SURE]:
-            others = [o for o in matched[rival.place] if o.score >= rival.option.score - 0.05]
-            free = [o for o in others if o.quantity not in proposals]
-            if free and best.option.score >= SURE:
-                rivals.remove(rival)
-                proposals[free[0].quantity] = [rival._replace(option=free[0])]
-
-
-def _without_axes(
-    bare: list[tuple[str, str | None, bool]], matched: list[list[Match]]
-) -> list[list[Match]]:
-    """Where something turns, the axes of the machine's stage are no sliding position."""
-    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
-        return matched
-    return [
-        [option for option in options if option.quantity != "position"]
-        if is_axis(name) and options and options[0].quantity == "position"
-        else options
-        for (name, _, _), options in zip(bare, matched, strict=True)
-    ]
-
-
-def _told_by(unit: str, si_unit: str) -> bool:
-    """Whether a unit tells something of the quantity: a number without a unit may be anything."""
-    return si_unit != "1" and converts(unit, si_unit)
-
-
-def _preferred(
-    options: list[Match], unit: str | None, values: np.ndarray, has_units: bool
-) -> Match | None:
-    """Of several quantities that a name may stand for, the one that suits unit and numbers."""
-    if not options or unit is not None:
-        return options[0] if options else None
-    top = [option for option in options if option.score > options[0].score - 0.05]
-    if len(top) > 1:
-        ratio = next((o for o in top if QUANTITIES[o.quantity].unit == "1"), None)
-        sizes = np.abs(values[np.isfinite(values)])
-        if ratio and (has_units or (sizes.size and np.median(sizes) < 2)):
-            return ratio
-        steps = np.diff(values)
-        if top[0].quantity == "time" and not (steps >= 0).all():
-            return top[1]
-    return options[0]
-
-
-def _column(
-    column: DraftColumn,
-    bare: tuple[str, str | None, bool],
-    option: Match,
-    values: np.ndarray,
-    kind: Kind,
-    several: bool,
-) -> DraftColumn:
-    """Fill in a column that holds a quantity."""
-    _, unit, say_unit = bare
-    si_unit = quantity(option.quantity).unit
-    guessed = []
-    options: tuple[str, ...] = ()
-    if option.score < SURE:
-        guessed.append(f"the name means {quantity(option.quantity).long_name}")
-    if several and option.quantity not in _ASIDE:
-        guessed.append(f"of several columns for {option.quantity} it is the one meant")
-    written = unit if say_unit else None
-    if option.unit:
-        written = option.unit
-        guessed.append(f"'{shown(unit)}' means {option.unit}")
-    fill_in = ""
-    if unit is None and si_unit not in ("", "1"):
-        if option.quantity == "time":
-            written = time_unit(values)
-            guessed.append(f"time is in {written}")
-            options = other_units("s", written)
-        elif kind == "scan":
-            written = "mm" if option.quantity in ("x", "y") else "um"
-            guessed.append(f"{option.quantity} is in {written}")
-            options = other_units("m", written)
-        else:
-            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
-            options = other_units(si_unit)
-    finite = values[np.isfinite(values)]
-    sign = 1
-    if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():
-        sign = -1
-        guessed.append("the normal force is counted negative")
-        options = (*options, "counted positive")
-    used, note = not fill_in, ""
-    if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
-        used, note, fill_in = False, "it stands still", ""
-    return column._replace(
-        quantity=option.quantity,
-        unit=written,
-        sign=sign,
-        optional=not finite.size and option.quantity != "time",
-        used=used and (bool(finite.size) or option.quantity != "time"),
-        guessed=tuple(guessed),
-        options=options,
-        note=note or ("" if finite.size else "no value in this file"),
-        fill_in=fill_in,
-    )
+        return "scan", assigned(columns, bare, scan, numbers, "scan")
+    kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
+    return kind, assigned(columns, bare, run, numbers, kind)
 
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:

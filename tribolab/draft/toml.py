@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.draft.layout import Layout
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Understood
-from tribolab.draft.values import DraftValue, find_values
+from tribolab.draft.values import DraftValue, find_radius, find_values
 from tribolab.io.dialects.dates import has_day
 from tribolab.quantities import quantity
 
@@ -36,14 +36,17 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
-    parts += [_time_table(understood), _speed_table(understood.kind, columns)]
+    values = find_values(layout)
+    radius = find_radius(values) if _only_turns(understood) else None
+    speed = _speed_table(understood.kind, columns) if radius is None else _by_radius(radius)
+    parts += [_time_table(understood), speed]
     numbers = understood.numbers
     parts += [_column(column, numbers[:, column.place - 1]) for column in used]
     wanted = [column for column in columns if column.fill_in]
     parts += [_column(column, numbers[:, column.place - 1]) for column in wanted]
     rest = [column for column in columns if not column.used and not column.fill_in]
     parts.append(_unused(rest, numbers))
-    parts.append(_values(find_values(layout)))
+    parts.append(_values(values, radius))
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
 
@@ -147,6 +150,17 @@ def _speed_table(kind: str, columns: Sequence[DraftColumn]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _only_turns(understood: Understood) -> bool:
+    """Whether a rotation is all that tells the speed of a run."""
+    names = {column.quantity for column in understood.columns if column.used}
+    tells = {"sliding_velocity", "position", "set_speed"}
+    return understood.kind == "run" and "rotation_speed" in names and not names & tells
+
+
+def _by_radius(radius: DraftValue) -> str:
+    return f'[speed]\nsource = "rotation"\nradius_value = {_text(radius.name)}\n'
+
+
 def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:
     """Return columns that nothing is known of; the empty ones among them in one line."""
     filled = np.isfinite(numbers).any(axis=0)
@@ -203,22 +217,30 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
     return "\n".join([*about, *(f"# {line}" for line in lines)]) + "\n"
 
 
-def _values(values: list[DraftValue]) -> str:
-    """Return proposals for single values, as comments."""
+def _values(values: list[DraftValue], used: DraftValue | None) -> str:
+    """Return the single value that is used, and proposals for others as comments."""
+    kept = "" if used is None else "\n".join([f"# {_comment(used.text)}", *_value(used)]) + "\n"
+    values = [value for value in values if value is not used]
     if not values:
-        return ""
+        return kept
     parts = ["# Single values that the file states. To keep one, remove the '#' before it.\n"]
     for value in values:
-        lines = ["[[value]]", f"name = {_text(value.name)}"]
-        if value.source != "preamble":
-            lines.append(f"source = {_text(value.source)}")
-        lines.append(f"pattern = {_pattern(value.pattern)}")
-        if value.unit is not None:
-            lines.append(f"unit = {_text(value.unit)}")
-        if value.to is not None:
-            lines.append(f"to = {_text(value.to)}")
-        parts.append("\n".join([f"# {_comment(value.text)}", *(f"# {x}" for x in lines)]) + "\n")
-    return "\n".join(parts)
+        about = f"# {_comment(value.text)}"
+        parts.append("\n".join([about, *(f"# {line}" for line in _value(value))]) + "\n")
+    return "\n".join([kept, *parts] if kept else parts)
+
+
+def _value(value: DraftValue) -> list[str]:
+    """Return one value as it stands in a dialect."""
+    lines = ["[[value]]", f"name = {_text(value.name)}"]
+    if value.source != "preamble":
+        lines.append(f"source = {_text(value.source)}")
+    lines.append(f"pattern = {_pattern(value.pattern)}")
+    if value.unit is not None:
+        lines.append(f"unit = {_text(value.unit)}")
+    if value.to is not None:
+        lines.append(f"to = {_text(value.to)}")
+    return lines
 
 
 def _has_no_unit(column: DraftColumn) -> bool:

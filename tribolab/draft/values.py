@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.header import DIMENSIONS, converts, escaped, is_unit
@@ -23,6 +24,8 @@ _RATE = re.compile(
     r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
     r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
 )
+_RADIUS = re.compile("radius|rayon|radio|raggio")
+_OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
@@ -84,6 +87,19 @@ def find_rate(layout: Layout) -> DraftValue | None:
         if rated and value.source == "preamble" and value.unit and converts(value.unit, "Hz"):
             return value
     return None
+
+
+def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the radius of the track, if just one of a file's values is one.
+
+    Parameters
+    ----------
+    values
+        From `find_values`.
+    """
+    radii = [v for v in values if v.to == "m" and _RADIUS.search(v.name)]
+    tracks = [v for v in radii if not _OTHER_RADIUS.search(v.name)]
+    return tracks[0] if len(tracks) == 1 else None
 
 
 def _value(said: re.Match[str]) -> DraftValue:
