@@ -98,3 +98,9 @@ def test_the_demo_leaves_the_truth_beside_its_results(tmp_path):
         assert pd.read_csv(tables / f"{name}.csv").shape[1] > 5, name
     written = pd.read_csv(tables / "truth.csv")
     assert len(written) == len(compared.runs.table) == 24
+    starts = pd.read_csv(tables / "static_friction.csv")
+    first = starts.groupby("run")["segment"].min()
+    assert len(first) == 4 and (starts["static_friction_coefficient_sem"] > 0).all()
+    clear = starts[starts["peak"] == 1]
+    assert len(clear) and (clear["static_excess"] > 0).all()
+    assert (starts["waiting_time_s"] > 0).all()

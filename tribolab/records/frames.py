@@ -112,6 +112,26 @@ def curve_table(curve: xr.Dataset) -> pd.DataFrame:
     return frame(curve, "sliding_speed", _CURVE)
 
 
+_START = [
+    "direction",
+    "sliding_speed",
+    "waiting_time",
+    "static_friction_coefficient",
+    "static_friction_coefficient_sem",
+    "friction_coefficient",
+    "static_excess",
+    "peak",
+]
+
+
+def static_friction_table(starts: xr.Dataset) -> pd.DataFrame:
+    """Return a run's static friction as a table, a row per start, its segment numbered from 1."""
+    table = frame(starts, "start_of_sliding", _START)
+    table = table.drop(columns="start_of_sliding", errors="ignore")
+    table.insert(0, "segment", starts["start_of_sliding"].values + 1)
+    return table
+
+
 _FIRST = [
     "sliding_speed",
     "direction",

@@ -176,6 +176,8 @@ class RunRecord:
         What a reader should know of it.
     slip
         Its stick-slip, a row per segment.
+    starts
+        Its static friction, a row per start of sliding.
     """
 
     outcome: RunOutcome
@@ -184,3 +186,4 @@ class RunRecord:
     facts: RunFacts = RunFacts()
     notices: tuple[Notice, ...] = ()
     slip: tuple[Row, ...] = ()
+    starts: tuple[Row, ...] = ()

@@ -262,6 +262,11 @@ def _write_tables(
             if run.name in in_curves:
                 yield from labelled("run", run.name, run, record.slip)
 
+    def static_friction() -> Iterator[Row]:
+        for record in records():
+            run = record.outcome
+            yield from labelled("run", run.name, run, record.starts)
+
     def stribeck() -> Iterator[Row]:
         for curve in curves:
             yield from labelled("curve", curve.outcome.name, curve.outcome, curve.points)
@@ -275,6 +280,7 @@ def _write_tables(
     first = [*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient"]
     tables.write_rows(friction, folder / "friction.csv", ["run", *first])
     tables.write_rows(stick_slip, folder / "stick_slip.csv", ["run", "segment"])
+    tables.write_rows(static_friction, folder / "static_friction.csv", ["run", "segment"])
     first = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
     tables.write_rows(stribeck, folder / "stribeck.csv", first)
     first = ["run", "check", "variable", "status", "value", "unit", "message"]

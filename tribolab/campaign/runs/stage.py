@@ -18,7 +18,7 @@ from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
 from tribolab.errors import AnalysisError, OutputError, told
 from tribolab.provenance import made
-from tribolab.records.parts import Notice, PageTrace, RunOutcome, RunZero, Source
+from tribolab.records.parts import Notice, PageTrace, Row, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
 from tribolab.room import tidy
@@ -220,6 +220,7 @@ def process_run(task: RunTask) -> RunAnswer:
         notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_table(slip))
+        starts = _starts(signals, segments, friction)
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad file must not stop the others
@@ -247,8 +248,18 @@ def process_run(task: RunTask) -> RunAnswer:
     )
     zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
     sources = sources_of(run, signals.attrs)
-    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows)
+    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts)
     return RunAnswer(record, trace)
+
+
+def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:
+    """Rows of static friction; none where no coefficient is known."""
+    from tribolab.friction.coefficient.static import static_friction
+    from tribolab.records.frames import plain_rows, static_friction_table
+
+    if "friction_coefficient" not in friction:
+        return ()
+    return plain_rows(static_friction_table(static_friction(signals, segments, friction)))
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
