@@ -5,6 +5,7 @@ The face of `tribolab.io.runs` for whoever does not know beforehand what wrote a
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -105,12 +106,20 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
 
 def _draft(path: Path) -> Draft | None:
     """Draft a dialect; None of what is no text, or holds no table."""
+    try:
+        if peek(path).format != "text":
+            return None
+        status = path.stat()
+        return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
+    except (ReadError, OSError):
+        return None
+
+
+@functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
+def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
     from tribolab.draft.draft import draft_dialect
 
-    try:
-        return draft_dialect(path) if peek(path).format == "text" else None
-    except ReadError:
-        return None
+    return draft_dialect(path)
 
 
 def _told(path: Path) -> dict[str, str]:
