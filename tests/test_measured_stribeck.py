@@ -189,3 +189,32 @@ def test_the_table_of_runs_the_card_and_the_curve_have_one_error(offset):
     [point] = run_points("r", rows, offset)
     assert curve == pytest.approx(0.002 / (1 if offset == "half loop" else np.sqrt(2)))
     assert (mark.sem, point.within) == pytest.approx((curve, curve))
+
+
+def test_the_entrainment_speed_may_be_the_abscissa():
+    # a ball and a disc at half the slide-to-roll ratio of 0.5: u is twice the sliding speed
+    v = np.repeat([0.01, 0.02, 0.04], 300)
+    run = xr.Dataset(
+        {
+            "sliding_velocity": ("time", v * (1 + 1e-4 * np.sin(np.arange(v.size)))),
+            "rolling_speed": ("time", 2 * v),
+            "slide_roll_ratio": ("time", np.full(v.size, 0.5)),
+            "friction_force": ("time", 0.1 * np.log10(v / 1e-3)),
+            "normal_force": ("time", np.ones(v.size)),
+        },
+        {"time": 0.01 * np.arange(v.size)},
+        attrs={"friction_force_zero_uncertainty_N": 1e-3},
+    )
+    friction = friction_coefficient(run, find_segments(run))
+    assert friction["slide_roll_ratio"].values == pytest.approx([0.5] * 3)
+    sliding = measured_stribeck_curve([friction])
+    rolling = measured_stribeck_curve([friction], over="rolling_speed")
+    assert rolling["rolling_speed"].values == pytest.approx([0.02, 0.04, 0.08])
+    assert rolling["rolling_speed"].attrs["units"] == "m/s"
+    assert rolling["friction_coefficient"].values == pytest.approx(
+        sliding["friction_coefficient"].values
+    )
+    both = measured_stribeck_curve([friction] * 2, over="rolling_speed", medium=["a", "b"])
+    assert set(both["friction_coefficient"].dims) == {"medium", "rolling_speed"}
+    with pytest.raises(AnalysisError, match="no 'temperature'"):
+        measured_stribeck_curve([friction], over="temperature")

@@ -31,7 +31,11 @@ class _Value(NamedTuple):
 
 
 def measured_stribeck_curve(
-    frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1, **labels: Sequence[Label]
+    frictions: Sequence[xr.Dataset],
+    speed_tolerance: float = 0.1,
+    *,
+    over: str = "sliding_speed",
+    **labels: Sequence[Label],
 ) -> xr.Dataset:
     """Combine the segments of one or more runs into friction coefficient over sliding speed.
 
@@ -43,6 +47,10 @@ def measured_stribeck_curve(
     speed_tolerance
         Speeds that differ by no more than this ratio belong together. The two strokes of a pair
         stay together at their mean speed.
+    over
+        The abscissa: ``"sliding_speed"``, or another speed of the segments, such as
+        ``"rolling_speed"``, the entrainment speed of a machine whose two bodies turn. It is the
+        dim of the result then.
     **labels
         What tells the runs apart, one label for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
         Runs with the same labels make one curve.
@@ -95,6 +103,10 @@ def measured_stribeck_curve(
     >>> measured_stribeck_curve([one, one, one], medium=["dry", "oil", "dry"]).runs.values.tolist()
     [[2.0, 2.0], [1.0, 1.0]]
     """
+    if over != "sliding_speed":
+        frictions = [_as_sliding(friction, over) for friction in frictions]
+        curve = measured_stribeck_curve(frictions, speed_tolerance, over="sliding_speed", **labels)
+        return stamp(curve.rename(sliding_speed=over))
     if labels:
         return _of_several(frictions, speed_tolerance, labels)
     if len(frictions) == 0:
@@ -128,6 +140,16 @@ def measured_stribeck_curve(
     curve = xr.Dataset(data, coords={"sliding_speed": columns[0]})
     origin = made("measured Stribeck curve", **joined_sources(f.attrs for f in frictions))
     return stamp(curve, **origin, speed_tolerance=float(speed_tolerance))
+
+
+def _as_sliding(friction: xr.Dataset, over: str) -> xr.Dataset:
+    """Return a friction result with another speed in the place of the sliding speed."""
+    if over not in friction:
+        raise AnalysisError(
+            f"{friction.attrs.get('source', 'run')}: the segments have no '{shown(over)}'",
+            function="measured_stribeck_curve",
+        )
+    return friction.assign(sliding_speed=np.abs(friction[over]))
 
 
 def _of_several(

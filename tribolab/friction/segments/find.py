@@ -26,7 +26,7 @@ from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
-LABELS = ("set_speed", "set_normal_force", "step", "cycle")
+LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
 @of_runs
