@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.oscillation.slip_curve import frequency_scaling, stick_slip_curve
+from tribolab.friction.oscillation.slip_curve import frequency_scaling, one_curve, stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.mode.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN, Mode
@@ -207,6 +207,44 @@ def test_stick_slip_over_speed_counts_segments_and_averages(saw):
     assert twice["drop"].values == pytest.approx(saw["drop"].values)
     with pytest.raises(AnalysisError, match="at least one run"):
         stick_slip_curve([])
+
+
+def test_curves_of_several_systems_are_those_of_each_side_by_side(saw, quiet):
+    ringing = stick_slip_curve(slips("rounded", power=1.0, speeds=(1e-6, 2e-6, 8e-6)))
+    runs = slips("sawtooth") + slips("none", drops=(0, 0, 0))
+    runs += slips("rounded", power=1.0, speeds=(1e-6, 2e-6, 8e-6))
+    media = ["dry"] * 3 + ["oil"] * 3 + ["on a spring"] * 3
+    curves = stick_slip_curve(runs, medium=media)
+    assert curves["waveform"].dims == ("medium", "sliding_speed")
+    assert curves.sizes["sliding_speed"] == 4  # that of one system is empty for the others
+    known = Mode(work_of_adhesion=0.02)
+    for medium, alone in (("dry", saw), ("oil", quiet), ("on a spring", ringing)):
+        part = one_curve(curves.sel(medium=medium))
+        for name in ("waveform", "segments"):
+            assert part[name].values.tolist() == alone[name].values.tolist()
+        for name in ("scaling_exponent", "scaling_error"):
+            np.testing.assert_equal(curves[name].sel(medium=medium).item(), alone.attrs[name])
+            assert curves[name].attrs["long_name"]
+        for name in ("scaling", "resonance_frequency_Hz"):
+            assert part.attrs.get(name) == alone.attrs.get(name)
+        whole, own = (
+            sliding_mode(curve(plateau), None, slip, known)
+            for slip in (curves.sel(medium=medium), alone)
+        )
+        assert whole.paragraph == own.paragraph
+    with pytest.raises(AnalysisError, match="medium: one label for each of 9 runs"):
+        stick_slip_curve(runs, medium=["dry"])
+
+
+def test_a_map_of_curves_over_a_dim_is_that_of_each(saw, quiet):
+    from tribolab import plot
+
+    runs = slips("sawtooth") + slips("none", drops=(0, 0, 0))
+    curves = stick_slip_curve(runs, run=["saw"] * 3 + ["quiet"] * 3)
+    maps = plot.waveform_map(curves), plot.waveform_map({"quiet": quiet, "saw": saw})
+    names = [[text.get_text() for text in one.axes[0].get_yticklabels()] for one in maps]
+    assert names == [["quiet", "saw"]] * 2
+    assert plot.figure_data(maps[0]).equals(plot.figure_data(maps[1]))
 
 
 def test_a_spectrogram_shows_the_oscillation_above_its_background():

@@ -7,10 +7,42 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.errors import AnalysisError, shown
 from tribolab.stamping import stamp
 
 Label = str | float
 _TOLERANCE = 0.1  # of speeds that belong together, as for `measured_stribeck_curve`
+
+
+def grouped(
+    runs: Sequence[xr.Dataset], labels: Mapping[str, Sequence[Label]], function: str
+) -> list[tuple[list[xr.Dataset], dict[str, Label]]]:
+    """Return the runs that have the same labels together, with these.
+
+    Parameters
+    ----------
+    runs
+        What is known of each run.
+    labels
+        What tells the runs apart, one label for each.
+    function
+        Who asks, for the message.
+
+    Raises
+    ------
+    AnalysisError
+        If there is not one label for each run.
+    """
+    for name, given in labels.items():
+        if isinstance(given, str) or len(given) != len(runs):
+            raise AnalysisError(
+                f"{shown(name)}: one label for each of {len(runs)} runs is wanted",
+                function=function,
+            )
+    groups: dict[tuple[Label, ...], list[xr.Dataset]] = {}
+    for run, *label in zip(runs, *labels.values(), strict=True):
+        groups.setdefault(tuple(label), []).append(run)
+    return [(group, dict(zip(labels, key, strict=True))) for key, group in groups.items()]
 
 
 def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> xr.Dataset:
@@ -25,9 +57,9 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     Returns
     -------
     xarray.Dataset
-        Everything over these dims and sliding_speed; NaN where nothing was measured. Names keep
-        their order, numbers ascend. Speeds that differ by no more than a tenth stand together at
-        their geometric mean; ``measured_speed`` is each curve's own.
+        Everything over these dims and sliding_speed; NaN where nothing was measured, of texts "".
+        Names keep their order, numbers ascend. Speeds that differ by no more than a tenth stand
+        together at their geometric mean; ``measured_speed`` is each curve's own.
 
     Examples
     --------
@@ -51,7 +83,9 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
         own = data.reset_coords().assign(measured_speed=data["sliding_speed"])
         for name, variable in own.data_vars.items():
             if variable.dims == ("sliding_speed",) and name != "sliding_speed":
-                values.setdefault(str(name), np.full(shape, np.nan))[at] = variable.to_numpy()
+                text = variable.dtype.kind in "OU"
+                empty = np.full(shape, "", object) if text else np.full(shape, np.nan)
+                values.setdefault(str(name), empty)[at] = variable.to_numpy()
     whole = (*dims, "sliding_speed")
     return stamp(
         xr.Dataset(

@@ -11,7 +11,7 @@ from scipy import special
 
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.decisions.rejected import kept
-from tribolab.friction.joined import Label, joined_curves
+from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
@@ -156,20 +156,9 @@ def _of_several(
     frictions: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
 ) -> xr.Dataset:
     """Return the curve of each combination of labels, side by side."""
-    for name, given in labels.items():
-        if isinstance(given, str) or len(given) != len(frictions):
-            raise AnalysisError(
-                f"{shown(name)}: one label for each of {len(frictions)} runs is wanted",
-                function="measured_stribeck_curve",
-            )
-    groups: dict[tuple[Label, ...], list[xr.Dataset]] = {}
-    for friction, *label in zip(frictions, *labels.values(), strict=True):
-        groups.setdefault(tuple(label), []).append(friction)
+    groups = grouped(frictions, labels, "measured_stribeck_curve")
     curves = joined_curves(
-        [
-            (measured_stribeck_curve(group, speed_tolerance), dict(zip(labels, key, strict=True)))
-            for key, group in groups.items()
-        ]
+        [(measured_stribeck_curve(group, speed_tolerance), key) for group, key in groups]
     )
     origin = made("measured Stribeck curves", **joined_sources(f.attrs for f in frictions))
     return curves.assign_attrs(**origin, speed_tolerance=float(speed_tolerance))

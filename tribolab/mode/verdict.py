@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY
+from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, one_curve
 from tribolab.friction.oscillation.waveform import UNDECIDED
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
 from tribolab.mode import evidence
@@ -123,6 +123,7 @@ def sliding_mode(
     'no stick-slip'
     """
     known = known or Mode()
+    slip = slip if slip is None else one_curve(slip)
     curve = _curve(measured, model, slip, known.fluid)
     numbers = _numbers(measured, model, curve, known) | _in_band(measured, band)
     weighed = tuple(

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
+from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
 from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
@@ -290,13 +291,16 @@ def _event_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
     }
 
 
-def waveform_map(curves: Mapping[str, xr.Dataset], *, ax: Axes | None = None) -> Figure:
+def waveform_map(
+    curves: Mapping[str, xr.Dataset] | xr.Dataset, *, ax: Axes | None = None
+) -> Figure:
     """Draw the class of waveform of every condition at every speed, and how large the drops are.
 
     Parameters
     ----------
     curves
-        Label to a result of `stick_slip_curve`, from below to above.
+        Label to a result of `stick_slip_curve`, from below to above; or its result over further
+        dims, from above to below.
     ax
         Axes to draw in, which keep their look; without them a figure is made.
 
@@ -318,6 +322,8 @@ def waveform_map(curves: Mapping[str, xr.Dataset], *, ax: Axes | None = None) ->
     >>> tl.plot.figure_data(waveform_map({"dry": curve}))["drop"].round(2).tolist()
     [0.19]
     """
+    if isinstance(curves, xr.Dataset):
+        curves = _each(curves)
     if not curves:
         raise AnalysisError("there is no stick-slip to map")
     drops = np.concatenate([_drops(curve) for curve in curves.values()])
@@ -355,6 +361,15 @@ def waveform_map(curves: Mapping[str, xr.Dataset], *, ax: Axes | None = None) ->
         else:
             name_all(ax)
     return figure
+
+
+def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
+    """Return the curves of a dataset that holds several by their labels, the last one first."""
+    dims = [dim for dim in curves["waveform"].dims if dim != "sliding_speed"]
+    places = np.ndindex(*(curves.sizes[dim] for dim in dims))
+    parts = [curves.isel(dict(zip(dims, place, strict=True))) for place in places]
+    named = {", ".join(str(part[dim].item()) for dim in dims): one_curve(part) for part in parts}
+    return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 
 
 def _drops(curve: xr.Dataset) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from scipy import special
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.stamping import stamp
@@ -51,7 +52,9 @@ class Scaling(NamedTuple):
     text: str
 
 
-def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) -> xr.Dataset:
+def stick_slip_curve(
+    slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1, **labels: Sequence[Label]
+) -> xr.Dataset:
     """Stick-slip against speed over several runs.
 
     Parameters
@@ -60,6 +63,9 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         From `stick_slip`, one per run; segments that a person rejected are left out.
     speed_tolerance
         Neighbouring speeds that differ by no more than this are one.
+    **labels
+        What tells the runs apart, one label for each run, e.g. ``surface=["Sb-R", "Smooth"]``.
+        Runs with the same labels make one curve.
 
     Returns
     -------
@@ -72,13 +78,14 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
         ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
         of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates.
         Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
-        smooth. Attributes ``scaling_exponent``,
-        ``scaling_error``, ``scaling`` and, of a resonance, ``resonance_frequency_Hz``.
+        smooth. Attributes ``scaling_exponent``, ``scaling_error``, ``scaling`` and, of a resonance,
+        ``resonance_frequency_Hz``. With `labels` all that is over these dims, too
+        (`joined_curves`), and the attributes are variables over them.
 
     Raises
     ------
     AnalysisError
-        If there is no run.
+        If there is no run, or not one label for each run.
 
     Examples
     --------
@@ -89,7 +96,12 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     >>> curve = stick_slip_curve([stick_slip(run, find_segments(run))])
     >>> curve.waveform.item(), f"{1e6 * curve.dominant_wavelength.item():.0f} um"
     ('sawtooth stick-slip', '22 um')
+    >>> slip = stick_slip(run, find_segments(run))
+    >>> stick_slip_curve([slip, slip], medium=["dry", "oil"]).waveform.dims
+    ('medium', 'sliding_speed')
     """
+    if labels:
+        return _of_several(slips, speed_tolerance, labels)
     if not slips:
         raise AnalysisError("stick-slip against speed needs at least one run; none was given")
     slips = [kept(slip) for slip in slips]
@@ -121,6 +133,48 @@ def stick_slip_curve(slips: Sequence[xr.Dataset], speed_tolerance: float = 0.1) 
     if rings.any():
         result.attrs["resonance_frequency_Hz"] = float(np.nanmedian(own[rings]))
     return result
+
+
+_SCALING = {
+    "scaling_exponent": "scaling_exponent",
+    "scaling_error": "scaling_error",
+    "scaling": "scaling",
+    "resonance_frequency_Hz": "resonance_frequency",
+}  # attribute of one curve: variable of several
+
+
+def _of_several(
+    slips: Sequence[xr.Dataset], speed_tolerance: float, labels: Mapping[str, Sequence[Label]]
+) -> xr.Dataset:
+    """Return the curve of each combination of labels, side by side."""
+    groups = grouped(slips, labels, "stick_slip_curve")
+    curves = [(stick_slip_curve(group, speed_tolerance), key) for group, key in groups]
+    joined = joined_curves(curves)
+    dims = tuple(labels)
+    shape = tuple(joined.sizes[dim] for dim in dims)
+    for attribute, name in _SCALING.items():
+        values = np.full(shape, "" if name == "scaling" else np.nan, object)
+        for curve, key in curves:
+            at = tuple(joined.indexes[dim].get_loc(key[dim]) for dim in dims)
+            values[at] = curve.attrs.get(attribute, values[at])
+        joined[name] = dims, values if name == "scaling" else values.astype(float)
+    return stamp(joined)
+
+
+def one_curve(curve: xr.Dataset) -> xr.Dataset:
+    """Return one place of several curves as `stick_slip_curve` gives it without labels.
+
+    Parameters
+    ----------
+    curve
+        Over ``sliding_speed`` alone, cut out of the curves of several systems.
+    """
+    if "scaling" not in curve:
+        return curve
+    values = {key: curve[name].item() for key, name in _SCALING.items()}
+    known = {key: value for key, value in values.items() if value == value or "scaling" in key}
+    alone = curve.drop_vars(_SCALING.values()).assign_attrs(known)
+    return alone.sel(sliding_speed=alone["segments"].notnull().values)
 
 
 _EMPTY = ("segments", "segments_oscillating", "waveform", "regularity", "oscillation_swing")
