@@ -45,3 +45,14 @@ def test_rows_have_the_columns_of_their_tables():
     assert set(fit["properties"]) == set(SHEAR_STRESS) - {
         *("curve", "surface", "medium", "normal_force_N")
     }
+
+
+def test_every_error_says_what_it_holds():
+    told = [
+        (name, value.get("description", ""))
+        for part in objects(SCHEMA)
+        for name, value in part["properties"].items()
+        if name == "sem" or name.endswith("friction_coefficient_sem")
+    ]
+    assert len(told) >= 4
+    assert [name for name, words in told if "within the run" not in words] == []

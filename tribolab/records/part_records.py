@@ -19,7 +19,11 @@ class Origin:
 
 _POINT = Columns(
     ("sliding_speed_m_s", "friction_coefficient"),
-    ("friction_coefficient_std", "friction_coefficient_sem"),
+    {
+        "friction_coefficient_std": "pooled standard deviation within the segments",
+        "friction_coefficient_sem": "standard error of the mean: between runs where `runs` is 2 or "
+        "more, else within the run",
+    },
     known=("sliding_speed_m_s",),
     open=True,
 )

@@ -28,7 +28,7 @@ _SEGMENT = Columns(
     {
         "friction_coefficient": "",
         "friction_coefficient_std": "sample standard deviation of the pointwise ratio",
-        "friction_coefficient_sem": "standard error of the mean",
+        "friction_coefficient_sem": "standard error of the mean within the run",
     },
     counts=("segment", "direction"),
     values={"direction": (-1, 0, 1)},
@@ -45,7 +45,9 @@ class Highlight:
     sliding_speed_m_s: float | None
     value: float | None
     std: float | None
-    sem: float | None
+    sem: Annotated[
+        float | None, means("standard error of the mean within the run: nothing of the next run")
+    ]
     segments: Natural
 
 
