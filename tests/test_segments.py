@@ -64,6 +64,24 @@ def test_speeds_of_one_or_two_quanta_are_not_split_by_the_toggling_of_the_last_d
     assert found["sliding_speed"].values[8:] == pytest.approx(abs(made.velocity[8:]), rel=0.02)
 
 
+@pytest.mark.parametrize("speeds", [[1e-3], [1e-3, 2e-3, 5e-3, 1e-2]])
+def test_a_commanded_velocity_keeps_its_strokes_beside_long_rests(speeds):
+    program = [0.0]
+    for speed in speeds:
+        program += [speed, 0.0, -speed, 0.0]
+    lasts = [3000 if v == 0 else 400 for v in program]
+    found = find_segments(velocity_run(np.repeat(program, lasts)))
+    assert found["sliding_speed"].values == pytest.approx(np.repeat(speeds, 2))
+    assert (found["direction"].values == np.tile([1, -1], len(speeds))).all()
+
+
+def test_a_ramp_read_in_some_digits_has_no_segment():
+    velocity = np.concatenate([np.linspace(0, 1, 3000), np.linspace(1, 0, 3000)])
+    for digits in (50, 100):  # fewer are levels that a program might have
+        found = find_segments(velocity_run(np.round(velocity * digits) / digits))
+        assert found.sizes["segment"] == 0, digits
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_lowest_speed_in_a_noise_floor_as_large_as_itself_is_found(seed):
     made = strokes(floor=SPEEDS[0], samples=1000, noise=0.02, seed=seed)

@@ -11,6 +11,7 @@ from tribolab.friction.segments.plateaus import (
     Noise,
     estimate_noise,
     find_breaks,
+    is_commanded,
     quantum,
     running_median,
     straight_pieces,
@@ -211,6 +212,7 @@ def _locate(
         noise = estimate_noise(v, floor / np.sqrt(size))
         # a steady reading may be half a step off, and says nothing of it
         step = quantum(velocity)
+        step = 0.0 if is_commanded(velocity, step) else step
         noise = noise._replace(floor=max(noise.floor, step / 2 / np.sqrt(size)))
     else:  # the parent's noise per sample, averaged over a block
         noise = noise.scaled(size**-0.5)

@@ -57,6 +57,10 @@ class Noise(NamedTuple):
         return Noise(self.floor * factor, self.speed, self.relative * factor)
 
 
+_HELD = 20  # samples that a commanded speed is held, on the mean
+_LEAP = 2.0  # digits of a rounded reading that a command jumps by
+
+
 class Pieces(NamedTuple):
     """Straight pieces of the block series: [first, last) blocks, mean, change along the line."""
 
@@ -94,6 +98,36 @@ def quantum(values: np.ndarray) -> float:
     # what differs in the last digit only is one level
     gaps = gaps[gaps > 1e-9 * np.abs(levels).max()]
     return float(gaps.min()) if gaps.size else 0.0
+
+
+def is_commanded(velocity: np.ndarray, step: float) -> bool:
+    """Whether a velocity is what a drive was told, and no rounded reading of it.
+
+    Parameters
+    ----------
+    velocity
+        Finite readings [m/s].
+    step
+        From `quantum` [m/s].
+
+    Notes
+    -----
+    A rounded reading of a slow change goes up digit by digit. What was told stays as it is for long
+    and jumps from level to level; with one speed and rest alone there is no other digit to go by.
+
+    Examples
+    --------
+    >>> told = np.repeat([0.0, 2.0, 0.0, -2.0, 0.0, 2.0], 100)
+    >>> read = np.round(np.linspace(0, 10, 600))
+    >>> [is_commanded(values, quantum(values)) for values in (told, read)]
+    [True, False]
+    """
+    jumps = np.abs(np.diff(velocity))
+    jumps = jumps[jumps > 0.5 * step]
+    if not step > 0 or jumps.size * _HELD > velocity.size:
+        return False
+    size = np.unique(np.round(np.abs(velocity) / step))
+    return size[size > 0].size == 1 or float(np.median(jumps)) >= _LEAP * step
 
 
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
