@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import LineContact
-from tribolab.errors import AnalysisError, shown
+from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.shear_stress_fit import ShearStressFit
 
@@ -162,7 +162,9 @@ def fit_shear_stresses(
     coords = _further(given)
     if not coords:
         raise AnalysisError(
-            "measured: there is one curve; fit_shear_stress fits it", function="fit_shear_stresses"
+            "measured: there is one curve, and no further dim",
+            function="fit_shear_stresses",
+            cure=Cure(notebook="fit it with fit_shear_stress"),
         )
     fits = np.empty(tuple(len(values) for values in coords.values()), dtype=object)
     for place in np.ndindex(fits.shape):

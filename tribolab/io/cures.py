@@ -55,6 +55,18 @@ PERHAPS_PROFILE = Cure(
     terminal="if it holds a profile or map of heights, try 'tribolab check'",
     campaign="if it holds a profile or map of heights, it belongs under scans of a [[surface]]",
 )
+
+
+def joined(first: Cure, second: Cure) -> Cure:
+    """Return two ways to mend something as one."""
+    return Cure(
+        *(
+            f"{first.told(audience)}; {second.told(audience)}"
+            for audience in ("notebook", "terminal", "campaign")
+        )
+    )
+
+
 SIGNALS = Cure(
     notebook="read it with read()",
     terminal="a campaign takes it as a [[run]]",

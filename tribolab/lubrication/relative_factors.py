@@ -47,7 +47,7 @@ def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> x
     >>> found.pressure_flow_factor.dims
     ('surface', 'relative_separation')
     >>> found.pressure_flow_factor.values.round(2).tolist()
-    [[0.25, 0.76], [0.25, 0.76]]
+    [[0.07, 0.68], [0.07, 0.68]]
     """
     table = flow_factors(psd, **options)
     relative = np.atleast_1d(np.asarray(over, float))

@@ -79,7 +79,10 @@ def find_strokes(run: xr.Dataset) -> Strokes:
         raise AnalysisError(
             f"the slider does not move to and fro: {way.size} whole strokes, {FEWEST} are needed",
             where=name_of(run),
-            cure=Cure(*["for plateaus of constant speed use find_segments"] * 2),
+            cure=Cure(
+                notebook="for plateaus of constant speed use find_segments without stroke_middle",
+                campaign="leave out stroke_middle",
+            ),
         )
     usual = length > SHORTEST * np.median(length)
     return Strokes(first, way, length, place, usual)

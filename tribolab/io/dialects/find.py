@@ -122,6 +122,8 @@ def unknown(file: File, table: str) -> UnknownFileError:
     if file.format != "text":
         folder = "describe it as raw_data_schema/README.md says"
         cure = cures.name_instrument(table, say=f"{folder}, and name that with")
+        if file.format == "excel":
+            cure = cures.joined(cures.PERHAPS_PROFILE, cure)
         return UnknownFileError(what, where=file.path, cure=cure)
     return UnknownFileError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
 
