@@ -117,7 +117,7 @@ def find_segments(
     >>> run = xr.Dataset({"sliding_velocity": ("time", v)}, {"time": np.arange(500) / 10})
     >>> found = find_segments(run)
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
-    ([1, -1], ['at rest', 'ramp', 'at rest', 'ramp', 'at rest'])
+    ([1, -1], ['at rest', 'at rest', 'at rest'])
     """
     share = _share(trim)
     if "time" not in run.dims or run.sizes["time"] == 0:

@@ -173,8 +173,8 @@ class Time(_Strict):
     )
     epoch: Epoch | None = Field(
         None,
-        description="the column counts from a date, which gives `recorded_at`: 'excel' (days "
-        "since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
+        description="the column counts from a date, which tells when it was recorded: 'excel' "
+        "(days since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
     )
     rate: str | None = Field(None, description="sample rate with unit, e.g. '2 kHz'")
     rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
