@@ -81,7 +81,7 @@ def test_a_condition_that_cannot_be_fitted_is_named(measured, spectra):
     with pytest.raises(AnalysisError, match="surface 'Sb-R'"):
         other = spectra.sel(surface=["Sb-S"])
         tl.fit_shear_stresses(measured, xu2026.contact, other, 1.4, 310.0, **GRID)
-    with pytest.raises(AnalysisError, match="fit_shear_stress fits it"):
+    with pytest.raises(AnalysisError, match="fit it with fit_shear_stress$"):
         one = measured.isel(surface=0, normal_force=0, drop=True)
         psd = spectra.isel(surface=0, drop=True)
         tl.fit_shear_stresses(one, xu2026.contact, psd, 1.4, 310.0)
