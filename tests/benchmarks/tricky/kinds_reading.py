@@ -259,7 +259,13 @@ def time_of_day(rng) -> Trial:
         stamp = f"{int(now // 3600):02d}:{int(now // 60 % 60):02d}:{now % 60:06.3f}"
         lines[i] = ",".join([stamp, *lines[i].split(",")[1:]])
     lines[0] = lines[0].replace("Time [s]", "Time")
-    return _one_file(columns, made.truth, text="\n".join(lines) + "\n", lost_is_wrong=True)
+    truth = replace(
+        made.truth,
+        start=made.truth.start + start,
+        stop=made.truth.stop + start,
+        time=made.truth.time + start,
+    )
+    return _one_file(columns, truth, text="\n".join(lines) + "\n", lost_is_wrong=True)
 
 
 @tricky("2")
