@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from tribolab.errors import ReadError
 from tribolab.io import cures, runs
@@ -27,17 +27,14 @@ DRAFTED = "drafted from the file"
 def read_run(
     path: PathLike | Sequence[PathLike],
     instrument: Instrument | None = None,
-    *,
-    pair: bool = True,
-    clock_shift: str | float | None = None,
-    zero: str | None = None,
+    **said: Unpack[runs.Reading],
 ) -> xr.Dataset:
     """Read one run; a text file that no dialect knows is read by one that is drafted from it.
 
     Parameters
     ----------
-    path, instrument, pair, clock_shift, zero
-        As for `tribolab.read`, but for patterns.
+    path, instrument, **said
+        As for `tribolab.io.runs.read_run`.
 
     Returns
     -------
@@ -53,13 +50,14 @@ def read_run(
         If there is no such instrument.
     """
     try:
-        return runs.read_run(path, instrument, pair=pair, clock_shift=clock_shift, zero=zero)
+        return runs.read_run(path, instrument, **said)
     except UnknownFileError as error:
         paths = [Path(path)] if isinstance(path, PathLike) else [Path(one) for one in path]
         if error.where != str(paths[0]):
             raise  # some files of the run are a known instrument's
         dialect = _drafted(paths[0], error)
-    run = runs.read_run(path, dialect, pair=False, clock_shift=clock_shift, zero=zero)
+    alone: runs.Reading = {**said, "pair": False}
+    run = runs.read_run(path, dialect, **alone)
     return run.assign_attrs(_told(paths[0]))
 
 

@@ -12,7 +12,7 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.find import Instrument
 from tribolab.io.logs import PathLike, group_files
 from tribolab.io.patterns import is_pattern, matching
-from tribolab.untyped import Arguments
+from tribolab.io.runs import Reading
 
 
 @overload
@@ -105,11 +105,11 @@ def read(
     >>> [run.attrs["source"] for run in read(folder / "*_force.csv")]
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
-    settings: Arguments = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
+    said: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
     if not isinstance(path, PathLike) or not is_pattern(path):
-        return read_run(path, instrument, **settings)
+        return read_run(path, instrument, **said)
     files = [file for file in matching(path) if file.is_file()]
     if not files:
         raise ReadError(f"{path}: only folders have such a name; write e.g. '{path}/*.csv'")
     runs = group_files(files, instrument) if pair else [[file] for file in files]
-    return [read_run(logs, instrument, **settings) for logs in runs]
+    return [read_run(logs, instrument, **said) for logs in runs]

@@ -9,7 +9,8 @@ import numpy as np
 from tribolab.errors import Cure, ReadError, UnitError
 from tribolab.io.content.read import measurable
 from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
-from tribolab.io.dialects.model import Derived, Dialect, Value
+from tribolab.io.dialects.model import Derived, Dialect
+from tribolab.io.dialects.value_rule import Value
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.untyped import Json
 

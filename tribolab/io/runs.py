@@ -18,6 +18,7 @@ from tribolab.io.content.model import Content
 from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.derived import add_derived
+from tribolab.io.dialects.column_rule import FRICTION
 from tribolab.io.dialects.find import (
     Dialect,
     Instrument,
@@ -26,7 +27,6 @@ from tribolab.io.dialects.find import (
     load_dialect,
     recognise,
 )
-from tribolab.io.dialects.model import FRICTION
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike, companion_path
 from tribolab.io.row_counts import (
@@ -42,6 +42,14 @@ from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 from tribolab.untyped import Json
+
+
+class Reading(TypedDict, total=False):
+    """What may be said of reading a run, besides its files and instrument; see `tribolab.read`."""
+
+    pair: bool
+    clock_shift: str | float | None
+    zero: str | None
 
 
 def read_run(

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.campaign.settings import problems
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.names import of_names
 from tribolab.campaign.settings.plan import PlannedRun, plan
-from tribolab.campaign.settings.toml_file import checked, text_of
-from tribolab.errors import ConfigError
+from tribolab.campaign.settings.toml_file import opened, settings_path
 
 
 def load_campaign(path: str | Path) -> Campaign:
@@ -49,16 +47,13 @@ def load_campaign(path: str | Path) -> Campaign:
 
 def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
-    path = Path(path)
-    path = (path / "campaign.toml" if path.is_dir() else path).absolute()
-    text = text_of(path, "'tribolab demo' makes a campaign to start from")
-    campaign, wrong = checked(path, text, Campaign, "campaign")
-    if campaign is not None:
-        campaign.lies_at(path)
-        # names first: no file is looked at with an instrument that nobody knows
-        wrong = of_names(campaign)
-        if not wrong:
-            runs, wrong = plan(campaign)
-        if not wrong:
-            return campaign, runs
-    raise ConfigError(problems.message(wrong, path, text))
+    missing = "'tribolab demo' makes a campaign to start from"
+    file = opened(settings_path(path, "campaign.toml"), Campaign, "campaign", missing)
+    file.content.lies_at(file.path)
+    # names first: no file is looked at with an instrument that nobody knows
+    if wrong := of_names(file.content):
+        raise file.error(wrong)
+    runs, wrong = plan(file.content)
+    if wrong:
+        raise file.error(wrong)
+    return file.content, runs

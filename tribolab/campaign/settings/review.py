@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tribolab.campaign.settings.fields import Si, Text
 from tribolab.campaign.settings.problems import Problem, message
-from tribolab.campaign.settings.toml_file import checked, text_of
-from tribolab.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.campaign.settings.toml_file import Opened, opened, settings_path
+from tribolab.errors import TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
 from tribolab.untyped import Json
 
@@ -104,15 +104,13 @@ def load_review(path: str | Path) -> dict[str, tuple[Decision, ...]]:
     ...     print(*load_review(folder)["sb-r_1"])
     reject, 12.5 to 31 s (A. Person, 2026-11-20)
     """
-    path = Path(path)
-    path = (path / REVIEW_FILE if path.is_dir() else path).absolute()
-    text = text_of(path, "decisions stand in [[decision]] tables")
-    return _read(path, text).by_run
+    missing = "decisions stand in [[decision]] tables"
+    return _opened(settings_path(path, REVIEW_FILE), missing).content.by_run
 
 
 def load_entries(path: Path) -> tuple[DecisionEntry, ...]:
     """Return the decisions of a review file in their order."""
-    return _read(path, text_of(path, "")).decision
+    return _opened(path).content.decision
 
 
 def review_beside(campaign_file: Path) -> dict[str, tuple[Decision, ...]]:
@@ -134,15 +132,14 @@ def lost_decisions(campaign_file: Path, runs: Iterable[str]) -> tuple[str, ...]:
     path, known = campaign_file.parent / REVIEW_FILE, set(runs)
     if not path.exists():
         return ()
-    text = text_of(path, "")
+    file = _opened(path)
     lost = []
-    for number, entry in enumerate(_read(path, text).decision):
+    for number, entry in enumerate(file.content.decision):
         if entry.run not in known:
             what = f"no run is called '{shown(entry.run)}'{nearest(entry.run, known)}"
             what += "; name the run as the tables do, or take the decision out"
-            lost.append(
-                message([Problem(("decision", number, "run"), what)], Path(path.name), text)
-            )
+            problem = Problem(("decision", number, "run"), what)
+            lost.append(message([problem], Path(path.name), file.text))
     return tuple(lost)
 
 
@@ -152,8 +149,5 @@ def review_schema() -> Json:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
-def _read(path: Path, text: str) -> Review:
-    review, wrong = checked(path, text, Review, "review")
-    if review is None:
-        raise ConfigError(message(wrong, path, text))
-    return review
+def _opened(path: Path, missing: str = "") -> Opened[Review]:
+    return opened(path, Review, "review", missing)

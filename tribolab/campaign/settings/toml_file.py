@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
@@ -37,25 +38,45 @@ def text_of(path: Path, missing: str) -> str:
         raise ConfigError(f"{path}: cannot be read ({error}); it wants to be UTF-8") from error
 
 
-def checked(
-    path: Path, text: str, model: type[Model], kind: str
-) -> tuple[Model | None, list[problems.Problem]]:
-    """Return what a text says, or what is wrong with it.
+@dataclass(frozen=True)
+class Opened(Generic[Model]):
+    """A file that says what its model wants."""
+
+    path: Path
+    text: str
+    content: Model
+
+    def error(self, wrong: list[problems.Problem]) -> ConfigError:
+        """Return what is still wrong with it, by file and line."""
+        return ConfigError(problems.message(wrong, self.path, self.text))
+
+
+def settings_path(path: str | Path, name: str) -> Path:
+    """Return the file that is meant by itself, or by the folder in which it has its usual name."""
+    path = Path(path)
+    return (path / name if path.is_dir() else path).absolute()
+
+
+def opened(path: Path, model: type[Model], kind: str, missing: str = "") -> Opened[Model]:
+    """Read a file and check it against its model.
 
     Parameters
     ----------
-    path, text
-        A file and its text.
+    path
+        The file.
     model
         What it has to say.
     kind
         What such a file is called.
+    missing
+        What to do if there is none.
 
     Raises
     ------
     ConfigError
-        If it is no TOML.
+        If anything in it is wrong: the message has the file, the line, the key and the cure.
     """
+    text = text_of(path, missing)
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -64,6 +85,7 @@ def checked(
     except (RecursionError, ValueError) as error:
         raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
     try:
-        return model.model_validate(content, context={"in_file": True}), []
+        return Opened(path, text, model.model_validate(content, context={"in_file": True}))
     except ValidationError as error:
-        return None, problems.from_pydantic(error, model)
+        wrong = problems.from_pydantic(error, model)
+        raise ConfigError(problems.message(wrong, path, text)) from error

@@ -11,7 +11,8 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columns import resolve, symbols
 from tribolab.io.dialects.headers import split_name
-from tribolab.io.dialects.model import Dialect, Marks
+from tribolab.io.dialects.layout import Marks
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.tables.tdms_file import open_tdms
 from tribolab.provenance import sha256_of_file

@@ -7,8 +7,9 @@ import numpy as np
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content
 from tribolab.io.content.steps import last_match
-from tribolab.io.dialects.model import Dialect, Value
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.value_rule import Value
 from tribolab.units import conversion
 
 

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, UnitError, nearest, shown
-from tribolab.io.dialects.model import Column, Dialect
+from tribolab.io.dialects.column_rule import Column
+from tribolab.io.dialects.model import Dialect
 from tribolab.units import conversion
 
 AGAIN = "~"  # between a quantity and the number of a further column that may hold it

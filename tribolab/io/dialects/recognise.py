@@ -9,7 +9,8 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.headers import find_tables, split_row
-from tribolab.io.dialects.model import Dialect, Recognise
+from tribolab.io.dialects.layout import Recognise
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.signature import File, fits
 

@@ -1,0 +1,112 @@
+"""How a file lies on the disk: by what it is known, its text, header, rows, groups, records."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+import numpy as np
+from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
+
+from tribolab.io.dialects.checked_text import BinaryField, Encoding, Pattern, Strict
+
+
+class Recognise(Strict):
+    """Rules that must all hold for a file to be taken for this instrument's; none: never."""
+
+    preamble: tuple[Pattern, ...] = Field((), description="patterns found in the file's first text")
+    header: tuple[str, ...] = Field((), description="names that the header has, units included")
+    columns: PositiveInt | None = Field(None, description="columns of a file without a header")
+    linked: tuple[tuple[PositiveInt, PositiveInt], ...] = Field(
+        (), description="pairs of columns (counted from 1), each a straight line of the other"
+    )
+    file_name: Pattern | None = Field(None, description="pattern found in the file's name")
+
+
+class Text(Strict):
+    """How delimited text is written."""
+
+    encoding: Encoding = Field("utf-8", description="utf-8 (a BOM is ignored), latin-1, ...")
+    delimiter: str = Field(",", description="one character, or 'whitespace'")
+    decimal: Literal[".", ","] = Field(".", description="decimal mark")
+    missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
+    end: Pattern | None = Field(None, description="a line matching this ends the table")
+    skip_lines: Pattern | None = Field(
+        None, description="lines below the header matching this are passed over: comments, marks"
+    )
+
+    @model_validator(mode="after")
+    def _delimiter_is_usable(self) -> Self:
+        if self.delimiter != "whitespace" and len(self.delimiter) != 1:
+            raise ValueError("delimiter is one character, or the word 'whitespace'")
+        if self.delimiter == self.decimal:
+            raise ValueError(f"delimiter and decimal mark are both '{self.decimal}'")
+        return self
+
+
+class Header(Strict):
+    """How the table's header is found; with neither `line` nor `pattern` there is none."""
+
+    line: PositiveInt | None = Field(None, description="number of the header's line, from 1")
+    pattern: Pattern | None = Field(None, description="the first line matching this is the header")
+    units: Literal["brackets", "row", "dialect"] = Field(
+        "brackets", description="in brackets after the name, in the next row, or only here"
+    )
+    repeats: bool = Field(False, description="a header block stands at each step")
+    step: Pattern | None = Field(
+        None, description="group 1 is the step's number in the text before its header"
+    )
+    skip: NonNegativeInt = Field(0, description="lines to pass over after the header")
+    sheet: str | None = Field(None, description="Excel only: name of the sheet; else the first")
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if self.line and self.pattern:
+            raise ValueError("give either header.line or header.pattern, not both")
+        if self.repeats and not self.pattern:
+            raise ValueError("header.repeats needs header.pattern")
+        return self
+
+
+class Rows(Strict):
+    """What may be lost of a table's rows."""
+
+    left_out: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="share of the rows that may be left out because it is meant; beyond it, and "
+        "beyond the limits of the check `rows_left_out`, the run is suspect or fails",
+    )
+
+
+class Pair(Strict):
+    """A second log with a clock of its own: the names differ by one ending."""
+
+    own: str = Field(description="ending of this file's stem, e.g. '_force'")
+    other: str = Field(description="ending of the companion's stem, e.g. '_motion'")
+    instrument: str = Field(description="dialect of the companion")
+
+
+class Marks(Strict):
+    """TDMS only: the group whose channel of times divides the run into steps."""
+
+    group: str
+    time: str = Field(description="name of the channel of times, without its unit")
+    unit: str | None = None
+    labels: Pattern | None = Field(None, description="properties of the group that hold labels")
+
+
+class Binary(Strict):
+    """Binary only: records of one kind, one behind the other."""
+
+    offset: NonNegativeInt = Field(0, description="bytes before the first record")
+    fields: tuple[BinaryField, ...] = Field(
+        min_length=1,
+        description="name and type of each field in order, '<f8', '<f4', '>i2' ... as in numpy: "
+        "'Fx <f4'; the names are those of [[column]]",
+    )
+
+    @property
+    def record(self) -> np.dtype[np.void]:
+        """Type of a record."""
+        return np.dtype([tuple(field.rsplit(maxsplit=1)) for field in self.fields])

@@ -1,0 +1,73 @@
+"""Where a dialect says that time comes from."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from tribolab.errors import shown
+from tribolab.io.dialects.checked_text import Pattern, Strict
+from tribolab.io.dialects.dates import Epoch, is_form
+from tribolab.units import positive, to_si
+
+
+class Time(Strict):
+    """Where time comes from: a column (the default), intervals, a sample rate, or nowhere."""
+
+    source: Literal["column", "period", "rate", "none"] = Field(
+        "column",
+        description="'period': the column of 'time' holds what has passed since the row before, "
+        "and is summed; 'none': rows are counted as seconds, and the run says so",
+    )
+    format: str | None = Field(
+        None,
+        description="the column holds dates and times (or times of day): 'iso', 'iso with zone', "
+        "or as for strptime, e.g. '%d.%m.%Y %H:%M:%S,%f'",
+    )
+    epoch: Epoch | None = Field(
+        None,
+        description="the column counts from a date, which tells when it was recorded: 'excel' "
+        "(days since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
+    )
+    rate: str | None = Field(None, description="sample rate with unit, e.g. '2 kHz'")
+    rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
+    rate_unit: str = "Hz"
+    restart: Literal["error", "continue"] = Field(
+        "error",
+        description="'continue': where the clock starts anew (in a table, at a step, in a file), "
+        "time goes on",
+    )
+    wrap: str | None = Field(
+        None, description="the clock's counter begins anew after this time, e.g. '65.536 s'"
+    )
+    on_repeat: Literal["error", "drop", "interpolate"] = Field(
+        "error",
+        description="rows whose time is not later than all before: 'drop' leaves them out, "
+        "'interpolate' gives them times evenly between their neighbours'",
+    )
+    start_pattern: Pattern | None = Field(
+        None, description="group 1 is the date and time at which a step (or the file) starts"
+    )
+    start_format: str | None = Field(None, description="its format as for strptime")
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if (self.source == "rate") != bool(self.rate or self.rate_pattern):
+            raise ValueError("source = 'rate' and rate (or rate_pattern) belong together")
+        if self.source != "column" and (self.format or self.epoch):
+            raise ValueError("format and epoch are for source = 'column'")
+        if self.format and self.epoch:
+            raise ValueError("format and epoch exclude one another")
+        if self.format and not is_form(self.format):
+            raise ValueError(
+                f"format: 'iso', 'iso with zone', or codes such as %d and %H; not "
+                f"'{shown(self.format)}'"
+            )
+        if self.rate:
+            to_si(self.rate, "Hz", "time.rate")
+        if self.wrap:
+            positive(self.wrap, "s", "time.wrap")
+        if bool(self.start_pattern) != bool(self.start_format):
+            raise ValueError("start_pattern and start_format belong together")
+        return self

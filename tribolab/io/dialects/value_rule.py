@@ -1,0 +1,80 @@
+"""What a dialect says of one value that stands outside the table."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from tribolab.errors import TribolabError, nearest, shown
+from tribolab.io.dialects.checked_text import Pattern, Sign, Strict, check_unit
+from tribolab.io.dialects.patterns import guarded
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.turns import Counted, reciprocal
+from tribolab.units import base_unit, conversion
+
+
+class Value(Strict):
+    """A single value that stands outside the table; it becomes an attribute of the run.
+
+    From a step, a number becomes a variable along time, and text one attribute for all steps.
+    """
+
+    name: str = Field(description="a quantity, or a name of your own")
+    source: Literal["preamble", "file name", "step"] = "preamble"
+    pattern: Pattern = Field(description="group 1 is the value")
+    unit: str | None = Field(None, description="without a unit the value is kept as text")
+    to: str | None = Field(None, description="SI unit to keep it in, if the name is no quantity")
+    scale: float = 1.0
+    sign: Sign = 1
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if guarded(self.pattern).groups < 1:
+            raise ValueError(
+                f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
+            )
+        if self.unit is not None:
+            check_unit(self.unit, self.si_unit, self.bare)
+        return self
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it, if the name is a quantity."""
+        return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
+
+    @property
+    def si_unit(self) -> str:
+        """Unit in which a number is kept."""
+        if self.to is not None:
+            return self.to
+        try:
+            return quantity(self.name).unit
+        except TribolabError as error:
+            hint = nearest(self.name, QUANTITIES)
+            hint = f"{hint[:-1]}, or " if "did you mean" in hint else "; "
+            raise ValueError(
+                f"value '{shown(self.name)}' is no known quantity{hint}add "
+                f"to = '{self._own_unit()}', the "
+                f"SI unit to keep it in"
+            ) from error
+
+    def _own_unit(self) -> str:
+        """SI unit of the unit given: of a quantity of its kind, else of base units."""
+        units = dict.fromkeys(known.unit for known in QUANTITIES.values())
+        if reciprocal(str(self.unit)):  # cycles stay cycles
+            units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
+        for unit in units:
+            with contextlib.suppress(TribolabError):
+                conversion(str(self.unit), unit)
+                return unit
+        return base_unit(str(self.unit))
+
+    @property
+    def attribute(self) -> str:
+        """Name of the run's attribute: the SI unit is its ending."""
+        if self.unit is None or self.si_unit in ("", "1"):
+            return self.name
+        return f"{self.name}_{re.sub(r'[^A-Za-z0-9]+', '_', self.si_unit)}"
