@@ -6,6 +6,7 @@ import pytest
 import tribolab as tl
 from tribolab.errors import ReadError
 from tribolab.io.clocks.shift import estimate_clock_shift
+from tribolab.io.companion import describe_companion
 from tribolab.io.logs import group_files
 
 FASTEST = 1e-3  # s, sample period of the fastest strokes
@@ -157,6 +158,12 @@ def test_a_missing_companion_is_told_in_the_run(tmp_path):
     force_log, motion_log = write_logs(tmp_path, 0.5)
     motion_log.unlink()
     assert tl.read(force_log).attrs["companion_missing"] == motion_log.name
+    assert describe_companion(force_log) == {"missing": motion_log.name}
+
+
+def test_a_motion_log_has_no_companion_whichever_of_both_instruments_is_named(tmp_path):
+    _, motion_log = write_logs(tmp_path, 0.5)
+    assert describe_companion(motion_log) == describe_companion(motion_log, "linear_slider") == {}
 
 
 def test_logs_without_friction_fall_back_on_the_dates_and_say_so(tmp_path):

@@ -273,10 +273,11 @@ def check(
         tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
     with _reported(debug):
-        from tribolab.app.quick import plain_arrays_only
+        from tribolab.app.quick import importing, plain_arrays_only
 
-        plain_arrays_only()
-        from tribolab.app import checks
+        with importing():
+            plain_arrays_only()
+            from tribolab.app import checks
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
@@ -306,8 +307,12 @@ def info(
     tribolab info odd.txt --instrument my_tribometer.toml
     """
     with _reported(debug):
-        from tribolab.app.file_info import Descriptions
-        from tribolab.campaign.engine.stage import perform
+        from tribolab.app.quick import importing, plain_arrays_only
+
+        with importing():
+            plain_arrays_only()
+            from tribolab.app.file_info import Descriptions
+            from tribolab.campaign.engine.stage import perform
 
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             described = perform(Descriptions(files, instrument), pool, progress)

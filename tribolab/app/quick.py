@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import sys
+from collections.abc import Iterator
 
 from tribolab.untyped import Arguments
 
@@ -28,3 +31,18 @@ def plain_arrays_only() -> None:
     finally:
         for name in _OTHER_ARRAYS:
             del sys.modules[name]
+
+
+@contextlib.contextmanager
+def importing() -> Iterator[None]:
+    """Look for no garbage while libraries are imported: all of it stays.
+
+    Their hundred thousand small objects would be gone through again and again, for a tenth of a
+    second; afterwards they are left alone, too.
+    """
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()

@@ -10,6 +10,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import load_dialect, recognise
 from tribolab.io.dialects.signature import peek
+from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.runs import read_run
 
 
@@ -47,13 +48,14 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
         if peek(Path(path)).format == "netcdf":
             return {}
         dialect = load_dialect(instrument) if instrument else recognise(Path(path))
-        if dialect.pair is None:
+        if dialect.pair is None or Path(path).stem.endswith(dialect.pair.other):
             return {}
+        other = companion_path(Path(path), dialect)
+        if other is None or not other.is_file():
+            return {"missing": companion_name(Path(path), dialect)}
         attrs = read_run(path, instrument).attrs
     except ReadError as error:
         return {"refused": error.told("terminal")}
-    if "companion_missing" in attrs:
-        return {"missing": attrs["companion_missing"]}
     told: CompanionFacts = {
         "instrument": attrs["companion_instrument"],
         "shift_s": float(attrs["clock_shift_s"]),

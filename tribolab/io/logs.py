@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from tribolab.io.dialects.find import Dialect, Instrument, known_dialects, load_dialect
+from tribolab.io.dialects.find import Dialect, Instrument, every_dialect, load_dialect
+from tribolab.provenance import as_text
 
 PathLike = str | Path
 
@@ -34,7 +35,7 @@ def group_files(
     >>> [[path.name for path in group] for group in group_files(files)]
     [['a_31N_01_force.csv', 'a_31N_01_motion.csv'], ['b.csv']]
     """
-    every = [load_dialect(instrument)] if instrument else map(load_dialect, known_dialects())
+    every = [load_dialect(instrument)] if instrument else every_dialect()
     rules = [dialect for dialect in every if dialect.pair is not None]
     files = list(dict.fromkeys(Path(path) for path in paths))
     present = set(files)
@@ -57,3 +58,11 @@ def companion_path(path: Path, dialect: Dialect) -> Path | None:
     if rule is None or not path.stem.endswith(rule.own):
         return None
     return path.with_name(path.stem.removesuffix(rule.own) + rule.other + path.suffix)
+
+
+def companion_name(path: Path, dialect: Dialect) -> str:
+    """Return what the second log of a file would be called; nothing if there is one log only."""
+    if dialect.pair is None:
+        return ""
+    other = companion_path(path, dialect)
+    return as_text(other.name) if other else f"*{dialect.pair.other}.*"

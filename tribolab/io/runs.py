@@ -28,7 +28,7 @@ from tribolab.io.dialects.find import (
     recognise,
 )
 from tribolab.io.dialects.signature import peek
-from tribolab.io.logs import PathLike, companion_path
+from tribolab.io.logs import PathLike, companion_name, companion_path
 from tribolab.io.row_counts import (
     ROW_ATTRIBUTES,
     row_attributes,
@@ -104,10 +104,7 @@ def read_run(
 
         motion = _run(companions)
         return with_companion_rows(merge(run, motion, shift), run, motion)
-    dialect = main[0][1]
-    if pair and dialect.pair is not None:
-        wanted = companion_path(main[0][0], dialect)
-        expected = as_text(wanted.name) if wanted else f"*{dialect.pair.other}.*"
+    if pair and (expected := companion_name(*main[0])):
         run.attrs["companion_missing"] = expected
     return run
 

@@ -20,6 +20,7 @@ __all__ = [
     "Dialect",
     "Instrument",
     "UnknownFileError",
+    "every_dialect",
     "is_scan",
     "json_schema",
     "known_dialects",
@@ -96,8 +97,7 @@ def recognise(path: str | Path) -> Dialect:
     from tribolab.io.dialects.signature import is_results
 
     file = peek(path)
-    every = [load_dialect(name) for name in known_dialects()]
-    fitting = [dialect for dialect in every if mismatch(file, dialect) is None]
+    fitting = [dialect for dialect in every_dialect() if mismatch(file, dialect) is None]
     if len(fitting) == 1:
         return fitting[0]
     if fitting:
@@ -147,7 +147,12 @@ def scan_dialects() -> list[Dialect]:
     >>> "nanovea_map" in [dialect.name for dialect in scan_dialects()]
     True
     """
-    return [dialect for dialect in map(load_dialect, known_dialects()) if is_scan(dialect)]
+    return [dialect for dialect in every_dialect() if is_scan(dialect)]
+
+
+def every_dialect() -> list[Dialect]:
+    """Return the dialects of all known instruments, by name."""
+    return [_load(path) for path in known_dialects().values()]
 
 
 def json_schema() -> Json:

@@ -12,7 +12,7 @@ import xarray as xr
 
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
-from tribolab.io.dialects.find import Dialect, is_scan, known_dialects, load_dialect, scan_dialects
+from tribolab.io.dialects.find import Dialect, every_dialect, is_scan, load_dialect, scan_dialects
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.formats import read_foreign
@@ -130,7 +130,7 @@ def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
 
 @functools.cache  # the descriptions do not change while a program runs
 def _every_dialect() -> tuple[Dialect, ...]:
-    return tuple(map(load_dialect, known_dialects()))
+    return tuple(every_dialect())
 
 
 def _read(
