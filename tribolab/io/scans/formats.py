@@ -94,6 +94,11 @@ def read_foreign(
     if len(points) == 2:
         # SurfaceTopography's first index is x
         steps = [float(s) * lateral / n for s, n in zip(sizes, points, strict=True)]
+        if 1 in points and max(points) > 1:  # a profile, in a format of maps
+            pitch, heights = steps[int(points[0] == 1)], heights.ravel()
+            return xr.Dataset(
+                {"height": ("x", heights)}, {"x": pitch * np.arange(heights.size)}, attrs
+            )
         return xr.Dataset(
             {"height": (("y", "x"), heights.T)},
             {"y": steps[1] * np.arange(points[1]), "x": steps[0] * np.arange(points[0])},

@@ -15,8 +15,9 @@ from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, every_dialect, is_scan, load_dialect, scan_dialects
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
-from tribolab.io.scans.formats import read_foreign
+from tribolab.io.scans.extent import measured_part, refuse_impossible
 from tribolab.io.scans.grid import even, gridded
+from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.stamping import stamp
 from tribolab.untyped import Json
@@ -143,12 +144,16 @@ def _read(
     if dialect is not None:
         scan, sha256 = _by_dialect(path, dialect)
     else:
-        scan, sha256 = read_foreign(path, x_unit, height_unit), sha256_of_file(path)
+        scan, sha256 = read_undescribed(path, x_unit, height_unit), sha256_of_file(path)
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
-    x, name = scan.x.values, as_text(path.name)
+    refuse_impossible(path, scan)
+    name = as_text(path.name)
+    scan = measured_part(
+        scan.assign_attrs(**made(f"read {name}", source=name, source_sha256=sha256))
+    )
+    x = scan.x.values
     return scan.assign_attrs(
-        **made(f"read {name}", source=name, source_sha256=sha256),
         pitch_m=float(x[-1] - x[0]) / (x.size - 1),
         length_m=float(x[-1] - x[0]),
     )

@@ -6,7 +6,9 @@ import contextlib
 import re
 import zipfile
 import zlib
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 
@@ -17,7 +19,7 @@ _MEGABYTE = 1 << 20
 _UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
 _RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
 _DEEPEST = 500  # elements of XML within one another; office files have a dozen
-_DAMAGE = (
+DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError),
     ValueError,
 )
@@ -49,7 +51,7 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
     with path.open("rb") as file:
         head = file.read(_MEGABYTE)
     if head.startswith(b"PK\x03\x04"):
-        _unpacks(path)
+        refuse_bomb(path)
     elif head.startswith(b"MATLAB 5.0"):
         _arrays_only(path)
     elif head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")):
@@ -63,8 +65,14 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
     return [name for name in every if name not in unmarked or name in sure]
 
 
-def _unpacks(path: Path) -> None:
-    """Refuse an archive that unfolds to far more than it is."""
+def refuse_bomb(path: Path) -> None:
+    """Refuse an archive that unfolds to far more than it is, or whose XML is too deep.
+
+    Raises
+    ------
+    ReadError
+        If it is one, or is damaged.
+    """
     try:
         with zipfile.ZipFile(path) as archive:
             unpacked = sum(member.file_size for member in archive.infolist())
@@ -85,7 +93,7 @@ def _unpacks(path: Path) -> None:
             f"{unpacked / path.stat().st_size:.0f} times its size; that is no measurement. Export "
             "the profile as text (csv)"
         )
-    with contextlib.suppress(*_DAMAGE):  # what reads it says how it is damaged
+    with contextlib.suppress(*DAMAGE):  # what reads it says how it is damaged
         _shallow(path)
 
 
@@ -93,19 +101,33 @@ def _shallow(path: Path) -> None:
     """Refuse XML whose elements lie so deep in one another that its parsers take for ever."""
     with zipfile.ZipFile(path) as archive:
         for member in archive.infolist():
-            if not member.filename.lower().endswith((".xml", ".rels")):
-                continue
-            depth = 0
-            with archive.open(member) as file:
-                while block := file.read(_MEGABYTE):
-                    steps = _steps(block)
-                    if depth + steps.cumsum().max(initial=0) > _DEEPEST:
-                        raise ReadError(
-                            f"{path}: in '{shown(member.filename)}' more than {_DEEPEST} elements "
-                            "lie in one another, as no office program writes it; export the "
-                            "profile as text (csv)"
-                        )
-                    depth += int(steps.sum())
+            if member.filename.lower().endswith((".xml", ".rels")):
+                with archive.open(member) as file:
+                    refuse_deep(path, member.filename, _blocks(file))
+
+
+def _blocks(file: IO[bytes]) -> Iterator[bytes]:
+    while block := file.read(_MEGABYTE):
+        yield block
+
+
+def refuse_deep(path: Path, name: str, blocks: Iterable[bytes]) -> None:
+    """Refuse XML, given in blocks, whose elements lie too deep in one another.
+
+    Raises
+    ------
+    ReadError
+        If they do.
+    """
+    depth = 0
+    for block in blocks:
+        steps = _steps(block)
+        if depth + steps.cumsum().max(initial=0) > _DEEPEST:
+            raise ReadError(
+                f"{path}: in '{shown(name)}' more than {_DEEPEST} elements lie in one another, as "
+                "no office program writes it; export the profile as text (csv)"
+            )
+        depth += int(steps.sum())
 
 
 def _steps(block: bytes) -> np.ndarray:

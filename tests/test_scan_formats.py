@@ -1,0 +1,254 @@
+"""Scans in formats that are read here: x3p of all makers, bare XML, soft gauges, packed Surf."""
+
+import struct
+import warnings
+import zipfile
+import zlib
+
+import numpy as np
+import pytest
+
+from tribolab.errors import ReadError
+from tribolab.io.scans.read import read_scans
+
+HEIGHTS = np.random.default_rng(5).normal(0, 1e-6, (7, 12))
+HOLES = np.zeros(HEIGHTS.shape, bool)
+HOLES[3, 4] = HOLES[2, 9] = True
+
+MAIN = """<?xml version="1.0" encoding="UTF-8"?>
+<{p}ISO5436_2 xmlns{n}="http://www.opengps.eu/2008/ISO5436_2"><Record1>
+<Revision>{revision}</Revision><FeatureType>{feature}</FeatureType><Axes>
+<CX><AxisType>{x_type}</AxisType><DataType>{x_data}</DataType><Increment>1e-6</Increment></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2e-6</Increment></CY>
+<CZ><AxisType>A</AxisType><DataType>{z_data}</DataType>{z_scale}</CZ></Axes></Record1>
+<Record2><Date>2024-05-06T07:08:09</Date><Instrument><Manufacturer>Maker</Manufacturer>
+<Model>unknown</Model></Instrument></Record2>
+<Record3><MatrixDimension><SizeX>{nx}</SizeX><SizeY>{ny}</SizeY><SizeZ>1</SizeZ>
+</MatrixDimension>{data}</Record3></{p}ISO5436_2>"""
+
+
+def described(data, **changes):
+    ny, nx = HEIGHTS.shape
+    said = {
+        "p": "p:", "n": ":p", "revision": "ISO5436 - 2000", "feature": "SUR", "x_type": "I",
+        "x_data": "D", "z_data": "D", "z_scale": "", "nx": nx, "ny": ny,
+    }  # fmt: skip
+    return MAIN.format(data=data, **{**said, **changes}).encode()
+
+
+def archive(path, main, folder="", **members):
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr(f"{folder}main.xml", main)
+        for name, content in members.items():
+            file.writestr(f"{folder}bindata/{name}.bin", content)
+    return path
+
+
+def link(valid=False):
+    mask = "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>" if valid else ""
+    return f"<DataLink><PointDataLink>bindata/data.bin</PointDataLink>{mask}</DataLink>"
+
+
+@pytest.mark.parametrize("kind", "DFLI")
+def test_x3p_of_another_writer(tmp_path, kind):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from SurfaceTopography import Topography
+    written = np.ma.array(HEIGHTS.T, mask=HOLES.T)
+    path = tmp_path / "map.x3p"
+    Topography(written, (12e-6, 14e-6), unit="m").to_x3p(str(path), dtype=kind)
+    scan = read_scans(path)
+    digit = {"D": 1e-18, "F": 1e-12, "L": 2e-15, "I": 1e-10}[kind]
+    np.testing.assert_allclose(scan.height, np.where(HOLES, np.nan, HEIGHTS), rtol=0, atol=digit)
+    np.testing.assert_allclose([scan.x[1], scan.y[1]], [1e-6, 2e-6])
+    assert scan.attrs["instrument_vendor"] == "SurfaceTopography"
+
+
+@pytest.mark.parametrize("folder", ["", "scan 1/", "a/b/"])
+@pytest.mark.parametrize("byte_each", [False, True])
+def test_x3p_in_a_folder_of_any_revision_with_a_mask_of_bits_or_bytes(tmp_path, folder, byte_each):
+    valid = ~HOLES.ravel()
+    mask = valid.astype("u1").tobytes()
+    if not byte_each:
+        mask = np.packbits(valid, bitorder="little").tobytes()
+    main = described(link(valid=True), revision="ISO25178-72:2017")
+    path = archive(tmp_path / "m.x3p", main, folder, data=HEIGHTS.tobytes(), valid=mask)
+    scan = read_scans(path)
+    np.testing.assert_array_equal(scan.height, np.where(HOLES, np.nan, HEIGHTS))
+    assert scan.attrs["recorded_at"] == "2024-05-06T07:08:09"
+    assert "instrument_name" not in scan.attrs  # "unknown" is no name
+
+
+def test_x3p_of_whole_numbers_with_increment_and_offset(tmp_path):
+    raw = np.arange(84, dtype="<i2").reshape(7, 12)
+    scale = "<Increment>1e-9</Increment><Offset>5e-6</Offset>"
+    main = described(link(), z_data="I", z_scale=scale)
+    scan = read_scans(archive(tmp_path / "m.x3p", main, data=raw.tobytes()))
+    np.testing.assert_allclose(scan.height, 5e-6 + 1e-9 * raw, rtol=1e-12)
+
+
+@pytest.mark.parametrize("bare", [False, True])
+def test_lists_of_heights_in_the_xml_as_archive_and_alone(tmp_path, bare):
+    cells = [
+        "" if hole else repr(float(z)) for z, hole in zip(HEIGHTS.flat, HOLES.flat, strict=True)
+    ]
+    data = "<DataList>" + "".join(f"<Datum>{c}</Datum>" for c in cells) + "</DataList>"
+    main = described(data, p="", n="")
+    path = tmp_path / ("map.xml" if bare else "map.x3p")
+    path.write_bytes(main) if bare else archive(path, main)
+    scan = read_scans(path)
+    np.testing.assert_array_equal(scan.height, np.where(HOLES, np.nan, HEIGHTS))
+
+
+def test_a_profile_with_positions_of_its_own(tmp_path):
+    z = HEIGHTS.ravel()
+    x = 0.3 * np.arange(z.size)  # in units of the axis's increment, 1 um
+    cells = "".join(
+        f"<Datum>{a!r};{b!r}</Datum>" for a, b in zip(x.tolist(), z.tolist(), strict=True)
+    )
+    main = described(f"<DataList>{cells}</DataList>", feature="PRF", x_type="A", nx=z.size, ny=1)
+    scan = read_scans(archive(tmp_path / "p.x3p", main))
+    assert dict(scan.sizes) == {"scan": 1, "x": z.size}
+    assert scan.attrs["pitch_m"] == pytest.approx(3e-7)
+    record = np.empty(z.size, [("x", "<f8"), ("z", "<f8")])
+    record["x"], record["z"] = x, z
+    main = described(link(), feature="PRF", x_type="A", nx=z.size, ny=1)
+    same = read_scans(archive(tmp_path / "b.x3p", main, data=record.tobytes()))
+    np.testing.assert_array_equal(same.height, scan.height)
+
+
+def test_border_without_data_is_cut_off(tmp_path):
+    bare = np.pad(HEIGHTS, ((2, 1), (0, 3)), constant_values=np.nan)
+    main = described(link(), nx=15, ny=10)
+    scan = read_scans(archive(tmp_path / "m.x3p", main, data=bare.tobytes()))
+    np.testing.assert_array_equal(scan.height, HEIGHTS)
+    assert scan.attrs["cropped"] == (
+        "3 rows and 3 columns at the border without a height were cut off"
+    )
+    assert float(scan.x[0]) == float(scan.y[0]) == 0.0
+    assert scan.attrs["length_m"] == pytest.approx(11e-6)
+
+
+def test_damaged_archives_say_so(tmp_path):
+    short = archive(tmp_path / "s.x3p", described(link()), data=HEIGHTS.tobytes()[:-8])
+    with pytest.raises(ReadError, match="83 points, but says that they are 84"):
+        read_scans(short)
+    with pytest.raises(ReadError, match="damaged"):
+        read_scans(archive(tmp_path / "n.x3p", described(link())))
+    with pytest.raises(ReadError, match="no heights"):
+        read_scans(archive(tmp_path / "e.x3p", described("")))
+    endless = b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]><ISO5436_2>&b;</ISO5436_2>'
+    with pytest.raises(ReadError, match="entities"):
+        read_scans(archive(tmp_path / "x.x3p", endless))
+
+
+def test_a_map_longer_than_any_instrument_is_refused(tmp_path):
+    main = described(link()).replace(b"<Increment>1e-6", b"<Increment>14.47")
+    path = archive(tmp_path / "m.x3p", main, data=HEIGHTS.tobytes())
+    with pytest.raises(ReadError, match=r"159\.2 m long along x"):
+        read_scans(path)
+
+
+VALUES = np.round(np.sin(np.arange(40) / 5.0), 6)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<spacing unit="mm">0.00025</spacing><z unit="um">{joined}</z>',
+        "<DX>0.25</DX><Unit>um</Unit><Heights>{each}</Heights>",
+        "<Header><Pitch>0.25 um</Pitch><ZUnit>µm</ZUnit></Header><Profile>{each}</Profile>",
+        '<x unit="um">{positions}</x><z unit="um">{joined}</z>',
+    ],
+)
+def test_lists_of_values_in_xml_of_any_maker(tmp_path, body):
+    path = tmp_path / "gauge.xml"
+    joined = " ".join(map(str, VALUES))
+    each = "".join(f"<V>{v}</V>" for v in VALUES)
+    positions = " ".join(str(0.25 * n) for n in range(VALUES.size))
+    told = body.format(joined=joined, each=each, positions=positions)
+    path.write_text(f'<?xml version="1.0" encoding="utf-8"?><Gauge>{told}</Gauge>', "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * VALUES, atol=1e-18)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+
+
+def test_xml_that_says_too_little_is_refused(tmp_path):
+    path = tmp_path / "gauge.xml"
+    text = '<?xml version="1.0"?><a><z>' + " ".join(map(str, VALUES)) + "</z>{}</a>"
+    path.write_text(text.format(""))
+    with pytest.raises(ReadError, match="states no units"):
+        read_scans(path)
+    with pytest.raises(ReadError, match="neither positions nor the distance"):
+        read_scans(path, x_unit="um", height_unit="um")
+    path.write_text(text.format("<pitch>0.5</pitch>"))
+    scan = read_scans(path, x_unit="um", height_unit="nm")
+    assert scan.attrs["pitch_m"] == pytest.approx(5e-7)
+    assert float(scan.height.max()) == pytest.approx(1e-9 * VALUES.max())
+    path.write_text('<?xml version="1.0"?><a><b>1 2 3</b></a>')
+    with pytest.raises(ReadError, match="no list of numbers"):
+        read_scans(path)
+
+
+SMD = (
+    "ISO 5436 - 2000 ground01\r\nPRF 1 ISO5436\r\nCX I 40 mm 1.0e0 D 2.5e-4\r\n"
+    "CZ A 40 um 1.0e0 D\r\n\x03\r\nDATE 25-Nov-2004\r\nPROFILE_FILTER Gaussian LS 0.0 LC 0.8\r\n"
+    "\x03\r\n{}\r\n\x03\r\n12345\r\n\x03\x1a"
+)
+PRF = (
+    "1 2\nSG2004 0.000000e+000 PRF\nCX M 4.000000e+001 MM 1.000000e+000 D\n"
+    "CZ M 4.000000e+001 UM 1.000000e-006 L\nEOR\nSTYLUS_RADIUS 2.000000e+000 UM\n"
+    "SPACING CX 2.500000e-004\nCOMMENT none\nEOR\n{}\nEOR\nEOF\n"
+)
+
+
+@pytest.mark.parametrize(("form", "scale"), [(SMD, 1), (PRF, 1000000)])
+def test_soft_gauges_as_text(tmp_path, form, scale):
+    path = tmp_path / "gauge.txt"
+    numbers = VALUES if scale == 1 else np.rint(scale * VALUES).astype(int)
+    path.write_bytes(form.format("\n".join(map(str, numbers))).encode())
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * VALUES, rtol=0, atol=1e-15)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+    assert scan.attrs.get("tip_radius_m") == (None if scale == 1 else pytest.approx(2e-6))
+    path.write_bytes(form.format("\n".join(map(str, numbers[:30]))).encode())
+    with pytest.raises(ReadError, match="30 heights stand in the file"):
+        read_scans(path)
+
+
+def surf(packed, unit, ny=7):
+    """Write a Surf file of 12 x ny points, 1 and 2 um apart, heights in nm."""
+    raw = np.arange(12 * ny, dtype="<i4")
+    units = b"".join(text.ljust(16, b"\0") for text in (unit, unit, b"nm") * 2)
+    header = b"DSCOMPRESSED" if packed else b"DIGITAL SURF"
+    header += struct.pack("<4h30s30s5h", 0, 1, 1, 2, b"", b"", 0, 0, 0, 0, 0)
+    header += struct.pack("<f4xh5i3f", 0, 32, 0, 100, 12, ny, 12 * ny, 1, 2, 1)
+    header += b"".join(name.ljust(16, b"\0") for name in (b"X", b"Y", b"Z")) + units
+    header += struct.pack("<3f3h12x7hfI6x2h", 1, 1, 1, 0, 0, 0, 0, 0, 12, 1, 6, 2024, 0, 0, 0, 0, 0)
+    body = raw.tobytes()
+    if packed:
+        halves = [body[:160], body[160:]]
+        done = [zlib.compress(half) for half in halves]
+        sizes = [(len(half), len(part)) for half, part in zip(halves, done, strict=True)]
+        body = struct.pack("<5I", 2, *sizes[0], *sizes[1]) + b"".join(done)
+    return header.ljust(512, b"\0") + body
+
+
+@pytest.mark.parametrize("packed", [False, True])
+@pytest.mark.parametrize("unit", ["µm".encode(), "µm".encode("latin-1"), b"um"])
+def test_surf_files_packed_or_not_with_any_micro(tmp_path, packed, unit):
+    path = tmp_path / "map.sur"
+    path.write_bytes(surf(packed, unit))
+    scan = read_scans(path)
+    assert dict(scan.sizes) == {"y": 7, "x": 12}
+    np.testing.assert_allclose([scan.x[1], scan.y[1]], [1e-6, 2e-6], rtol=1e-6)
+    np.testing.assert_allclose(np.diff(scan.height), 1e-9, rtol=1e-6)
+    path.write_bytes(surf(packed, unit)[:-40])
+    with pytest.raises(ReadError, match=r"damaged|cannot read"):
+        read_scans(path)
+
+
+def test_a_surf_file_of_one_line_is_a_profile(tmp_path):
+    path = tmp_path / "profile.sur"
+    path.write_bytes(surf(True, b"um", ny=1))
+    assert dict(read_scans(path).sizes) == {"scan": 1, "x": 12}

@@ -1,0 +1,88 @@
+"""Surf files of Digital Surf as SurfaceTopography (1.27) reads them: not packed, units in Latin-1.
+
+Since 2010 the makers' software packs the heights (``DSCOMPRESSED``) unless it is told not to.
+"""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import shutil
+import struct
+import tempfile
+import zlib
+from pathlib import Path
+
+from tribolab.errors import ReadError, brief
+
+_PLAIN, _PACKED = b"DIGITAL SURF", b"DSCOMPRESSED"
+_HEADER = 512
+_UNITS = slice(180, 276)  # six of 16 bytes
+_UTF8_MICRO, _MICRO = "µ".encode(), "µ".encode("latin-1")
+
+
+def is_sur(head: bytes) -> bool:
+    """Whether a file's first bytes are those of a Surf file."""
+    return head.startswith((_PLAIN, _PACKED))
+
+
+def plain_sur(path: Path) -> Path:
+    """Return where the file lies that SurfaceTopography reads: itself, or a copy of it.
+
+    Raises
+    ------
+    ReadError
+        If it is cut short or damaged.
+    """
+    with path.open("rb") as file:
+        header = file.read(_HEADER)
+    if header.startswith(_PLAIN) and _UTF8_MICRO not in header[_UNITS]:
+        return path
+    state = path.stat()
+    return _copied(path.resolve(), state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=8)
+def _copied(path: Path, size: int, modified: int) -> Path:
+    content = path.read_bytes()
+    try:
+        bits, (nx, ny) = (
+            *struct.unpack_from("<h", content, 98),
+            struct.unpack_from("<2i", content, 108),
+        )
+        comment, private = struct.unpack_from("<2H", content, 334)
+        units = b"".join(
+            content[at : at + 16].replace(_UTF8_MICRO, _MICRO).ljust(16, b"\0")[:16]
+            for at in range(_UNITS.start, _UNITS.stop, 16)
+        )
+        body = content[_HEADER + comment + private :]
+        if content.startswith(_PACKED):
+            body = _unpacked(body, nx * ny * (bits // 8))
+    except (struct.error, zlib.error, ValueError) as error:
+        raise ReadError(
+            f"{path}: the Surf file is damaged: {brief(error)}; is it whole?"
+        ) from error
+    header = _PLAIN + content[12 : _UNITS.start] + units + content[_UNITS.stop : _HEADER]
+    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    copy = folder / path.name
+    copy.write_bytes(header + content[_HEADER : _HEADER + comment + private] + body)
+    return copy
+
+
+def _unpacked(body: bytes, size: int) -> bytes:
+    """Unpack the streams of a packed file, which may not hold more than the heights."""
+    (number,) = struct.unpack_from("<I", body)
+    if not 0 < number <= 1024 or size < 0:
+        raise ValueError(f"{number} packed parts of {size} bytes")
+    lengths = [struct.unpack_from("<2I", body, 4 + 8 * part) for part in range(number)]
+    at, parts = 4 + 8 * number, []
+    for plain, packed in lengths:
+        if plain > size:
+            raise ValueError(f"a packed part of {plain} bytes, but the heights take {size}")
+        parts.append(zlib.decompressobj().decompress(body[at : at + packed], plain or 1))
+        at += packed
+    whole = b"".join(parts)
+    if len(whole) < size:
+        raise ValueError(f"{len(whole)} bytes of heights, but {size} are wanted")
+    return whole

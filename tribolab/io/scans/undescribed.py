@@ -1,0 +1,52 @@
+"""Scans that no dialect describes, by the format that their first bytes show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import xarray as xr
+
+from tribolab.io.scans.formats import read_foreign
+from tribolab.io.scans.gauges import is_gauge, read_gauge
+from tribolab.io.scans.sur import is_sur, plain_sur
+from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
+from tribolab.io.scans.xml_values import is_xml, read_xml_values
+from tribolab.io.unpacked import ZIP, unpacked
+
+_HEAD = 1 << 14  # bytes that tell a format
+
+
+def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read a scan in one of our own formats, or else with SurfaceTopography.
+
+    Parameters
+    ----------
+    path
+        The file; it may be compressed.
+    x_unit, height_unit
+        Units of positions and heights, for files that state none.
+
+    Raises
+    ------
+    ReadError
+        If it is of no format that is known, or damaged.
+
+    Notes
+    -----
+    Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
+    lists of values in XML, SMD and PRF text of soft gauges, and packed Surf files.
+    """
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    inside = unpacked(path, head)
+    if inside != path:
+        return read_undescribed(inside, x_unit, height_unit)
+    if head.startswith(ZIP) and (main := main_of(path)) is not None:
+        return read_x3p(path, main)
+    if is_iso_xml(head):
+        return read_iso_xml(path)
+    if is_xml(head):
+        return read_xml_values(path, x_unit, height_unit)
+    if is_gauge(head):
+        return read_gauge(path)
+    return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)

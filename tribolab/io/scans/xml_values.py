@@ -1,0 +1,186 @@
+"""Profiles in XML of any maker: the longest list of numbers is the heights."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError, UnitError, brief, shown
+from tribolab.io import cures
+from tribolab.io.content.read import measurable
+from tribolab.io.scans.formats import NotSaidError
+from tribolab.io.scans.grid import even
+from tribolab.io.scans.safety import refuse_deep
+from tribolab.units import conversion
+
+_FEWEST = 16  # numbers of a list that may be a profile
+_PLACE = re.compile(r"(?i)^(x|pos(ition)?s?|abscissa|lateral|distance)")
+_STEP = re.compile(
+    r"(?i)^(dx|delta_?x|pitch|step(size)?|spacing_?x?|x?_?(spacing|increment|scale|step|pitch)"
+    r"|(sampl\w*|point)_?(distance|interval|spacing|step|pitch))$"
+)
+_UNIT = re.compile(r"(?i)unit")
+_X_UNIT = re.compile(r"(?i)^(x|lateral|length|pitch|spacing|step)")
+_NUMBER = re.compile(r"\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?)\s*(\S*)\s*$")
+
+
+class _List(NamedTuple):
+    name: str
+    values: np.ndarray
+    unit: str
+
+
+class _Leaf(NamedTuple):
+    """A name with what stands there: an element's text, or an attribute of it."""
+
+    name: str
+    text: str
+    unit: str
+
+
+def is_xml(head: bytes) -> bool:
+    """Whether a file's first bytes are those of XML."""
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<?xml")
+
+
+def parsed(path: Path, text: bytes) -> ElementTree.Element:
+    """Parse XML; names lose their spaces, which makers choose freely.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged, or made to be endless.
+    """
+    if b"<!ENTITY" in text or b"<!DOCTYPE" in text:
+        raise ReadError(f"{path}: its XML defines entities, as no instrument writes them")
+    refuse_deep(path, path.name, [text])
+    try:
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise ReadError(f"{path}: its XML is damaged: {brief(error)}; export it again") from error
+    for element in root.iter():
+        if isinstance(element.tag, str):
+            element.tag = element.tag.rpartition("}")[2]
+    return root
+
+
+def read_xml_values(
+    path: Path, x_unit: str | None = None, height_unit: str | None = None
+) -> xr.Dataset:
+    """Read a profile from XML: a list of heights, and the pitch or a list of positions.
+
+    Parameters
+    ----------
+    path
+        The file.
+    x_unit, height_unit
+        Units of pitch (or positions) and heights, for files that state none.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (x).
+
+    Raises
+    ------
+    ReadError
+        If it holds no list of numbers, or neither pitch nor positions.
+    """
+    root = parsed(path, path.read_bytes())
+    lists = sorted(_lists(root), key=lambda some: -some.values.size)
+    if not lists:
+        raise ReadError(f"{path}: no list of numbers stands in this XML, so it holds no profile")
+    longest = [some for some in lists if some.values.size == lists[0].values.size]
+    places = [some for some in longest if _PLACE.match(some.name)]
+    heights = next((some for some in longest if some not in places), longest[0])
+    leaves = list(_leaves(root))
+    z_scale = _scale(path, height_unit, heights.unit or _unit(leaves, lateral=False))
+    if places and places[0] is not heights:
+        x: np.ndarray = places[0].values * _scale(
+            path, x_unit, places[0].unit or _unit(leaves, lateral=True)
+        )
+    else:
+        x = _pitch(path, leaves, x_unit) * np.arange(heights.values.size)
+    pitch, values, evened = even(str(path), x, measurable(heights.values * z_scale))
+    return xr.Dataset(
+        {"height": ("x", values)},
+        {"x": pitch * np.arange(values.size)},
+        {"instrument": "list of values in XML", **evened},
+    )
+
+
+def _lists(root: ElementTree.Element) -> Iterator[_List]:
+    """Numbers in one element's text, or in elements of one name beside each other."""
+    for element in root.iter():
+        values = _numbers(element.text or "")
+        if values.size >= _FEWEST:
+            yield _List(element.tag, values, _unit_of(element))
+        children: dict[str, list[ElementTree.Element]] = {}
+        for child in element:
+            children.setdefault(str(child.tag), []).append(child)
+        for name, some in children.items():
+            if len(some) < _FEWEST:
+                continue
+            values = _numbers(" ".join((child.text or "nan").strip() or "nan" for child in some))
+            if values.size == len(some):
+                label = element.tag if name.lower() in ("v", "value", "datum") else name
+                yield _List(label, values, _unit_of(some[0]) or _unit_of(element))
+
+
+def _numbers(text: str) -> np.ndarray:
+    cells = re.split(r"[\s;]+" if ";" in text else r"[\s,;]+", text.strip(" \r\n\t,;"))
+    if len(cells) < _FEWEST:
+        return np.empty(0)
+    try:
+        return np.array([float(cell) for cell in cells])
+    except ValueError:
+        return np.empty(0)
+
+
+def _unit_of(element: ElementTree.Element) -> str:
+    return next((text for name, text in element.attrib.items() if _UNIT.search(name)), "").strip()
+
+
+def _leaves(root: ElementTree.Element) -> Iterator[_Leaf]:
+    for element in root.iter():
+        if len(element) == 0 and element.text and len(element.text) < 100:
+            yield _Leaf(element.tag, element.text.strip(), _unit_of(element))
+        for name, text in element.attrib.items():
+            yield _Leaf(name.rpartition("}")[2], text.strip(), _unit_of(element))
+
+
+def _unit(leaves: list[_Leaf], *, lateral: bool) -> str:
+    """Return the unit that stands in an element of its own."""
+    said = [leaf for leaf in leaves if _UNIT.search(leaf.name)]
+    mine = [leaf.text for leaf in said if bool(_X_UNIT.match(leaf.name)) == lateral]
+    if not mine:  # one for both
+        mine = [leaf.text for leaf in said if leaf.name.lower() in ("unit", "units")]
+    return mine[0] if len(set(mine)) == 1 else ""
+
+
+def _pitch(path: Path, leaves: list[_Leaf], x_unit: str | None) -> float:
+    for leaf in leaves:
+        told = _NUMBER.match(leaf.text) if _STEP.match(leaf.name) else None
+        if told:
+            said = told[2] or leaf.unit or _unit(leaves, lateral=True)
+            return float(told[1]) * _scale(path, x_unit, said)
+    raise ReadError(
+        f"{path}: the XML holds a list of heights, but neither positions nor the distance between "
+        "its points (pitch, spacing, increment); export the profile as text (csv)"
+    )
+
+
+def _scale(path: Path, given: str | None, said: str) -> float:
+    unit = said or given
+    if not unit:
+        raise NotSaidError("the XML states no units", where=path, cure=cures.UNITS)
+    try:
+        return conversion(unit, "m")[0]
+    except UnitError as error:
+        raise ReadError(f"{path}: '{shown(unit)}' in its XML is no unit of length") from error
