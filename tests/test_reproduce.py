@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab import cli
+from tribolab.app.reported import USAGE
 from tribolab.io.netcdf import read_netcdf
 from tribolab.paper.figures import COMPUTED, FIGURES, SIMULATED
 from tribolab.paper.laboratory import Laboratory
@@ -204,7 +205,7 @@ def test_page_opens_in_a_browser_without_a_word_or_a_fault(made, tmp_path):
 def test_a_folder_with_something_else_is_refused_before_any_work(tmp_path):
     (tmp_path / "thesis.tex").write_text("years of work")
     done = CliRunner().invoke(cli.app, ["reproduce", "-o", str(tmp_path), "-q"])
-    assert done.exit_code == cli.USAGE
+    assert done.exit_code == USAGE
     assert "thesis.tex" in done.output and "--output" in done.output
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tribolab.app.progress import progress_bars
-from tribolab.app.streams import Terminated, prepared, say
+from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, fail, reported
+from tribolab.app.streams import prepared, say
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from tribolab.campaign.store.outcome import Outcome
 
-USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
 _MANY = 12  # files, from which on it pays to start other processes
 
 app = typer.Typer(
@@ -36,15 +36,6 @@ app = typer.Typer(
         "finds nothing to decide on, or nothing found."
     ),
 )
-
-Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
-Jobs = Annotated[
-    int | None,
-    typer.Option(
-        "--jobs", "-j", min=1, help="Number of processes.", show_default="one per processor"
-    ),
-]
 
 Instrument = Annotated[
     str | None,
@@ -93,7 +84,7 @@ def demo(
 
         tribolab demo /tmp/look
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.app.demo import run_demo
         from tribolab.app.terminal import truth_lines
 
@@ -124,7 +115,7 @@ def reproduce(
 
         tribolab reproduce --output /tmp/paper
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.app.terminal import paper_lines
         from tribolab.paper.reproduce import reproduce as reproduce_paper
 
@@ -178,7 +169,7 @@ def run(
 
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
-    with _reported(debug, audience="campaign"):
+    with reported(debug, audience="campaign"):
         from tribolab.app.run import run_campaign
 
         with progress_bars(quiet) as progress:
@@ -227,7 +218,7 @@ def simulate(
 
         tribolab simulate faulty --small --fault spikes --fault sign
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.campaign.engine.executor import workers
         from tribolab.rig import simulate_campaign
 
@@ -272,7 +263,7 @@ def check(
 
         tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.app.quick import importing, plain_arrays_only
 
         with importing():
@@ -306,7 +297,7 @@ def info(
 
     tribolab info odd.txt --instrument my_tribometer.toml
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.app.quick import importing, plain_arrays_only
 
         with importing():
@@ -368,7 +359,7 @@ def dialect(
 
         tribolab dialect raw/*.csv --output instruments/my_tribometer.toml
     """
-    with _reported(debug):
+    with reported(debug):
         from tribolab.app.dialect import ask_about, try_on
         from tribolab.app.terminal import console
         from tribolab.draft.draft import check_target, save_draft
@@ -386,7 +377,7 @@ def dialect(
             if draft is not before:
                 print_signals(draft, console())
         if not draft.toml:
-            _fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+            fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
         written = save_draft(draft, target, force=force)
         for line in try_on(files, written, draft.kind):
             say(line)
@@ -404,35 +395,6 @@ def _pool(
     from tribolab.campaign.engine.executor import workers
 
     return workers(1 if jobs is None and len(files) < _MANY else jobs)
-
-
-@contextlib.contextmanager
-def _reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
-    """Turn an error into one short message on stderr, for who reads it, and an exit code."""
-    from tribolab.errors import ConfigError, TribolabError, UnitError
-
-    try:
-        yield
-    except (ConfigError, UnitError) as error:
-        _fail(error.told(audience), USAGE, debug)
-    except TribolabError as error:
-        _fail(error.told(audience), UNREADABLE, debug)
-    except KeyboardInterrupt as stop:
-        code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
-        _fail("interrupted; results of before are as they were", code, debug)
-    except (typer.Exit, BrokenPipeError):
-        raise
-    except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
-        from tribolab.words import explain
-
-        _fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
-
-
-def _fail(message: str, code: int, debug: bool) -> NoReturn:
-    if debug:
-        raise
-    say(f"tribolab: {message}", to_stderr=True)
-    raise typer.Exit(code) from None
 
 
 def show_outcome(outcome: Outcome, debug: bool) -> int:

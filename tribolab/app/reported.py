@@ -1,0 +1,52 @@
+"""What every command has: options, and errors told in one line with an exit code."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import Annotated, NoReturn
+
+import typer
+
+from tribolab.app.streams import Terminated, say
+
+USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
+
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs", "-j", min=1, help="Number of processes.", show_default="one per processor"
+    ),
+]
+
+
+@contextlib.contextmanager
+def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
+    """Turn an error into one short message on stderr, for who reads it, and an exit code."""
+    from tribolab.errors import ConfigError, TribolabError, UnitError
+
+    try:
+        yield
+    except (ConfigError, UnitError) as error:
+        fail(error.told(audience), USAGE, debug)
+    except TribolabError as error:
+        fail(error.told(audience), UNREADABLE, debug)
+    except KeyboardInterrupt as stop:
+        code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
+        fail("interrupted; results of before are as they were", code, debug)
+    except (typer.Exit, BrokenPipeError):
+        raise
+    except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
+        from tribolab.words import explain
+
+        fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
+
+
+def fail(message: str, code: int, debug: bool) -> NoReturn:
+    """Say what went wrong on stderr and leave with an exit code."""
+    if debug:
+        raise
+    say(f"tribolab: {message}", to_stderr=True)
+    raise typer.Exit(code) from None
