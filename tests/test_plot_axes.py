@@ -73,7 +73,17 @@ def drawings():
         | {"mean_friction_coefficient": 0.305, "trend": 0.01, "trend_p_value": 1e-3},
         {"cycle": [1, 2]},
     )
+    pair = {"condition": ["dry"] * 2, "sliding_speed_m_s": [1e-5, 1e-4], "first": [0.5, 0.4]}
+    pair |= {"difference": [0.1, 0.0], "low": [0.05, -0.1], "high": [0.15, 0.1]}
+    pair |= {
+        "low_90": [0.06, -0.08],
+        "high_90": [0.14, 0.08],
+        "verdict": ["different", "undecided"],
+    }
+    beside = pd.DataFrame(pair | {"quantity": ["rms_slope"] * 2, "of": ["Sb-S", "Sb-R"]})
     return {
+        "differences": (lambda **k: plot.differences(beside, **k), 1, "dry"),
+        "forest": (lambda **k: plot.forest(beside, **k), 1, "90 %"),
         "stribeck": (lambda **k: plot.stribeck(curve, model, **k), 1, "model"),
         "half_loop": (lambda **k: plot.half_loop(friction, **k), 1, "half loop"),
         "spectra": (lambda **k: plot.spectra({"Sb-S": psd}, **k), 1, "Sb-S"),

@@ -77,6 +77,7 @@ _PUBLIC = {
     "load_campaign": "tribolab.campaign.settings.load",
     "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
+    "compare": "tribolab.across.compare",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -141,6 +142,7 @@ __all__ = [
     "load_campaign",
     "load_review",
     "run_campaign",
+    "compare",
     "TribolabError",
     "plot",
     "rig",
@@ -149,6 +151,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
+    from tribolab.across.compare import compare
     from tribolab.app.run import run_campaign
     from tribolab.campaign.settings.load import load_campaign
     from tribolab.campaign.settings.review import load_review

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tribolab.app.comparing import compare
 from tribolab.app.progress import progress_bars
 from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, fail, reported
 from tribolab.app.streams import prepared, say
@@ -382,6 +383,10 @@ def dialect(
         for line in try_on(files, written, draft.kind):
             say(line)
         print_next(draft, written, console())
+
+
+for _command in (compare,):
+    app.command()(_command)
 
 
 def _prompt(question: str, default: str) -> str:

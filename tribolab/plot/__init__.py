@@ -6,6 +6,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribolab.plot.compared import differences, forest
     from tribolab.plot.contact import (
         adhesive_area,
         contact_area,
@@ -43,9 +44,11 @@ _HOMES = {
     "contact_separation": "tribolab.plot.contact",
     "effective_work": "tribolab.plot.contact",
     "cycles": "tribolab.plot.starts",
+    "differences": "tribolab.plot.compared",
     "envelope": "tribolab.plot.reduce",
     "figure_data": "tribolab.plot.style",
     "film_profiles": "tribolab.plot.film",
+    "forest": "tribolab.plot.compared",
     "friction_factor_effect": "tribolab.plot.mixed",
     "friction_spread": "tribolab.plot.spread",
     "gaps": "tribolab.plot.contact",
@@ -81,9 +84,11 @@ __all__ = [
     "contact_separation",
     "effective_work",
     "cycles",
+    "differences",
     "envelope",
     "figure_data",
     "film_profiles",
+    "forest",
     "friction_factor_effect",
     "friction_spread",
     "gaps",

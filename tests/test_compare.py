@@ -1,0 +1,180 @@
+"""Campaigns beside each other: what differs is called so, what does not is not, what changed is."""
+
+import json
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+from campaigns import copied
+from typer.testing import CliRunner
+
+import tribolab as tl
+from tribolab import cli
+from tribolab.across.compare import CHANGED, UNCHANGED
+from tribolab.app.run import run_campaign
+from tribolab.metrology.differences import (
+    DIFFERENT,
+    EQUIVALENT,
+    UNDECIDED,
+    differences_of_groups,
+    holm,
+    verdicts,
+)
+
+
+def runs(rng, count, points, offset=0.0):
+    """Coefficients of runs at several speeds, bound by what a run has in common."""
+    return rng.normal(0.5, 0.01, (count, 1)) + rng.normal(0, 0.01, (count, points)) + offset
+
+
+def test_welchs_t_is_that_of_scipy():
+    from scipy import stats
+
+    rng = np.random.default_rng(0)
+    first, second = runs(rng, 5, 7), runs(rng, 8, 7, 0.01)
+    compared = differences_of_groups([(first, second)])
+    theirs = stats.ttest_ind(second, first, equal_var=False)
+    assert compared.p_value == pytest.approx(theirs.pvalue, rel=1e-10)
+    low, high = compared.interval(0.95)
+    bounds = theirs.confidence_interval(0.95)
+    assert low == pytest.approx(bounds.low) and high == pytest.approx(bounds.high)
+
+
+def test_holms_rule_is_that_of_statsmodels_documentation():
+    # Wikipedia's and Holm's own example: 0.01, 0.04, 0.03, 0.005 at four tests
+    assert holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert np.isnan(holm(np.array([np.nan, 0.5]))[0])
+
+
+@pytest.mark.parametrize(
+    "conditions, count, method",
+    [(1, 4, "permutation"), (2, 4, "Holm"), (6, 5, "permutation"), (1, 3, "Holm")],
+)
+def test_permutations_are_used_where_they_can_tell(conditions, count, method):
+    rng = np.random.default_rng(1)
+    groups = [(runs(rng, count, 3), runs(rng, count, 3, 0.5)) for _ in range(conditions)]
+    compared = differences_of_groups(groups)
+    assert compared.method == method
+    assert (compared.adjusted_p_value <= 0.05).all(), "no clear difference is lost in their number"
+
+
+def test_permutations_of_one_condition_are_counted_exactly():
+    rng = np.random.default_rng(2)
+    compared = differences_of_groups([(runs(rng, 4, 5), runs(rng, 4, 5, 1.0))])
+    assert compared.adjusted_p_value == pytest.approx(np.full(5, 2 / 70))
+
+
+@pytest.mark.slow
+def test_one_family_in_twenty_errs_and_together_the_intervals_hold_all():
+    rng = np.random.default_rng(3)
+    wrong, held, families = 0, 0, 400
+    for _ in range(families):
+        first, second = runs(rng, 6, 9), runs(rng, 6, 9)
+        compared = differences_of_groups([(first, second)])
+        wrong += (compared.adjusted_p_value <= 0.05).any()
+        held += ((compared.low <= 0) & (compared.high >= 0)).all()
+    spread = 3 * np.sqrt(0.05 * 0.95 / families)
+    assert 0.02 < wrong / families < 0.05 + spread
+    assert 0.95 - spread < held / families < 1
+
+
+def test_what_the_scatter_does_not_show_widens_the_error():
+    rng = np.random.default_rng(4)
+    groups = [(runs(rng, 5, 2), runs(rng, 5, 2, 0.03))]
+    alone = differences_of_groups(groups)
+    whole = differences_of_groups(groups, not_in_scatter=[np.array([0.0, 0.2])])
+    assert whole.standard_error == pytest.approx(np.hypot(alone.standard_error, [0.0, 0.2]))
+    assert whole.adjusted_p_value[1] > 0.5 > alone.adjusted_p_value[1]
+
+
+def test_three_verdicts():
+    rng = np.random.default_rng(5)
+    noise = runs(rng, 6, 3, -0.5)
+    first, second = noise + [0.5, 0.5, 0.5], runs(rng, 6, 3, -0.5) + [0.5, 0.7, 0.5]
+    second[:, 2] += rng.normal(0, 0.2, 6)
+    compared = differences_of_groups([(first, second)])
+    margin = np.full(3, 0.04)
+    assert verdicts(compared, margin) == [EQUIVALENT, DIFFERENT, UNDECIDED]
+    assert EQUIVALENT not in verdicts(compared, None)
+
+
+def test_a_run_that_lacks_a_speed_counts_at_the_others():
+    table = pd.DataFrame(
+        {
+            "run": np.repeat([f"r{k}" for k in range(10)], 2),
+            "surface": np.repeat(["a", "b"], 10),
+            "sliding_speed_m_s": np.tile([1e-4, 1e-3], 10),
+            "friction_coefficient": np.tile([0.4, 0.3], 10)
+            + np.random.default_rng(6).normal(0, 0.01, 20),
+        }
+    )
+    points = tl.compare(table.drop(index=1), by="surface").points
+    assert points.first_runs.tolist() == [5, 4] and points.second_runs.tolist() == [5, 5]
+    with pytest.raises(tl.TribolabError, match="no surface is called 'c'; there is a, b"):
+        tl.compare(table, by="surface", levels=("a", "c"))
+    with pytest.raises(tl.TribolabError, match="nothing to compare"):
+        tl.compare(table, table.assign(surface="other"))
+
+
+@pytest.fixture(scope="module")
+def trimmed(original, tmp_path_factory):
+    """Results of the same raw files with another trim."""
+    campaign = copied(original, tmp_path_factory.mktemp("trimmed"))
+    text = campaign.read_text("utf-8")
+    assert "trim = 0.10" in text
+    campaign.write_text(text.replace("trim = 0.10", "trim = 0.2"), "utf-8")
+    run_campaign(campaign, jobs=1, figures="none")
+    return campaign.parent / "results"
+
+
+def test_two_copies_of_one_results_folder_do_not_differ(original, tmp_path):
+    copy = shutil.copytree(original.parent / "results", tmp_path / "copy")
+    compared = tl.compare(original.parent / "results", copy)
+    assert compared.changes == ()
+    assert set(compared.points.verdict) == {UNCHANGED} and (compared.points.difference == 0).all()
+    assert (compared.quantities.difference == 0).all()
+
+
+@pytest.mark.slow
+def test_a_changed_trim_is_named_and_not_taken_for_another_measurement(original, trimmed, tmp_path):
+    compared = tl.compare(original.parent / "results", trimmed)
+    assert [(c.kind, c.what, c.first, c.second) for c in compared.changes] == [
+        ("settings", "segments.trim", "0.1", "0.2")
+    ]
+    assert set(compared.points.verdict) == {CHANGED}
+    assert compared.points.p_value.isna().all(), "the same raw data are no second sample"
+    words = ["compare", str(original.parent / "results"), str(trimmed), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(cli.app, words)
+    assert done.exit_code == 0 and "settings: segments.trim: 0.1 → 0.2" in done.stdout
+    page = (tmp_path / "out/compare.html").read_text("utf-8")
+    assert "segments.trim" in page and "http-equiv" in page and "<img src=" in page
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {
+        "compare.html",
+        "compare_points.csv",
+        "compare_quantities.csv",
+    }
+
+
+def test_what_changed_in_code_data_and_decisions_is_told(original, reviewed, tmp_path):
+    from tribolab.across.changes import changes_between
+    from tribolab.across.folder import open_folder
+
+    first = open_folder(original.parent)
+    copy = shutil.copytree(original.parent / "results", tmp_path / "copy") / "report.json"
+    report = json.loads(copy.read_text("utf-8"))
+    report["versions"]["numpy"] = "0.1"
+    report["sources"][0]["sha256"] = 64 * "0"
+    copy.write_text(json.dumps(report), "utf-8")
+    told = changes_between(first, open_folder(copy.parent))
+    assert [change.kind for change in told] == ["code", "data", "data"]
+    assert told[1].what == report["sources"][0]["file"]
+    decided = changes_between(first, open_folder(reviewed[0].parent))
+    assert "decisions" in {change.kind for change in decided}
+
+
+def test_a_folder_without_results_is_told(tmp_path):
+    done = CliRunner().invoke(cli.app, ["compare", str(tmp_path), str(tmp_path)])
+    assert done.exit_code == 3 and "name the folder that 'tribolab run' wrote" in done.stderr
+    done = CliRunner().invoke(cli.app, ["compare", str(tmp_path)])
+    assert done.exit_code == 2 and "name another, or say --by" in done.stderr

@@ -1,0 +1,1 @@
+"""Results folders beside each other and over time: compared, followed, planned from."""

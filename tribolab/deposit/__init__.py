@@ -1,0 +1,1 @@
+"""Results as others can read them: packed with what they were made of, and described."""
