@@ -31,8 +31,7 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
         If a numeric variable's name is not in the dictionary.
     """
     result = data.copy()
-    for name in result.variables:
-        variable = result[name]
+    for name, variable in result.variables.items():
         if str(name).endswith(("_qc", "_qc_tests")):
             continue
         if variable.dtype.kind in "OUSTM":

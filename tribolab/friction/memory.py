@@ -38,6 +38,7 @@ WHITE = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 9)])  # variances, of t
 CALM = 0.8  # chance, before the record is seen, that there is no wander
 FEWEST = 8  # stretches
 _HALVINGS = 50  # of pi/(n + 1): to the last digit
+_NEGLIGIBLE = 1e-7  # chance of a model that no other figure of the answer knows of
 BEYOND = 0.006  # chance of more than three standard errors, where a memory may be long
 
 
@@ -146,7 +147,8 @@ def error_with_memory(record: np.ndarray) -> float:
     likely = models.prior - 0.5 * (n - 1) * np.log(squares)
     chance = np.exp(likely - likely.max()).ravel()
     chance /= chance.sum()
-    place, scale = place.ravel(), scale.ravel()
+    told = chance > _NEGLIGIBLE
+    place, scale, chance = place.ravel()[told], scale.ravel()[told], chance[told]
 
     def exceeded(distance: np.ndarray) -> np.ndarray:
         """Return minus the logarithm of the chance that the level lies farther away."""

@@ -113,14 +113,13 @@ def attach(
     -----
     The pair is linked to the variable by ``ancillary_variables`` (CF-1.11, section 3.5).
     """
-    result = data.copy()
     shape, dims = data[name].shape, data[name].dims
     severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
     if anywhere(np.isnan, data[name].values):
         severity = np.where(np.isnan(data[name].values), np.int8(MISSING), severity)
     tests = _objecting(shape, {1 << bits[check]: values for check, values in flags.items()})
     known = sorted(bits, key=bits.__getitem__)
-    result[f"{name}_qc"] = (
+    quality = (
         dims,
         severity,
         {
@@ -130,7 +129,7 @@ def attach(
             "flag_meanings": _MEANINGS,
         },
     )
-    result[f"{name}_qc_tests"] = (
+    objections = (
         dims,
         tests,
         {
@@ -139,7 +138,8 @@ def attach(
             "flag_meanings": " ".join(known),
         },
     )
-    result[name].attrs["ancillary_variables"] = f"{name}_qc {name}_qc_tests"
+    result = data.assign({f"{name}_qc": quality, f"{name}_qc_tests": objections})
+    result.variables[name].attrs["ancillary_variables"] = f"{name}_qc {name}_qc_tests"
     return result
 
 

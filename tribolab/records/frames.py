@@ -88,7 +88,9 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
     >>> rows_of(pd.DataFrame({"medium": ["dry"], "normal_force_N": [31.0]}))
     [{'medium': 'dry', 'normal_force_N': 31.0}]
     """
-    return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+    names = [str(name) for name in table.columns]
+    columns = [table[name].tolist() for name in table.columns]
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
 def plain_rows(table: pd.DataFrame) -> tuple[Row, ...]:

@@ -318,7 +318,6 @@ def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
 
 
 def _table(data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference) -> xr.Dataset:
-    table = xr.Dataset({name: ("segment", values) for name, values in data.items()})
-    table["zero_from"] = "segment", zero.zero_from
-    table["remark"] = "segment", remarks
+    columns = data | {"zero_from": zero.zero_from, "remark": remarks}
+    table = xr.Dataset({name: ("segment", values) for name, values in columns.items()})
     return table.assign_attrs(offset=zero.method, zero_doubts=list(zero.doubts))

@@ -44,9 +44,12 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     rest = measured - models
     level = np.quantile(rest, 0.4, axis=1, keepdims=True)
     best_cost, best_level = np.full(models.shape[0], np.inf), level[:, 0]
+    rest -= level
+    off, capped = np.empty_like(rest), np.empty_like(rest)
     for shift in np.linspace(-1.2, 1.2, 17):
-        off = rest - level - shift
-        cost = np.minimum(np.abs(off), np.where(off > 0, _ABOVE, np.inf)) @ weight
+        np.subtract(rest, shift, out=off)
+        np.minimum(off, _ABOVE, out=capped)
+        cost = np.maximum(capped, np.negative(off, out=off), out=off) @ weight
         better = cost < best_cost
         best_cost = np.where(better, cost, best_cost)
         best_level = np.where(better, level[:, 0] + shift, best_level)

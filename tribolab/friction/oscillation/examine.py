@@ -150,11 +150,13 @@ def _without_drift(record: Record, frequency: float) -> Record:
     """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
     periods = frequency * record.values.size * record.spacing
     degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
-    place = np.linspace(-1, 1, record.values.size)
-    if not record.even:
-        place = 2 * (record.time - record.time[0]) / np.ptp(record.time) - 1
     series = np.polynomial.legendre
-    drift = series.legval(place, series.legfit(place, record.values, degree))
+    if record.even:  # the polynomials are nearly orthogonal: their normal equations are harmless
+        terms = series.legvander(np.linspace(-1, 1, record.values.size), degree)
+        drift = terms @ np.linalg.solve(terms.T @ terms, terms.T @ record.values)
+    else:
+        place = 2 * (record.time - record.time[0]) / np.ptp(record.time) - 1
+        drift = series.legval(place, series.legfit(place, record.values, degree))
     return record._replace(values=record.values - drift)
 
 

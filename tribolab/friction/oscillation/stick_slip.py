@@ -175,12 +175,11 @@ def stick_slip(
     data = slip_columns(examined, speed, np.array(loads))
     data["instrument"] = _texts(_instrument(examined, speed))
     data["remark"] = _texts(remarks)
-    result = xr.Dataset({name: ("segment", values) for name, values in data.items()})
-    own = [name for name in _OF_SEGMENTS if name in segments]
-    result = result.assign({name: ("segment", segments[name].values) for name in own})
-    result["class_probability"] = ("segment", "waveform_class"), class_table(examined)
-    result = result.assign_coords(
-        segment=segments["segment"].values, waveform_class=np.array(CLASSES, dtype=object)
+    data |= {name: segments[name].values for name in _OF_SEGMENTS if name in segments}
+    classes = {"class_probability": (("segment", "waveform_class"), class_table(examined))}
+    result = xr.Dataset(
+        {name: ("segment", values) for name, values in data.items()} | classes,
+        {"segment": segments["segment"].values, "waveform_class": np.array(CLASSES, dtype=object)},
     )
     result = result.merge(spectra_table(examined, speed)).merge(event_list(examined))
     result = result.merge(line_table(examined, speed))

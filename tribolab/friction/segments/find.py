@@ -270,13 +270,16 @@ def measured(
     for label in LABELS:
         if label in run:
             data[label] = _label(np.asarray(run[label].values, float), first, last)
+    omitted = {
+        "omitted_start": np.array([s.start for s in left], float),
+        "omitted_stop": np.array([s.stop for s in left], float),
+        "omitted_reason": np.array([s.kind for s in left], dtype=object),
+    }
     result = xr.Dataset(
-        {name: ("segment", values) for name, values in data.items()},
+        {name: ("segment", values) for name, values in data.items()}
+        | {name: ("omitted", values) for name, values in omitted.items()},
         coords={"segment": np.arange(len(kept))},
     )
-    result["omitted_start"] = "omitted", np.array([s.start for s in left], float)
-    result["omitted_stop"] = "omitted", np.array([s.stop for s in left], float)
-    result["omitted_reason"] = "omitted", np.array([s.kind for s in left], dtype=object)
     return stamp(result, **(run.attrs | settings))
 
 

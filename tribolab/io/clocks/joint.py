@@ -26,6 +26,7 @@ from tribolab.io.clocks.basis import SLACKS, Basis
 Array = NDArray[np.float64]
 
 _SAMPLES = 2000  # of the force, looked at in one fit
+_CANCELLED = 1e-6  # of the whole: a difference of sums that is smaller is summed itself
 _DRIFT = 8  # hat functions of time, at most
 _POWERS = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
 _POWER_OF_NOISE = 0.01  # of the independent residuals
@@ -35,6 +36,7 @@ _MOST_UNEXPLAINED = 0.5
 _MOST_EVENTS = 60
 _RIDGE = 1e-7
 _SHIFTS = 17  # on a grid
+_AGAIN = 13  # of a grid about what the one before found: one to each standard error
 
 
 class Joint(NamedTuple):
@@ -169,12 +171,12 @@ def _one(
 ) -> tuple[float, float] | None:
     """Shift and its error by one model; the range narrows as they become known."""
     at, half = shift, span
-    for _ in range(12):
+    for narrowed in range(12):
         used = _chosen(force_time, basis, at, half)
         if len(used) < 3 * table.shape[1] + 30:
             return None
         fit = _Fit(force_time[used], force[used], basis.rows, table)
-        shifts = at + half * np.linspace(-1.0, 1.0, _SHIFTS)
+        shifts = at + half * np.linspace(-1.0, 1.0, _AGAIN if narrowed else _SHIFTS)
         likelihood = fit.profile(shifts)[0]
         weight = np.exp(likelihood - likelihood.max())
         weight /= weight.sum()
@@ -236,8 +238,10 @@ class _Fit:
         self.basis, _ = np.linalg.qr(drift)
         self.table = table
         self.force = force - self.basis @ (self.basis.T @ force)
+        self.whole = float(self.force @ self.force)
 
-    def residual(self, shift: float) -> tuple[Array, float]:
+    def columns(self, shift: float) -> Array:
+        """Return what the motion would have the force show: the table at the samples' times."""
         at = self.time - shift
         i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.motion_time) - 2)
         start = self.motion_time[i]
@@ -249,28 +253,43 @@ class _Fit:
         after = self.table.take(i + 1, axis=0)
         after *= part
         columns += after
-        columns -= self.basis @ (self.basis.T @ columns)
-        normal = columns.T @ columns
+        return columns
+
+    def squares(self, shift: float) -> tuple[float, Array, float]:
+        """Return the sum of squares that is left, the amplitudes, and the share of inertia."""
+        columns = self.columns(shift)
+        # a drift is taken out of the products: out of the columns it would take longer
+        slow = self.basis.T @ columns
+        normal = columns.T @ columns - slow.T @ slow
+        told = columns.T @ self.force
         own = normal.diagonal()
         ridged = normal.copy()
         np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * np.trace(normal)))
-        amplitudes = np.linalg.solve(ridged, columns.T @ self.force)
-        inertia = np.sqrt(normal[-1, -1]) * abs(amplitudes[-1])
-        return self.force - columns @ amplitudes, float(inertia / np.linalg.norm(self.force))
+        amplitudes = np.linalg.solve(ridged, told)
+        left = self.whole - float(amplitudes @ (2.0 * told - normal @ amplitudes))
+        inertia = np.sqrt(max(normal[-1, -1], 0.0)) * abs(amplitudes[-1])
+        if left < _CANCELLED * self.whole:
+            residual = self.residual(shift, amplitudes)
+            left = float(residual @ residual)
+        return left, amplitudes, float(inertia / np.sqrt(self.whole))
+
+    def residual(self, shift: float, amplitudes: Array) -> Array:
+        """Return what the motion leaves of the force."""
+        explained = self.columns(shift) @ amplitudes
+        return self.force - explained + self.basis @ (self.basis.T @ explained)
 
     def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
-        squares = np.empty(len(shifts))
-        best: tuple[float, Array, float] | None = None
-        for k, s in enumerate(shifts):
-            residual, part = self.residual(s)
-            squares[k] = residual @ residual
-            if best is None or squares[k] < best[0]:
-                best = (float(squares[k]), residual, part)
-        assert best is not None  # there is at least one shift
-        residual = best[1]
+        tried = [self.squares(shift) for shift in shifts]
+        squares = np.array([left for left, _, _ in tried])
+        best = int(np.argmin(squares))
+        residual = self.residual(shifts[best], tried[best][1])
         alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
         hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
         freedom = max(len(residual) - self.table.shape[1] - _DRIFT, 1) / hanging
-        whole = float(self.force @ self.force)
-        squares = np.maximum(squares, 1e-12 * whole)
-        return -0.5 * freedom * np.log(squares), float(squares.min()) / whole, best[2], freedom
+        squares = np.maximum(squares, 1e-12 * self.whole)
+        return (
+            -0.5 * freedom * np.log(squares),
+            float(squares.min()) / self.whole,
+            tried[best][2],
+            freedom,
+        )
