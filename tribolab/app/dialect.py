@@ -8,11 +8,13 @@ from typing import Protocol
 
 import numpy as np
 
-from tribolab.draft.answers import column_of, corrected, fits
+from tribolab.draft.answers import column_of, corrected, fits, written
 from tribolab.draft.draft import Draft
+from tribolab.draft.follows import SAYS_SPEED
 from tribolab.draft.model import DraftColumn, other_units
 from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
+from tribolab.units import positive
 from tribolab.words import Count
 
 NONE = "-"
@@ -55,7 +57,34 @@ def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
         return draft
     for name, words in (_SCAN if draft.kind == "scan" else _RUN).items():
         draft = _ask_for(draft, name, words, ask, say)
-    return draft
+    return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
+
+
+def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
+    """Ask for what the speed follows from, if that is all that is missing."""
+    from tribolab.draft.follows import what_follows
+
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    speed = what_follows(layout, understood).speed
+    if speed is not None and speed.guess:
+        crank = f"does a crank drive it ({NONE}: its speed is constant both ways)?"
+        drive = "constant speed" if ask(crank, "yes").strip() == NONE else "crank"
+        return written(draft, layout, understood._replace(drive=drive))
+    names = {column.quantity for column in understood.columns if column.used}
+    if speed is not None or "rotation_speed" not in names or names & SAYS_SPEED:
+        return draft
+    while True:
+        typed = ask(f"what is the radius of the track, with its unit? ({NONE}: not known)", NONE)
+        if typed.strip() == NONE:
+            return draft
+        try:
+            positive(typed, "m", "the radius")
+        except TribolabError as error:
+            say(str(error.what))
+            continue
+        return written(draft, layout, understood._replace(radius=typed.strip()))
 
 
 def _ask_for(draft: Draft, name: str, words: str, ask: Ask, say: Callable[[str], None]) -> Draft:

@@ -22,6 +22,7 @@ SIGNALS = {
     "shear_stress",
     "film_thickness",
 }
+_CHANNELS = {"friction_force", "normal_force", "friction_coefficient"}
 # beside friction: which of several such columns is taken changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
 
@@ -56,7 +57,7 @@ def assigned(
     """
     matched = _without_axes(bare, matched)
     has_units = any(unit is not None for _, unit, _ in bare)
-    filled = np.isfinite(numbers).any(axis=0)
+    filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
     proposals: dict[str, list[_Proposal]] = {}
     for index, options in enumerate(matched):
         option = _preferred(options, bare[index][1], numbers[:, index], has_units)
@@ -76,29 +77,68 @@ def assigned(
             result[index] = column._replace(note=hint or UNKNOWN_NAME)
         elif not matched[index]:
             result[index] = column._replace(note=UNKNOWN_NAME)
-    for name, rivals in proposals.items():
-        best = max(rivals)
-        names = [f"column {place + 1}" for place in sorted(r.place for r in rivals)]
-        for _, index, option in rivals:
-            if index == best.place:
-                second = sorted(rivals)[-2] if len(rivals) > 1 else None
-                several = second is not None and second.rank[0] > best.rank[0] - 0.05
-                others = [o.quantity for o in matched[index] if o.quantity != name]
-                column = _column(
-                    columns[index], bare[index], option, numbers[:, index], kind, several
-                )
-                if several:
-                    own = f"column {index + 1}"
-                    column = column._replace(
-                        options=(*column.options, *(n for n in names if n != own))
-                    )
-                if option.score < SURE:
-                    column = column._replace(options=(*column.options, *others, "not used"))
-                result[index] = column
+    for rivals in proposals.values():
+        alike = _alike(rivals)
+        for rival in rivals:
+            place = rival.place
+            if rival in alike and _is_spare(rivals):
+                result[place] = _spare(columns, bare[place], rival, numbers[:, place], kind, rivals)
+            elif rival is not max(rivals):
+                name, best = rival.option.quantity, max(rivals).place + 1
+                note = f"also looks like {name}; column {best} is used"
+                result[place] = columns[place]._replace(quantity=name, note=note)
             else:
-                note = f"also looks like {name}; column {best.place + 1} is used"
-                result[index] = columns[index]._replace(quantity=name, note=note)
+                column = _column(
+                    columns[place],
+                    bare[place],
+                    rival.option,
+                    numbers[:, place],
+                    kind,
+                    several=len(alike) > 1,
+                )
+                result[place] = _with_options(column, rival, rivals, matched[place])
     return result
+
+
+def _alike(rivals: list[_Proposal]) -> list[_Proposal]:
+    """Return those of several columns whose names suit a quantity about as well as the best."""
+    return [rival for rival in rivals if rival.rank[0] > max(rivals).rank[0] - 0.05]
+
+
+def _is_spare(rivals: list[_Proposal]) -> bool:
+    """Whether just one of the columns for a force is filled; in another file it may be another."""
+    alike = _alike(rivals)
+    filled = sum(rival.rank[1] for rival in alike)
+    return len(alike) > 1 and filled == 1 and rivals[0].option.quantity in _CHANNELS
+
+
+def _spare(
+    columns: list[DraftColumn],
+    bare: Bare,
+    rival: _Proposal,
+    values: np.ndarray,
+    kind: Kind,
+    rivals: list[_Proposal],
+) -> DraftColumn:
+    """Fill in one of several columns for a force: the first that is filled will be taken."""
+    column = _column(columns[rival.place], bare, rival.option, values, kind, several=False)
+    best = max(rivals).place
+    note = "" if rival.place == best else f"nothing but zeros here; column {best + 1} is filled"
+    return column._replace(optional=True, note=note)
+
+
+def _with_options(
+    column: DraftColumn, rival: _Proposal, rivals: list[_Proposal], matched: list[Match]
+) -> DraftColumn:
+    """Add what a column may hold instead, and which other column may hold this."""
+    options = column.options
+    if len(_alike(rivals)) > 1:
+        others = sorted(r.place for r in rivals if r is not rival)
+        options = (*options, *(f"column {place + 1}" for place in others))
+    if rival.option.score < SURE:
+        others_named = (o.quantity for o in matched if o.quantity != rival.option.quantity)
+        options = (*options, *others_named, "not used")
+    return column._replace(options=options)
 
 
 def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]]) -> None:

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from tribolab.draft.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
+from tribolab.io.dialects.headers import split_name
 from tribolab.quantities import unit_conversion
 
 if TYPE_CHECKING:
@@ -14,7 +16,28 @@ if TYPE_CHECKING:
     from tribolab.draft.model import DraftColumn
 
 _DAY = 86400.0  # [s]
+_INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
 OnRepeat = Literal["", "drop", "interpolate"]
+
+
+def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
+    """Sum a column of time that holds intervals by its name and its numbers; whether it does.
+
+    Parameters
+    ----------
+    columns
+        The columns.
+    numbers
+        Their numbers (rows, columns); changed in place.
+    """
+    column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
+    if column is None or squeezed(split_name(column.label)[0]) not in _INTERVALS:
+        return False
+    passed = numbers[:, column.place - 1]
+    if len(passed) < 2 or not (passed >= 0).all() or (np.diff(passed) > 0).all():
+        return False
+    numbers[:, column.place - 1] = np.cumsum(passed)
+    return True
 
 
 def find_clock(

@@ -49,8 +49,9 @@ def understand(layout: Layout) -> Understood:
         else column
         for column in columns
     ]
-    from tribolab.draft.clock import find_clock
+    from tribolab.draft.clock import find_clock, summed
 
+    period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
     words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
@@ -58,7 +59,7 @@ def understand(layout: Layout) -> Understood:
         # time alone is a run only if something can be filled in
         kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
     result = Understood(
-        kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses)
+        kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
     )
     timed = any(column.used and column.quantity == "time" for column in columns)
     rate = None if timed or kind != "run" else find_rate(layout)

@@ -44,6 +44,8 @@ class DraftColumn(NamedTuple):
 class Understood(NamedTuple):
     """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
 
+    With `period` the column of time held intervals; its numbers are their sums by now.
+    `radius` (with its unit) and `drive` are what a person said of a track and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there.
     """
 
@@ -54,8 +56,11 @@ class Understood(NamedTuple):
     on_repeat: Literal["", "drop", "interpolate"]
     restart: bool
     guesses: tuple[str, ...]
+    period: bool = False
     rate_pattern: str = ""
     rate_unit: str = ""
+    radius: str = ""
+    drive: str = ""
 
 
 _UNITS = {

@@ -53,7 +53,7 @@ def read_run(
         return runs.read_run(path, instrument, **said)
     except UnknownFileError as error:
         paths = [Path(path)] if isinstance(path, PathLike) else [Path(one) for one in path]
-        if error.where != str(paths[0]):
+        if Path(error.where) != paths[0]:
             raise  # some files of the run are a known instrument's
         dialect = _drafted(paths[0], error)
     alone: runs.Reading = {**said, "pair": False}

@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.drafted import Drafted
-from tribolab.draft.model import DraftColumn
+from tribolab.draft.follows import Follows, what_follows
+from tribolab.draft.model import DraftColumn, Understood
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 
+_OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _TOLD = 12  # questions of one file that are told
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
@@ -50,9 +52,25 @@ def questions(draft: Drafted) -> list[Question]:
         and not any(c.used and c.quantity == "time" for c in understood.columns)
     ):
         asked.append(Question("time", "rows are counted as seconds", _RATE))
+    follows = what_follows(layout, understood)
+    asked += _of_roles(understood, follows)
     for column in understood.columns:
         if column.guessed or column.fill_in:
             asked.append(_of_column(column))
+    return asked
+
+
+def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
+    """Ask what drives the motion, and for the friction where a column of unknown name may be it."""
+    asked = []
+    if follows.speed is not None and follows.speed.guess:
+        asked.append(Question("speed", follows.speed.guess, follows.speed.options))
+    names = {column.quantity for column in understood.columns}
+    names |= {formula.quantity for formula in follows.formulas}
+    unknown = [c for c in understood.columns if c.note and not c.quantity and c.label]
+    if understood.kind == "run" and unknown and not names & _OF_FRICTION:
+        options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
+        asked.append(Question("friction", "no column is known to hold it", options))
     return asked
 
 

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribolab.draft.follows import Follows, Formula, what_follows
 from tribolab.draft.layout import Layout
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Understood
-from tribolab.draft.values import DraftValue, find_radius, find_values
+from tribolab.draft.values import DraftValue, find_values
 from tribolab.io.dialects.dates import has_day
 from tribolab.quantities import quantity
 
@@ -36,17 +37,18 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
-    values = find_values(layout)
-    radius = find_radius(values) if _only_turns(understood) else None
-    speed = _speed_table(understood.kind, columns) if radius is None else _by_radius(radius)
-    parts += [_time_table(understood), speed]
+    follows = what_follows(layout, understood)
+    parts += [_time_table(understood), _speed_table(understood.kind, columns, follows)]
     numbers = understood.numbers
     parts += [_column(column, numbers[:, column.place - 1]) for column in used]
+    parts += [_symbol(symbol, column) for symbol, column in follows.symbols]
     wanted = [column for column in columns if column.fill_in]
     parts += [_column(column, numbers[:, column.place - 1]) for column in wanted]
-    rest = [column for column in columns if not column.used and not column.fill_in]
+    taken = {column.place for _, column in follows.symbols}
+    rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(_unused(rest, numbers))
-    parts.append(_values(values, radius))
+    parts.append(_values(find_values(layout), follows.values))
+    parts += [_formula(formula) for formula in follows.formulas]
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
 
@@ -112,6 +114,8 @@ def _time_table(understood: Understood) -> str:
             if not has_day(column.form):
                 lines.append('wrap = "24 h"')
     timed = any(c.used and c.quantity == "time" for c in understood.columns)
+    if understood.period:
+        lines.append('source = "period"    # the column holds what has passed since the row before')
     if not timed and understood.rate_pattern:
         lines += ['source = "rate"', f"rate_pattern = {_pattern(understood.rate_pattern)}"]
         if understood.rate_unit != "Hz":
@@ -133,8 +137,14 @@ def _time_table(understood: Understood) -> str:
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 
-def _speed_table(kind: str, columns: Sequence[DraftColumn]) -> str:
+def _speed_table(kind: str, columns: Sequence[DraftColumn], follows: Follows) -> str:
     names = {column.quantity for column in columns if column.used}
+    if follows.speed is not None:
+        lines = ["[speed]", f'source = "{follows.speed.source}"']
+        lines += [f"{key} = {_text(value)}" for key, value in follows.speed.settings]
+        if follows.speed.guess:
+            lines.insert(1, f"# guessed: {follows.speed.guess}")
+        return "\n".join(lines) + "\n"
     if kind == "run" and "sliding_velocity" in names:
         return ""
     source = "position" if kind == "run" and "position" in names else "none"
@@ -148,17 +158,6 @@ def _speed_table(kind: str, columns: Sequence[DraftColumn]) -> str:
         )
         lines.append('# source = "rotation"\n# radius = "? mm"')
     return "\n".join(lines) + "\n"
-
-
-def _only_turns(understood: Understood) -> bool:
-    """Whether a rotation is all that tells the speed of a run."""
-    names = {column.quantity for column in understood.columns if column.used}
-    tells = {"sliding_velocity", "position", "set_speed"}
-    return understood.kind == "run" and "rotation_speed" in names and not names & tells
-
-
-def _by_radius(radius: DraftValue) -> str:
-    return f'[speed]\nsource = "rotation"\nradius_value = {_text(radius.name)}\n'
 
 
 def _unused(columns: list[DraftColumn], numbers: np.ndarray) -> str:
@@ -217,17 +216,29 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
     return "\n".join([*about, *(f"# {line}" for line in lines)]) + "\n"
 
 
-def _values(values: list[DraftValue], used: DraftValue | None) -> str:
-    """Return the single value that is used, and proposals for others as comments."""
-    kept = "" if used is None else "\n".join([f"# {_comment(used.text)}", *_value(used)]) + "\n"
-    values = [value for value in values if value is not used]
+def _symbol(symbol: str, column: DraftColumn) -> str:
+    """Return a column that is there for formulas."""
+    lines = _column(column._replace(quantity=symbol, used=True, note=""), np.empty(0))
+    return lines.replace(f'quantity = "{symbol}"', f'symbol = "{symbol}"')
+
+
+def _formula(formula: Formula) -> str:
+    lines = ["[[derived]]", f'quantity = "{formula.quantity}"', f'formula = "{formula.formula}"']
+    return "\n".join([f"# {_comment(formula.about)}", *lines]) + "\n"
+
+
+def _values(values: list[DraftValue], used: Sequence[DraftValue]) -> str:
+    """Return the single values that are used, and proposals for others as comments."""
+    kept = ["\n".join([f"# {_comment(v.text)}", *_value(v)]) + "\n" for v in used]
+    patterns = {value.pattern for value in used}
+    values = [value for value in values if value.pattern not in patterns]
     if not values:
-        return kept
+        return "\n".join(kept)
     parts = ["# Single values that the file states. To keep one, remove the '#' before it.\n"]
     for value in values:
         about = f"# {_comment(value.text)}"
         parts.append("\n".join([about, *(f"# {line}" for line in _value(value))]) + "\n")
-    return "\n".join([kept, *parts] if kept else parts)
+    return "\n".join([*kept, *parts])
 
 
 def _value(value: DraftValue) -> list[str]:

@@ -17,6 +17,7 @@ _SAYS = re.compile(
     r"\s*(?P<unit>[^\s\d;,][^\s;,]*)?\s*[;,\t]*\s*(?:\(.*\))?$",
     re.IGNORECASE,
 )
+_WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 # a sample rate by its name; "Frequency" alone may be that of the strokes
@@ -30,7 +31,7 @@ _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
 class DraftValue(NamedTuple):
-    """One value as a dialect's [[value]] would say it."""
+    """One value as a dialect's [[value]] would say it; `own_unit` is as the file writes it."""
 
     name: str
     pattern: str
@@ -38,10 +39,11 @@ class DraftValue(NamedTuple):
     to: str | None
     text: str
     source: str = "preamble"
+    own_unit: str | None = None
 
 
 def find_values(layout: Layout) -> list[DraftValue]:
-    """Find the single values that a file and its name state.
+    """Find the single values that a file and its name state, a dozen at most of the former.
 
     Parameters
     ----------
@@ -67,7 +69,9 @@ def find_values(layout: Layout) -> list[DraftValue]:
     for line in layout.lines[:stop]:
         said = _SAYS.match(line.rstrip())
         # a digit before the colon: a time of day
-        if said and not said["key"][-1].isdigit() and len(values) < _MOST:
+        if len(values) >= _MOST:
+            break
+        if said and not said["key"][-1].isdigit():
             value = _value(said)
             values.setdefault(value.name, value)
     return list(values.values())
@@ -87,6 +91,31 @@ def find_rate(layout: Layout) -> DraftValue | None:
         if rated and value.source == "preamble" and value.unit and converts(value.unit, "Hz"):
             return value
     return None
+
+
+def words_said(layout: Layout) -> list[tuple[str, str]]:
+    """Return what the text before the table says in words: "Drive: crank" as ("Drive", "crank").
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.layout.find_layout`.
+    """
+    stop = layout.heading.names if layout.heading else 0
+    said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
+    return [(match["key"], match["text"]) for match in said if match]
+
+
+def key_of(value: DraftValue) -> str:
+    """Return what a file calls a value, without its unit.
+
+    Parameters
+    ----------
+    value
+        From `find_values`.
+    """
+    said = _SAYS.match(value.text)
+    return _BRACKETS.sub("", said["key"]).strip() if said else ""
 
 
 def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
@@ -111,13 +140,14 @@ def _value(said: re.Match[str]) -> DraftValue:
     line = said.string.strip()
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:
-        return DraftValue(_name(key), pattern, None, None, line)
+        return DraftValue(_name(key), pattern, None, None, line, own_unit=unit)
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
         if quantity.startswith("set_"):
-            return DraftValue(quantity, pattern, options[0].unit or unit, None, line)
-    return DraftValue(_name(key), pattern, unit, dimension, line)
+            read_as = options[0].unit or unit
+            return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit)
+    return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit)
 
 
 def _name(key: str) -> str:

@@ -26,7 +26,7 @@ def _words(text: str) -> tuple[str, ...]:
 RUN_WORDS = (
     Word(
         "time",
-        _words("t time zeit ts xvalue"),
+        _words("t time zeit ts xvalue dt deltat δt interval intervall"),
         _words(
             "steptime testtime elapsedtime timestamp time zeit elapsed dauer uhr seconds sekunden "
             "temps duree tiempo tempo durata 时间 時間 经过时间 経過時間 時刻"
@@ -50,9 +50,10 @@ RUN_WORDS = (
         "normal_force",
         _words("fn fz fnorm fnormal w l nf"),
         _words(
-            "normalforce normalload verticalforce balload ballload appliedload contactforce "
-            "normalkraft anpresskraft auflast normallast load last belastung forcez zforce "
-            "forcenormale effortnormal charge fuerzanormal carga forzanormale carico "
+            "normalforce normalload axialforce axialload verticalforce balload ballload "
+            "appliedload contactforce normalkraft axialkraft anpresskraft auflast normallast "
+            "load last belastung forcez zforce forcenormale effortnormal charge "
+            "fuerzanormal carga forzanormale carico "
             "法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
         ),
         _words("loadcell"),
@@ -85,8 +86,9 @@ RUN_WORDS = (
         "position",
         _words("x s pos xpos enc disp"),
         _words(
-            "position displacement displ stroke slidingdistance distance verschiebung auslenkung "
-            "gleitweg strecke weg hub travel encoder "
+            "position displacement displ extension crosshead stroke slidingdistance "
+            "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
+            "travel encoder "
             "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "
             "位移 位置 行程 滑动距离 変位 ストローク 摺動距離"
         ),

@@ -11,9 +11,12 @@ from tribolab.io.content.read import measurable
 from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
 from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.value_rule import Value
+from tribolab.pieces import lowered
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.untyped import Json
 
+_LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none
+_FEWEST = 20  # samples that tell a zero
 _NO_CONTACT = 0.02  # share of the greatest normal stress below which nothing is pressed
 
 
@@ -69,25 +72,52 @@ def add_derived(
             where=where,
             cure=Cure(*["mend [[column]], [[value]] or [[derived]] in the dialect"] * 3),
         )
-    _add_ratio_of_stresses(columns, said)
+    _add_ratio_of_stresses(columns, said, attrs)
     for name in symbols:
         columns.pop(name, None)
     if said:
         attrs["derived"] = said
 
 
-def _add_ratio_of_stresses(columns: dict[str, np.ndarray], said: dict[str, str]) -> None:
-    """Where a run that slides has stresses in place of forces, their ratio is the coefficient."""
+def _add_ratio_of_stresses(
+    columns: dict[str, np.ndarray], said: dict[str, str], attrs: Json
+) -> None:
+    """Where a run that slides has stresses in place of forces, their ratio is the coefficient.
+
+    What the sensors show while nothing is pressed is taken off first, and told.
+    """
     slides = {"sliding_velocity", "position", "rotation_speed", "set_speed"} & set(columns)
     known = {"friction_force", "friction_coefficient"} & set(columns)
     if known or not slides or not {"shear_stress", "normal_stress"} <= set(columns):
         return
+    free = _without_contact(columns["normal_stress"])
+    for name in ("shear_stress", "normal_stress"):
+        if free.any():
+            zero = float(np.nanmean(columns[name][free]))
+            columns[name] = lowered(columns[name], zero)
+            attrs[f"{name}_zero_Pa"] = zero
     normal = columns["normal_stress"]
     pressed = normal > _NO_CONTACT * np.nanmax(np.abs(normal), initial=0.0)
     ratio = np.full(normal.size, np.nan)
     np.divide(columns["shear_stress"], normal, out=ratio, where=pressed)
     columns["friction_coefficient"] = ratio
     said["friction_coefficient"] = "shear_stress / normal_stress"
+
+
+def _without_contact(normal: np.ndarray) -> np.ndarray:
+    """Which samples lie at one level far below the usual stress: nothing is pressed there.
+
+    A sensor without load shows its zero. Readings far from the usual one of such samples are ramps
+    of the load.
+    """
+    usual = np.nanpercentile(np.abs(normal), 75)
+    light = np.abs(normal) < _LIGHT * usual
+    if np.count_nonzero(light) < _FEWEST:
+        return np.zeros(normal.size, dtype=bool)
+    level = np.median(normal[light])
+    scatter = np.median(np.abs(normal[light] - level)) / 0.6745
+    free = light & (np.abs(normal - level) <= 5 * max(scatter, 1e-4 * usual))
+    return free if np.abs(level) < _UNLOADED * usual else np.zeros(normal.size, dtype=bool)
 
 
 def _evaluated(
@@ -105,7 +135,8 @@ def _operands(
     known = {}
     for name, values in columns.items():
         if name in symbols or name in QUANTITIES:
-            known[name] = in_base_units(values, symbols.get(name) or quantity(name).unit)
+            unit = symbols[name] if name in symbols else quantity(name).unit
+            known[name] = in_base_units(values, unit)
     for value in dialect.value:
         number = _number(value, attrs)
         if number is not None:

@@ -35,6 +35,7 @@ from tribolab.io.row_counts import (
     rows_in_words,
     with_companion_rows,
 )
+from tribolab.io.speed import add_speed
 from tribolab.io.zero_reading import take_zeros
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
@@ -268,7 +269,7 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
 
     attrs |= take_zeros(columns, time, rules, blank, where)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
-    _add_speed(columns, attrs, time, where, dialect)
+    add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
     attrs |= row_attributes(len(time), contents, mended, dialect)
@@ -322,29 +323,6 @@ def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]
         numbers = [n for n, content in enumerate(contents, 1) for _ in content.pieces]
         columns["cycle"] = np.repeat(numbers, lengths).astype(np.int32)
     return columns
-
-
-def _add_speed(
-    columns: dict[str, np.ndarray],
-    attrs: Json,
-    time: np.ndarray,
-    where: str,
-    dialect: Dialect,
-) -> None:
-    """Speed from rotation and radius, or the set-point; nothing is invented."""
-    speed = dialect.speed
-    if speed.source == "rotation":
-        radius = to_si(speed.radius, "m", "speed.radius") if speed.radius else None
-        radius = radius if radius is not None else attrs.get(f"{speed.radius_value}_m")
-        if radius is None or "rotation_speed" not in columns:
-            raise ReadError(
-                f"{where}: the speed should follow from rotation_speed and a radius, but "
-                f"{'the radius' if radius is None else 'the column rotation_speed'} is missing "
-                f"(instrument '{dialect.name}', [speed])"
-            )
-        columns["sliding_velocity"] = columns["rotation_speed"] * float(radius)
-    elif speed.source == "set speed" and "set_speed" not in columns and "set_speed_m_s" in attrs:
-        columns["set_speed"] = np.full(len(time), float(attrs["set_speed_m_s"]))
 
 
 def _check_normal_force(

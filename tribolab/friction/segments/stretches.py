@@ -43,10 +43,12 @@ def velocity_source(run: xr.Dataset) -> str:
         return "recorded" if "sliding_velocity" in run else "position"
     if "set_speed" in run or "set_speed_m_s" in run.attrs:
         return "set speed"
+    turns = 'it turns, so the radius of the track would do (radius = "25 mm" under [speed] of its '
+    turns = f"{turns}description); " if "rotation_speed" in run else ""
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
-        " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign file may "
-        'say it: sliding_speed = "1 mm/s" in its [[run]]'
+        f" 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; {turns}a campaign "
+        'file may say it: sliding_speed = "1 mm/s" in its [[run]]'
     )
 
 

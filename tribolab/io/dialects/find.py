@@ -97,6 +97,7 @@ def recognise(path: str | Path) -> Dialect:
     from tribolab.io.dialects.signature import is_results
 
     file = peek(path)
+    named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
     fitting = [dialect for dialect in every_dialect() if mismatch(file, dialect) is None]
     if len(fitting) == 1:
         return fitting[0]
@@ -104,16 +105,16 @@ def recognise(path: str | Path) -> Dialect:
         names = ", ".join(repr(dialect.name) for dialect in fitting)
         raise ReadError(
             f"more than one instrument fits: {names}",
-            where=file.path,
+            where=named.path,
             cure=cures.name_instrument(cures.RUN),
         )
     if is_results(file.head):
         raise ReadError(
             "this looks like the results of a roughness tester",
-            where=file.path,
+            where=named.path,
             cure=cures.TESTER_RESULTS,
         )
-    raise unknown(file, cures.RUN)
+    raise unknown(named, cures.RUN)
 
 
 def unknown(file: File, table: str) -> UnknownFileError:

@@ -15,9 +15,9 @@ from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Text
+from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
-from tribolab.units import to_si
 
 
 class Derived(Strict):
@@ -28,22 +28,6 @@ class Derived(Strict):
         description="+ - * / ( ) of quantities and symbols of columns, names of values, pi, and "
         "numbers with units in quotes: \"torque / (radius + '5 mm')\""
     )
-
-
-class Speed(Strict):
-    """How the sliding speed comes about."""
-
-    source: Literal["column", "position", "rotation", "set speed", "none"] = "column"
-    radius: str | None = Field(None, description="track radius with unit, for source 'rotation'")
-    radius_value: str | None = Field(None, description="the [[value]] that holds the radius")
-
-    @model_validator(mode="after")
-    def _is_consistent(self) -> Self:
-        if (self.source == "rotation") != bool(self.radius or self.radius_value):
-            raise ValueError("source = 'rotation' and radius (or radius_value) belong together")
-        if self.radius:
-            to_si(self.radius, "m", "speed.radius")
-        return self
 
 
 class Dialect(Strict):
@@ -92,10 +76,9 @@ class Dialect(Strict):
                         f"column '{column.key}': in a file without a header it needs "
                         "position and unit"
                     )
-        if self.speed.radius_value and self.speed.radius_value not in {v.name for v in self.value}:
-            raise ValueError(
-                f"speed.radius_value: there is no value '{shown(self.speed.radius_value)}'"
-            )
+        for key, value in self.speed.values_named.items():
+            if value not in {v.name for v in self.value}:
+                raise ValueError(f"speed.{key}: there is no value '{shown(value)}'")
         return self
 
 

@@ -1,0 +1,108 @@
+"""Files of many kinds, written by the rig with known truth: understood, and right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from file_kinds import AT_ONCE, DESCRIBED, DRAFTED, judge, read_in_some_way
+from typer.testing import CliRunner
+
+import tribolab as tl
+from tribolab import cli
+from tribolab.errors import AnalysisError, ReadError
+from tribolab.io.stroke_speed import velocity_of_strokes
+from tribolab.rig.layouts import KINDS, write_kind
+
+WAYS = {
+    "rotary_steps": AT_ONCE,
+    "rotary_torque": AT_ONCE,
+    "two_load_channels": AT_ONCE,
+    "mini_traction": AT_ONCE,
+    "stroke_settings": AT_ONCE,
+    "stresses": AT_ONCE,
+    "compressed": AT_ONCE,
+    "intervals": AT_ONCE,
+    "sled": DRAFTED,
+    "radius_unsaid": DRAFTED,
+    "bridges": DESCRIBED,
+}
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_a_file_of_this_kind_is_read_in_its_way_and_right(name, tmp_path):
+    written = write_kind(name, tmp_path, seed=40)
+    read = read_in_some_way(written, tmp_path)
+    assert read.way == WAYS[name], read.why
+    judged = judge(written, read.run)
+    assert not judged.faults
+    assert (judged.sem < 0.03 * judged.truth).all()
+
+
+def test_a_kind_that_nobody_writes_is_an_error_with_the_nearest():
+    with pytest.raises(AnalysisError, match="did you mean 'stresses'"):
+        write_kind("stress", ".")
+    assert set(WAYS) < set(KINDS)
+
+
+def test_what_shows_without_contact_is_taken_off_stresses_and_told(tmp_path):
+    written = write_kind("stresses", tmp_path, seed=41)
+    run = tl.read(written.path)
+    load = written.record.set_force / 100e-6  # over the rig's area
+    error = 0.003 * load / np.sqrt(640)  # noise of the sensor, samples at rest without load
+    assert run.attrs["normal_stress_zero_Pa"] == pytest.approx(0.01 * load, abs=4 * error)
+    loaded = written.path.read_text().splitlines()
+    always = [loaded[0], *loaded[700:-500]]  # never unloaded
+    written.path.write_text("\n".join(always))
+    assert "normal_stress_zero_Pa" not in tl.read(written.path).attrs
+
+
+@pytest.mark.parametrize(("drive", "top"), [("crank", np.pi), ("constant speed", 2.0)])
+def test_the_speed_of_strokes_has_the_phase_of_the_friction_and_its_frequency(drive, top):
+    time = np.arange(0, 60, 0.002)
+    true = 2.03  # set to 2 Hz, and a little fast
+    moves = (time > 5) & (time < 55)
+    angle = 2 * np.pi * true * time + 0.7
+    friction = np.where(moves, np.sign(np.cos(angle)), 0.0) + 0.4  # an unknown zero
+    friction = friction + 0.05 * np.random.default_rng(0).standard_normal(time.size)
+    strokes = velocity_of_strokes(time, friction, 5e-3, 2.0, drive)
+    assert strokes.frequency == pytest.approx(true, rel=1e-3)
+    want = np.cos(angle) if drive == "crank" else np.sign(np.cos(angle))
+    inside = (time > 6) & (time < 54)
+    off = strokes.velocity[inside] / (top * true * 5e-3) - want[inside]
+    assert np.sqrt(np.mean(off**2)) < (0.02 if drive == "crank" else 0.15)
+    assert not strokes.velocity[(time < 4) | (time > 56)].any()
+
+
+def test_friction_without_sign_tells_no_phase_and_the_mean_speed_is_all():
+    time = np.arange(0, 20, 0.005)
+    rectified = np.abs(np.sign(np.cos(2 * np.pi * time))) + 0.01 * np.cos(40 * time)
+    assert velocity_of_strokes(time, rectified, 5e-3, 1.0, "crank") is None
+    assert velocity_of_strokes(time[:300], np.cos(6 * time[:300]), 5e-3, 1.0, "crank") is None
+
+
+def test_what_drives_the_strokes_is_a_guess_unless_it_is_said(tmp_path):
+    path = write_kind("stroke_settings", tmp_path).path
+    text = path.read_text().replace("Drive: crank\n", "")
+    path.write_text(text)
+    with pytest.raises(ReadError, match="a crank drives it: the speed is a sine  or: constant"):
+        tl.read(path)
+    path.write_text(text.replace("Stroke length: 10 mm", "Stroke length: 10 mm\nMotion: triangle"))
+    speed = np.abs(tl.read(path)["sliding_velocity"].values)
+    assert np.median(speed) == pytest.approx(2 * 10e-3 * 1.0, rel=1e-3)
+
+
+def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = write_kind("radius_unsaid", tmp_path).path
+    typed = "\n" * 5 + "25\n25 mm\n"
+    done = CliRunner().invoke(cli.app, ["dialect", file.name, "--ask"], input=typed)
+    assert done.exit_code == 0 and "what is the radius of the track" in done.stdout
+    assert "3 segments, friction coefficient 0.38" in done.stdout
+    assert 'radius = "25 mm"' in file.with_suffix(".toml").read_text()
+
+
+def test_columns_of_unknown_names_are_asked_for_where_no_friction_is_known(tmp_path):
+    file = tmp_path / "unnamed.csv"
+    file.write_text("Time [s],Weg [mm],Kanal 7 [mV]\n" + "\n".join(f"{n},{n},1" for n in range(30)))
+    with pytest.raises(ReadError, match="no column is known to hold it  or: column 3 'Kanal 7"):
+        tl.read(file)

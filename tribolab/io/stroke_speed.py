@@ -1,0 +1,100 @@
+"""The sliding velocity of a rig of which only the stroke and the frequency are known."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+Drive = Literal["crank", "constant speed"]
+_TELLS = 0.3  # share of the friction's variance that has to be at the frequency
+_AT_REST = 0.3  # share of the usual swing below which a cycle does not slide
+_FEWEST = 3  # cycles
+_DENSEST = 8  # samples that a cycle has at least
+
+
+class Strokes(NamedTuple):
+    """Sliding velocity [m/s] (time), and the frequency that the friction has [Hz]."""
+
+    velocity: np.ndarray
+    frequency: float
+
+
+def velocity_of_strokes(
+    time: np.ndarray, friction: np.ndarray, stroke: float, frequency: float, drive: Drive
+) -> Strokes | None:
+    """Return the sliding velocity of a contact that goes to and fro at a known frequency.
+
+    Parameters
+    ----------
+    time
+        [s] (time), increasing.
+    friction
+        Friction force or coefficient with its sign (time).
+    stroke
+        From end to end [m].
+    frequency
+        Cycles per second as they were set [Hz].
+    drive
+        ``"crank"``: the velocity is a sine, with pi f L at its highest; ``"constant speed"``: it is
+        2 f L both ways.
+
+    Returns
+    -------
+    Strokes or None
+        None where the friction does not tell the phase: it has no sign, less than 30 % of its
+        variance is at the frequency, or there are fewer than 3 cycles of 8 samples.
+
+    Notes
+    -----
+    Friction points against the motion, so that its fundamental has the phase of the velocity. That
+    is taken cycle by cycle (the mean of the friction times exp(-2 pi i f t) over the cycle), so a
+    drive that is a little slower or faster than it was set is followed. A contact that shears
+    before it slides turns over late, and inertia early; both move the phase a little, and the speed
+    of the middle of a stroke in the second order only.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 10, 0.01)
+    >>> friction = np.sign(np.cos(2 * np.pi * 1.01 * time))
+    >>> strokes = velocity_of_strokes(time, friction, 10e-3, 1.0, "crank")
+    >>> round(strokes.frequency, 3), float((1e3 * strokes.velocity.max()).round(1))
+    (1.01, 31.7)
+    """
+    cycle = np.floor((time - time[0]) * frequency).astype(int)
+    cycles = int(cycle[-1])  # whole ones
+    known = np.isfinite(friction) & (cycle < cycles)
+    if cycles < _FEWEST or np.count_nonzero(known) < _DENSEST * cycles:
+        return None
+    counts = np.bincount(cycle[known], minlength=cycles)
+    means = np.bincount(cycle[known], friction[known], minlength=cycles) / np.maximum(counts, 1)
+    rest = friction[known] - means[cycle[known]]
+    turned = rest * np.exp(-2j * np.pi * frequency * time[known])
+    parts = [
+        np.bincount(cycle[known], part, minlength=cycles) for part in (turned.real, turned.imag)
+    ]
+    wave = (parts[0] + 1j * parts[1]) / np.maximum(counts, 1)
+    swing = np.abs(wave)
+    slides = (swing > _AT_REST * np.percentile(swing, 75)) & (counts > 0)
+    power = np.bincount(cycle[known], rest**2, minlength=cycles)[slides].sum()
+    told = 2 * np.sum(counts[slides] * swing[slides] ** 2)
+    if np.count_nonzero(slides) < _FEWEST or not told > _TELLS * power:
+        return None
+    middle = time[0] + (np.flatnonzero(slides) + 0.5) / frequency
+    phase = np.unwrap(np.angle(wave[slides]))
+    drift = np.polyfit(middle, phase, 1)[0] / (2 * np.pi)
+    beyond = phase[[0, -1]] + 2 * np.pi * drift * (time[[0, -1]] - middle[[0, -1]])
+    phase = np.interp(
+        time,
+        np.concatenate([[time[0] - 1e-9], middle, [time[-1] + 1e-9]]),
+        np.concatenate([beyond[:1], phase, beyond[1:]]),
+    )
+    angle = 2 * np.pi * frequency * time + phase
+    own = frequency + drift
+    pace = (
+        np.pi * own * stroke * np.cos(angle)
+        if drive == "crank"
+        else 2 * own * stroke * np.sign(np.cos(angle))
+    )
+    moving = np.append(slides, slides[-1])[np.minimum(cycle, cycles)]
+    return Strokes(np.where(moving, pace, 0.0), float(own))
