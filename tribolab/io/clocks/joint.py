@@ -265,7 +265,7 @@ class _Fit:
         own = normal.diagonal()
         ridged = normal.copy()
         np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * np.trace(normal)))
-        amplitudes = np.linalg.solve(ridged, told)
+        amplitudes = np.linalg.solve(ridged, told).astype(float, copy=False)
         left = self.whole - float(amplitudes @ (2.0 * told - normal @ amplitudes))
         inertia = np.sqrt(max(normal[-1, -1], 0.0)) * abs(amplitudes[-1])
         if left < _CANCELLED * self.whole:
@@ -276,7 +276,8 @@ class _Fit:
     def residual(self, shift: float, amplitudes: Array) -> Array:
         """Return what the motion leaves of the force."""
         explained = self.columns(shift) @ amplitudes
-        return self.force - explained + self.basis @ (self.basis.T @ explained)
+        left: Array = self.force - explained + self.basis @ (self.basis.T @ explained)
+        return left
 
     def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
         tried = [self.squares(shift) for shift in shifts]
