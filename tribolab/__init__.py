@@ -31,6 +31,7 @@ _PUBLIC = {
     "decide": "tribolab.friction.decisions.decide",
     "friction_coefficient": "tribolab.friction.coefficient.coefficient",
     "half_loops": "tribolab.friction.coefficient.half_loops",
+    "uncertainty_budget": "tribolab.metrology.budget",
     "friction_per_cycle": "tribolab.friction.coefficient.cycles",
     "static_friction": "tribolab.friction.coefficient.static",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
@@ -98,6 +99,7 @@ __all__ = [
     "friction_per_cycle",
     "static_friction",
     "half_loops",
+    "uncertainty_budget",
     "stick_slip",
     "stick_slip_curve",
     "measured_stribeck_curve",
@@ -184,6 +186,7 @@ if TYPE_CHECKING:
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.relative_factors import relative_flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
+    from tribolab.metrology.budget import uncertainty_budget
     from tribolab.mode.model import Mode
     from tribolab.mode.verdict import sliding_mode
     from tribolab.qc.run_checks import RUN_CHECKS, check

@@ -76,6 +76,9 @@ _ROWS = [
     ("steady", "", "1", "whether friction is steady: 1; 0 it is not, 2 undecided"),
     ("friction_force_offset", "F_0", "N", "offset of the friction force that was removed"),
     ("normal_force_offset", "F_N0", "N", "offset of the normal force that was removed"),
+    ("tilt_found", "\\alpha", "rad", "tilt of the force cell, found from both directions"),
+    ("uncertainty_part", "", "1", "part of the uncertainty of the friction coefficient, signed"),
+    ("uncertainty_part_dof", "\\nu", "1", "degrees of freedom of a part of the uncertainty"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
     # static friction
     ("start_of_sliding", "", "1", "number of the segment that starts"),
@@ -324,11 +327,14 @@ _DERIVED = {
     "_high": "upper bound of the {}",
     "_between": "standard deviation between runs of the {}",
     "_within": "standard deviation within runs of the {}",
+    "_u": "standard uncertainty of the {}",
+    "_U95": "expanded uncertainty (95 %) of the {}",
 }
+_DOF = "_dof"  # counts, whatever the unit of the base
 
 
 def quantity(name: str) -> Quantity:
-    """Look a variable up; ``..._std``, ``..._sem``, ``..._low``, ``..._high`` follow their base.
+    """Look a variable up; ``..._std``, ``..._sem``, ``..._low``, ``..._u`` ... follow their base.
 
     Raises
     ------
@@ -348,6 +354,8 @@ def quantity(name: str) -> Quantity:
         base = QUANTITIES.get(name.removesuffix(ending))
         if name.endswith(ending) and base:
             return Quantity(name, base.symbol, base.unit, text.format(base.long_name), base.bare)
+    if name.endswith(_DOF) and (base := QUANTITIES.get(name.removesuffix(_DOF))):
+        return Quantity(name, "\\nu", "1", f"degrees of freedom of the {base.long_name}")
     raise TribolabError(f"no quantity is called '{shown(name)}'{nearest(name, QUANTITIES)}")
 
 

@@ -12,11 +12,19 @@ from scipy import special
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
+from tribolab.friction.statistics import student_widening
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
 
 FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
+
+
+class _Known(NamedTuple):
+    """Standard uncertainty without Student's factor, and its degrees of freedom."""
+
+    u: float
+    dof: float
 
 
 class _Value(NamedTuple):
@@ -26,6 +34,7 @@ class _Value(NamedTuple):
     speed: float
     mu: float
     sem: float
+    known: _Known
     variance: float
     segments: int
 
@@ -60,10 +69,12 @@ def measured_stribeck_curve(
     xarray.Dataset
         On dim ``sliding_speed`` [m/s] (mean speed of each group): ``friction_coefficient``;
         ``_std``, the pooled standard deviation within the segments (the paper's error bar);
-        ``_sem``; ``_within``, the standard deviation of the observations of one run about the run's
-        mean (NaN if no run has two); ``_between``, the standard deviation of the runs' means (NaN
-        for one run); ``runs`` and ``segments``. Attributes: the provenance, with the files of all
-        runs as its source. With `labels` all that is over these dims, too (`joined_curves`).
+        ``_sem``; ``_u``, the standard uncertainty without Student's factor, and ``_dof``, its
+        degrees of freedom; ``_within``, the standard deviation of the observations of one run about
+        the run's mean (NaN if no run has two); ``_between``, the standard deviation of the runs'
+        means (NaN for one run); ``runs`` and ``segments``. Attributes: the provenance, with the
+        files of all runs as its source. With `labels` all that is over these dims, too
+        (`joined_curves`).
 
     Raises
     ------
@@ -79,8 +90,10 @@ def measured_stribeck_curve(
     that of Hartung and Knapp [2]_, sqrt(sum w_i (y_i - y)^2 / ((k - 1) sum w_i)), the latter
     widened so that three standard errors cover 99 % of Student's distribution with k - 1 degrees
     of freedom, but no fewer than 3: for two or three runs that disagree the error is a lower
-    bound, so look at ``runs``. With one run the spread between runs is unknown, and the error is
-    that run's own.
+    bound, so look at ``runs``. ``_u`` is that of Hartung and Knapp alone, with k - 1 degrees of
+    freedom: t_0.975(k - 1) of it make a 95 % interval, and the standard error, which has such a
+    factor in it already, is for weights. With one run the spread between runs is unknown, and the
+    error is that run's own.
 
     References
     ----------
@@ -130,6 +143,8 @@ def measured_stribeck_curve(
         "friction_coefficient_sem",
         "friction_coefficient_within",
         "friction_coefficient_between",
+        "friction_coefficient_u",
+        "friction_coefficient_dof",
         "runs",
         "segments",
     )
@@ -169,6 +184,7 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
     speed = friction["sliding_speed"].values
     mu, std, sem = (friction[f"friction_coefficient{e}"].values for e in ("", "_std", "_sem"))
     known = np.isfinite(mu) & (speed > 0)
+    samples = friction["effective_samples"].values if "effective_samples" in friction else None
     own = -1 - np.arange(mu.size)
     key = own
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
@@ -182,6 +198,7 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
                 float(speed[part].mean()),
                 float(mu[part].mean()),
                 float(sem[part].mean()),  # strokes of a pair share one error
+                _known(float(sem[part].mean()), None if samples is None else samples[part]),
                 float(np.mean(std[part] ** 2)),
                 int(part.sum()),
             )
@@ -189,10 +206,19 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
     return result
 
 
-def _random_effects(y: np.ndarray, s: np.ndarray) -> tuple[float, float]:
-    """Mean and standard error of observations that scatter more than their own errors say."""
+def _known(sem: float, samples: np.ndarray | None) -> _Known:
+    """Take out of a standard error what widened it for few effective samples."""
+    fewest = np.inf if samples is None else float(np.nanmin(samples, initial=np.inf))
+    widening = student_widening(fewest)
+    return _Known(sem / widening, np.inf if widening == 1 else max(fewest - 1, 1.0))
+
+
+def _random_effects(
+    y: np.ndarray, s: np.ndarray, known_of: Sequence[_Known]
+) -> tuple[float, float, _Known]:
+    """Mean, standard error and bare uncertainty of observations that scatter beyond their own."""
     if y.size == 1:
-        return float(y[0]), float(s[0])
+        return float(y[0]), float(s[0]), known_of[0]
     known = s[np.isfinite(s) & (s > 0)]
     # an error that is unknown or zero is as large as the usual one; weights stay finite
     usual = float(np.median(known)) if known.size else 1e-12 + float(np.std(y))
@@ -204,7 +230,10 @@ def _random_effects(y: np.ndarray, s: np.ndarray) -> tuple[float, float]:
     mean = (w @ y) / w.sum()
     spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
     student = special.stdtrit(max(y.size - 1, FREEDOM), 0.995) / 3
-    return float(mean), float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
+    error = float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
+    if not spread > 0:  # they agree to the last digit: nothing but their own errors is known
+        return float(mean), error, _Known(float(np.sqrt(1 / w.sum())), np.inf)
+    return float(mean), error, _Known(float(np.sqrt(spread)), y.size - 1.0)
 
 
 def _combined(values: list[_Value]) -> tuple[float, ...]:
@@ -214,11 +243,12 @@ def _combined(values: list[_Value]) -> tuple[float, ...]:
     means, squares, freedom = [], 0.0, 0
     for number in np.unique(run):
         part = run == number
-        means.append(_random_effects(mu[part], sem[part]))
+        own = [v.known for v in values if v.run == number]
+        means.append(_random_effects(mu[part], sem[part], own))
         squares += float(np.sum((mu[part] - mu[part].mean()) ** 2))
         freedom += int(part.sum()) - 1
-    y, s = np.array(means).T
-    mean, error = _random_effects(y, s)
+    y, s = np.array([mean[:2] for mean in means]).T
+    mean, error, known = _random_effects(y, s, [mean[2] for mean in means])
     weight = np.array([v.segments for v in values], dtype=float)
     variance = weight @ np.array([v.variance for v in values]) / weight.sum()
     return (
@@ -228,6 +258,7 @@ def _combined(values: list[_Value]) -> tuple[float, ...]:
         error,
         float(np.sqrt(squares / freedom)) if freedom else np.nan,
         float(np.std(y, ddof=1)) if y.size > 1 else np.nan,
+        *known,
         float(np.unique(run).size),
         float(weight.sum()),
     )

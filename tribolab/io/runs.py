@@ -376,6 +376,8 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
     for column in dialect.column:
         if column.key in labels:
             attrs.update(column.attributes)
+    if stated := dialect.uncertainty.plain():
+        attrs["uncertainty"] = stated
     for content in contents:
         attrs.update(content.notes)
     return attrs

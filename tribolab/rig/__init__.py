@@ -1,5 +1,6 @@
 """The virtual rig: signals and files with known truth, for the demo, the tests and teaching."""
 
+from tribolab.rig.calibration import Calibration
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.faults import FAULTS, Fault, inject
 from tribolab.rig.files import write_run, write_scans
@@ -14,6 +15,7 @@ from tribolab.rig.truth import Truth, read_truth
 
 __all__ = [
     "FAULTS",
+    "Calibration",
     "Clocks",
     "DryLaw",
     "Encoder",

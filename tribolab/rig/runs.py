@@ -8,11 +8,13 @@ from dataclasses import asdict, is_dataclass
 import numpy as np
 import xarray as xr
 
+from tribolab.rig.calibration import Calibration
 from tribolab.rig.faults import inject
 from tribolab.rig.laws import StickSlip, friction_law, stick_slip
 from tribolab.rig.parameters import Rig
 from tribolab.rig.schedule import make_schedule
 from tribolab.rig.sensors import (
+    TRUE,
     Errors,
     draw_errors,
     motion_clock,
@@ -48,6 +50,7 @@ def simulate_run(
     law: Callable[[np.ndarray], np.ndarray] | None = None,
     slip: StickSlip | None = None,
     faults: str | Sequence[str] = (),
+    calibration: Calibration = TRUE,
 ) -> SimulatedRun:
     """Simulate one run on the linear slider.
 
@@ -70,6 +73,8 @@ def simulate_run(
     faults
         Names of faults (`tribolab.rig.faults.FAULTS`) that strike the logs; the run beneath is the
         same as without.
+    calibration
+        What is wrong with the force cell beside the zeros, which the rig draws; default nothing.
 
     Returns
     -------
@@ -105,7 +110,9 @@ def simulate_run(
     signals = make_signals(schedule, rig.protocol, rig.scatter, law, slip, force, factor, rng)
 
     time, interval = sample_times(schedule, rig.loggers.force_rate, rig.loggers, rng)
-    friction, normal = read_forces(signals, time, interval, rig.force_cell, errors, rng)
+    friction, normal = read_forces(
+        signals, time, interval, rig.force_cell, errors, rng, calibration
+    )
     # somebody starts and stops the other logger by hand
     begin, end = rng.uniform(2.2, 4.0), schedule.end - rng.uniform(0.5, 2.5)
     moved, _ = sample_times(schedule, rig.loggers.motion_rate, rig.loggers, rng, begin, end)
@@ -121,6 +128,7 @@ def simulate_run(
         "repeat_factor": factor,
         "law": _named(law),
         "stick_slip": _named(slip),
+        **({} if calibration == TRUE else {"calibration": asdict(calibration)}),
         **_clock_facts(errors, float(moved[0]), float(moved[-1])),
     }
     run = SimulatedRun(

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tribolab.rig.calibration import Calibration
 from tribolab.rig.noise import slow_noise, smooth_drift
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.signals import Signals
 
+TRUE = Calibration()  # a cell that reads what is
 _MAINS = 50.0  # Hz
 _TIME_STEP = 1e-5  # s, the resolution of the time stamps
 
@@ -84,6 +86,7 @@ def read_forces(
     cell: ForceCell,
     errors: Errors,
     rng: np.random.Generator,
+    calibration: Calibration = TRUE,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Friction force and normal force [N] as the force cell gives them at the times [s].
 
@@ -91,7 +94,7 @@ def read_forces(
     """
     end = signals.schedule.end
     normal = signals.force_normal(time)
-    friction = signals.friction(time) * normal
+    friction, normal = calibration.seen(signals.friction(time) * normal, normal)
     hum = cell.hum * np.sinc(_MAINS * interval) * np.sin(2 * np.pi * _MAINS * time)
     readings = []
     for true, offset, drift, hummed in (

@@ -19,6 +19,7 @@ from tribolab.campaign.settings.fields import (
     ZeroPlace,
 )
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.io.uncertainty import Uncertainty
 from tribolab.untyped import Arguments, Json
 
 if TYPE_CHECKING:
@@ -310,6 +311,7 @@ class Campaign(Table):
     surface: tuple[Surface, ...] = ()
     run: tuple[RunEntry, ...] = ()
     qc: Qc = Qc()
+    uncertainty: Uncertainty = Uncertainty()
 
     _file: Path = PrivateAttr(default=Path("campaign.toml"))
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from tribolab.campaign.settings.config import campaign_schema
 from tribolab.friction.segments.find import find_segments
+from tribolab.io.uncertainty import NAMES
 from tribolab.quantities import QUANTITIES, Quantity
 from tribolab.turns import reciprocal
 
@@ -40,7 +41,9 @@ _TABLE_NAMES = {
     "medium": "[medium.NAME]",
     "surface": "[[surface]]",
     "run": "[[run]]",
+    "uncertainty": "[uncertainty.NAME]",
 }
+_NAMES = "`NAME` is one of these; an instrument's file may have the same tables:\n"
 _LAST_SIGNAL = "cycle"
 _SCAN_COLUMNS = ("x", "y", "height")
 _USED_VALUES = {
@@ -85,7 +88,12 @@ def campaign_page() -> str:
         wanted = "At least one is wanted." if name == "run" else "Required."
         needed = f" {wanted}" if name in required else ""
         known = inspect.signature(find_segments).parameters if name == "segments" else {}
-        parts += [f"## {title}\n", f"{table['description']}{needed}\n", *_keys(table, known)]
+        parts += [f"## {title}\n", f"{table['description']}{needed}\n"]
+        if name == "uncertainty":
+            stated = schema["$defs"]["StatedUncertainty"]
+            parts += [*_keys(stated, {}), _NAMES, *_names(table)]
+        else:
+            parts += _keys(table, known)
     names = list(QUANTITIES)
     signals = (*names[: names.index(_LAST_SIGNAL) + 1], "friction_coefficient")
     parts += [_COLUMNS, *_quantities(signals), _SCANS, *_quantities(_SCAN_COLUMNS), _VALUES]
@@ -112,8 +120,22 @@ def _keys(table: Mapping[str, Any], parameters: Mapping[str, inspect.Parameter])
         if default is None and name in parameters:
             default = parameters[name].default
         said = "required" if name in table.get("required", ()) else _default(default)
-        rows.append((f"`{name}`", field["description"], what, example, said))
+        rows.append((f"`{name}`", _flat(field["description"]), what, example, said))
     return _table(("key", "meaning", "unit or type", "example", "default"), rows)
+
+
+def _names(table: Mapping[str, Any]) -> list[str]:
+    """Rows of the names that a table of tables may have."""
+    rows = [
+        (f"`{name}`", _flat(field["description"]), *map(str, NAMES[name]))
+        for name, field in table["properties"].items()
+    ]
+    return _table(("NAME", "meaning", "SI unit", "varies with"), rows)
+
+
+def _flat(text: str) -> str:
+    """Return a text in one line: a row of a table has no more."""
+    return " ".join(text.split())
 
 
 def _kind(field: Mapping[str, Any]) -> tuple[str, str]:

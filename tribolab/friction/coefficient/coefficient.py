@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student_remark
@@ -17,6 +18,7 @@ from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
+from tribolab.untyped import Json
 
 OFFSETS = ("auto", "half loop", "zero load", "none")
 NO_CONTACT = 0.02  # share of the run's load below which there is no contact
@@ -73,9 +75,11 @@ def friction_coefficient(
         ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
         ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``, ``normal_force`` [N] (+
         ``_std``, ``_sem``), ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``,
-        ``half_loop`` [N], ``zero_from`` (text: what the zero rests on) and ``remark`` (text: why a
-        value is missing or special). Attributes ``offset`` and ``zero_doubts``: what is not sure
-        of the zero.
+        ``half_loop`` [N], ``tilt_found`` [rad] (from both directions; where no rest without load
+        shows the zero, with what the zero would be of it), ``zero_from`` (text: what the zero
+        rests on) and ``remark`` (text: why a value is missing or special). Attributes ``offset``,
+        ``middle_of_loop`` (what the middle of the loops was taken for) and ``zero_doubts``: what
+        is not sure of the zero.
 
     Raises
     ------
@@ -88,17 +92,22 @@ def friction_coefficient(
     With F_f = mu N_f + Z(t_f) and F_b = -mu N_b + Z(t_b) the mean forces of a pair and N_f, N_b
     its mean normal forces, (F_f N_b + F_b N_f)/(N_f + N_b) is the zero Z between the strokes (the
     half sum where the load is the same or unknown), and its drift to both strokes is that
-    from loop to loop (`tribolab.friction.zero.middles`). Both strokes then have the same
-    coefficient, and they are one observation, not two. Each keeps the standard deviation and the
-    trend of its own stroke. Their error holds the errors of all strokes that it rests on, how the
-    zero moves from loop to loop beyond those and a common drift, and, for strokes of unequal
-    speed, what friction may change between the speeds (`tribolab.friction.zero.unequal`).
+    from loop to loop (`tribolab.friction.zero.middles`). A cell that is tilted moves the middle as
+    a zero does, but in proportion to the load: rests without load, or what is stated of both in the
+    run's attribute ``uncertainty``, tell the two apart, and mu = tan((atan f + atan b)/2) of the
+    ratios f and b of both directions is without either [2]_ (`reversal_of`). Both strokes then
+    have the same coefficient, and they are one observation, not two. Each keeps the standard
+    deviation and the trend of its own stroke. Their error holds the errors of all strokes that it
+    rests on, how the zero moves from loop to loop beyond those and a common drift, and, for strokes
+    of unequal speed, what friction may change between the speeds
+    (`tribolab.friction.zero.unequal`).
     With another zero the error is sqrt(sem^2 + (sem(Z)/F_N)^2). The zero of the normal force adds
     mu sem(F_N0)/F_N. A signal without sign has the direction of sliding put back as its sign.
 
     References
     ----------
     .. [1] Xu et al. (2026), Appendix C.
+    .. [2] Burris and Sawyer (2009), Tribol. Lett. 35, 17-23. doi:10.1007/s11249-009-9438-2
 
     Examples
     --------
@@ -222,19 +231,21 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         told = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
-        return _table(data, told, zero)
+        return _table(data, told, zero, run, "")
 
+    both = reversal_of(zero, pair, held, middle, rests, run.attrs.get("uncertainty", {}))
     ratios, remarks = [], []
     for i, s in enumerate(one_by_one(parts)):
         own = time[s] - middle[i]
         own *= zero.slope[i]
-        own += zero.value[i]
+        own += zero.value[i] - both.tilted[i]
         own *= signs.sign[i]
         np.subtract(turn[i] * force[s], own, out=own)
         ratio, remark = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
         ratios.append(ratio)
         remarks.append(remark)
-    mu, scatter = _column(ratios, "mean"), _column(ratios, "sem")
+    mu, tilt = both.without_tilt(_column(ratios, "mean"), signs.sign, held)
+    scatter = _column(ratios, "sem")
     # the load's fluctuations move friction and load together and leave the ratio alone: its own
     # scatter, not the force's, says how well friction is known
     known = np.isfinite(scatter)
@@ -250,11 +261,12 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         "normal_force_std": _column(loads, "std"),
         "normal_force_sem": np.hypot(_column(loads, "sem"), n0_error),
         "normal_force_offset": n0,
+        "tilt_found": tilt,
         **_memory(ratios),
         "trend": _column(ratios, "trend"),
         "trend_change": _column(ratios, "trend_change"),
     }
-    return _table(data, np.array(remarks, dtype=object), zero)
+    return _table(data, np.array(remarks, dtype=object), zero, run, both.middle)
 
 
 def _ratio(
@@ -297,8 +309,12 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
     )
     turn = signs.sign * signs.unfold
+    both = reversal_of(zero, pair, alike, middle, None, run.attrs.get("uncertainty", {}))
+    read = turn * means - signs.sign * (zero.value - both.tilted)
+    mu, tilt = both.without_tilt(read, signs.sign, alike)
     data = {
-        "friction_coefficient": turn * means - signs.sign * zero.value,
+        "friction_coefficient": mu,
+        "tilt_found": tilt,
         "friction_coefficient_std": _column(estimates, "std"),
         "friction_coefficient_sem": zero.error(own),
         "friction_coefficient_offset": zero.value,
@@ -309,7 +325,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     }
     few = np.array([student_remark(e.effective_samples) for e in estimates], dtype=object)
     remarks = np.where(_column(estimates, "samples") == 0, "no samples that are numbers", few)
-    return _table(data, remarks.astype(object), zero)
+    return _table(data, remarks.astype(object), zero, run, both.middle)
 
 
 def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
@@ -317,7 +333,16 @@ def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
     return {name: _column(estimates, name) for name in names}
 
 
-def _table(data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference) -> xr.Dataset:
+def _table(
+    data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference, run: xr.Dataset, middle: str
+) -> xr.Dataset:
     columns = data | {"zero_from": zero.zero_from, "remark": remarks}
     table = xr.Dataset({name: ("segment", values) for name, values in columns.items()})
-    return table.assign_attrs(offset=zero.method, zero_doubts=list(zero.doubts))
+    attrs: Json = {"offset": zero.method, "zero_doubts": list(zero.doubts)}
+    if middle:
+        attrs["middle_of_loop"] = middle
+    if np.isfinite(zero.stated):
+        attrs["zero_stated"] = zero.stated
+    if "uncertainty" in run.attrs:
+        attrs["uncertainty"] = run.attrs["uncertainty"]
+    return table.assign_attrs(attrs)

@@ -108,6 +108,8 @@ class Reference:
         One word for all: "half loop", "zero load", "stated", "other runs", "none: ...".
     doubts
         What is not sure.
+    stated
+        Standard uncertainty of a zero that was stated, in every error [u]; NaN for none.
     """
 
     value: np.ndarray
@@ -117,6 +119,7 @@ class Reference:
     half_loop: np.ndarray
     method: str
     doubts: tuple[Doubt, ...] = field(default=())
+    stated: float = float("nan")
 
 
 def doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> Doubt:

@@ -245,7 +245,7 @@ def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
         if known.read_from:
             words += f", read from {known.read_from}"
         error = float(np.hypot(known.stated, np.nan_to_num(known.read)))
-        return _constant(strokes, 0.0, error, words, "stated")
+        return replace(_constant(strokes, 0.0, error, words, "stated"), stated=error)
     if known.read_from:
         words = f"read from {known.read_from}"
         result = _constant(strokes, 0.0, known.read, words, "read zero")

@@ -18,6 +18,7 @@ from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, 
 from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
+from tribolab.io.uncertainty import Uncertainty
 
 
 class Derived(Strict):
@@ -51,6 +52,7 @@ class Dialect(Strict):
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
     derived: tuple[Derived, ...] = ()
+    uncertainty: Uncertainty = Uncertainty()
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:

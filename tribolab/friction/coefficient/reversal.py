@@ -1,0 +1,130 @@
+"""Friction from both directions of sliding, free of the tilt between force cell and contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribolab.friction.zero.parts import Reference
+from tribolab.friction.zero.rests import Zeros
+
+# What the middle of a loop was taken for
+ZERO, RESTS, WEIGHED = "a zero", "told by rests without load", "weighed by what is stated of both"
+
+
+class Reversal(NamedTuple):
+    """What is known of the tilt before the ratios are taken.
+
+    Parameters
+    ----------
+    pair
+        Number of the pair of each segment, -1 for none (segment).
+    tilted
+        Part of the loop's middle that is taken for the normal force seen through the tilt, in the
+        unit of the friction signal (segment).
+    most
+        What of it may be: all that no rest without load shows (segment).
+    middle
+        What the middle was taken for: `ZERO`, `RESTS` or `WEIGHED`; "" without a loop.
+    """
+
+    pair: np.ndarray
+    tilted: np.ndarray
+    most: np.ndarray
+    middle: str
+
+    def without_tilt(
+        self, ratio: np.ndarray, sign: np.ndarray, load: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the friction coefficients, and the tilt found [rad], NaN without a pair.
+
+        Parameters
+        ----------
+        ratio
+            Mean ratio of the forces of each segment, with what is `tilted` in it (segment).
+        sign, load
+            Direction and mean normal force of each segment.
+
+        Notes
+        -----
+        Friction and normal force are what a cell turned by the tilt sees of one force at the
+        angle atan(mu) to the normal, so that forward and backward read tan(atan(mu) + tilt) and
+        tan(atan(mu) - tilt) whatever the loads: mu is the tangent of the mean of the two
+        angles, without a term that is left over. Where the middle of the loop was taken for a zero,
+        the tilt found is the one that it would be.
+
+        Examples
+        --------
+        >>> tilted = np.tan(np.radians([2.0, 2.0]))
+        >>> strokes = Reversal(np.array([0, 0]), tilted, tilted, RESTS)
+        >>> both = np.tan(np.arctan(1.4) + np.radians([2.0, -2.0]))
+        >>> mu, tilt = strokes.without_tilt(both, np.array([1, -1]), np.ones(2))
+        >>> both.round(4), mu.round(6), np.degrees(tilt).round(6)
+        (array([1.5087, 1.3015]), array([1.4, 1.4]), array([2., 2.]))
+        """
+        paired = self.pair >= 0
+        if not paired.any():
+            return ratio, np.full(ratio.size, np.nan)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            all_of_it = ratio + sign * (self.most - self.tilted) / load
+        middle = _of_pairs(np.arctan(ratio), self.pair)
+        tilt = _of_pairs(sign * np.arctan(all_of_it), self.pair)
+        # as before where nothing tilts; and where one of the two strokes has no coefficient
+        turned = paired & (self.tilted != 0) & np.isfinite(middle)
+        return np.where(turned, np.tan(middle), ratio), tilt
+
+
+def _of_pairs(values: np.ndarray, pair: np.ndarray) -> np.ndarray:
+    """Return the mean over the two strokes of each pair, at both; NaN without a pair."""
+    paired = pair >= 0
+    sums = np.zeros(int(pair.max(initial=-1)) + 1)
+    np.add.at(sums, pair[paired], values[paired] / 2)
+    return np.where(paired, sums[pair], np.nan)
+
+
+def reversal_of(
+    zero: Reference,
+    pair: np.ndarray,
+    load: np.ndarray,
+    time: np.ndarray,
+    rests: Zeros | None,
+    stated: Mapping[str, Mapping[str, Any]],
+) -> Reversal:
+    """Tell the tilt in the middles of the loops from the zero in them.
+
+    Parameters
+    ----------
+    zero
+        What the zero rests on; nothing is told apart but with the half loop.
+    pair, load, time
+        Of each segment: number of its pair, mean normal force, middle [s].
+    rests
+        Zeros from rests without load, where a tilt shows nothing.
+    stated
+        What is stated of the calibration, by name: standard uncertainties of ``tilt`` [rad] and
+        ``friction_zero`` [N].
+
+    Notes
+    -----
+    A zero and a tilt move the middle of a loop alike where the load is the same. What a load that
+    changed by a share d between the strokes leaves is tilt d/2 if the middle is taken for a zero,
+    and zero/load d/2 if it is taken for a tilt. Rests without load tell the two apart. Without
+    them the middle is shared between the two as their stated variances are, (load tilt)^2 and
+    zero^2: all of it is a tilt where no zero is stated, and a zero where no tilt is.
+    """
+    members = np.where((pair >= 0) & np.isfinite(zero.half_loop), pair, -1)
+    nothing = np.zeros(pair.size)
+    if zero.method != "half loop" or not (members >= 0).any():
+        return Reversal(np.full(pair.size, -1), nothing, nothing, "")
+    apart = zero.value - (rests.at(time)[0] if rests is not None else 0.0)
+    most = np.nan_to_num(_of_pairs(apart, members))
+    if rests is not None:
+        return Reversal(members, most, most, RESTS)
+    tilt, offset = (float(stated.get(n, {}).get("standard", 0)) for n in ("tilt", "friction_zero"))
+    if not tilt:
+        return Reversal(members, nothing, most, ZERO)
+    tilting = (np.nan_to_num(_of_pairs(load, members)) * tilt) ** 2
+    share = np.divide(tilting, tilting + offset**2, out=np.zeros(pair.size), where=tilting > 0)
+    return Reversal(members, share * most, most, WEIGHED)

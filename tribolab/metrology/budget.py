@@ -1,0 +1,170 @@
+"""The uncertainty of measured friction coefficients, and the parts that it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from pydantic import ValidationError
+from scipy import special
+
+from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.friction.statistics import STUDENT
+from tribolab.friction.stribeck import measured_stribeck_curve
+from tribolab.io.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
+from tribolab.metrology.budget_curve import with_curve_uncertainty
+from tribolab.metrology.budget_parts import NOISE, Scatter, combined
+from tribolab.metrology.budget_result import UncertaintyBudget
+from tribolab.metrology.sensitivity import contributions, readings_of
+
+Stated = Mapping[str, StatedUncertainty | Mapping[str, Any]]
+
+
+def uncertainty_budget(
+    friction: xr.Dataset | Sequence[xr.Dataset],
+    uncertainty: Stated | None = None,
+    *,
+    speed_tolerance: float = 0.1,
+) -> UncertaintyBudget:
+    """Budget of measured friction coefficients: standard uncertainty, its parts, U95.
+
+    Parameters
+    ----------
+    friction
+        From `friction_coefficient`: the budget of each segment. A list of such results, of repeated
+        runs of one system: the budget of each point of their curve.
+    uncertainty
+        What is stated of the calibration, by the names of `tribolab.io.uncertainty.NAMES`, each
+        with the keys of a table [uncertainty.NAME] of the campaign file: ``{"tilt": {"value":
+        "0.5 deg", "as": "half-width"}}``. It goes before what the instrument's file states.
+    speed_tolerance
+        As for `measured_stribeck_curve`.
+
+    Returns
+    -------
+    UncertaintyBudget
+
+    Raises
+    ------
+    AnalysisError
+        If a name is not known, a key is wrong, or there is no friction coefficient.
+
+    Notes
+    -----
+    ``u^2 = sum (c_i u_i)^2`` with the sensitivities of `contributions`, degrees of freedom by
+    Welch and Satterthwaite, ``U95 = t_0.975(nu) u`` (JCGM 100:2008). The noise within the run is
+    the standard error without the Student factor of few effective samples, whose degrees of freedom
+    go into nu instead. Where one rectangular part dominates, U95 is too wide, and `says` says so.
+
+    Examples
+    --------
+    A cell that is tilted by up to a degree, sliding one way:
+
+    >>> one_way = xr.Dataset({
+    ...     "friction_coefficient": ("segment", [0.0075]),
+    ...     "friction_coefficient_sem": ("segment", [0.0002]),
+    ...     "normal_force": ("segment", [50.0]),
+    ...     "direction": ("segment", [1]),
+    ... })
+    >>> tilt = {"tilt": {"value": "1 deg", "as": "standard"}}
+    >>> uncertainty_budget(one_way, tilt).data.friction_coefficient_u.values.round(4)
+    array([0.0175])
+    >>> uncertainty_budget(one_way).says
+    'calibration not stated: statistical only'
+    """
+    if isinstance(friction, xr.Dataset):
+        known = known_uncertainties(friction, uncertainty)
+        return UncertaintyBudget(with_uncertainty(friction, known), known)
+    known = known_uncertainties(friction[0] if friction else xr.Dataset(), uncertainty)
+    curve = measured_stribeck_curve(friction, speed_tolerance)
+    return UncertaintyBudget(with_curve_uncertainty(curve, friction, known), known)
+
+
+def known_uncertainties(friction: xr.Dataset, stated: Stated | None = None) -> dict[str, Known]:
+    """Return the standard uncertainties by name: those of the instrument's file, and those stated.
+
+    Parameters
+    ----------
+    friction
+        Its attribute ``uncertainty`` has those of the run's instrument and campaign.
+    stated
+        As for `uncertainty_budget`.
+
+    Raises
+    ------
+    AnalysisError
+        If a name is not known, or what is stated of it is not right.
+    """
+    own = friction.attrs.get("uncertainty", {})
+    known = {name: Known(**entry) for name, entry in own.items() if name in NAMES}
+    for name in stated or {}:
+        if name not in NAMES:
+            raise AnalysisError(
+                f"uncertainty: '{shown(name)}' is not known{nearest(name, NAMES)}",
+                function="uncertainty_budget",
+            )
+    try:
+        return known | {
+            name: Known(**entry)
+            for name, entry in Uncertainty.model_validate(dict(stated or {})).plain().items()
+        }
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise AnalysisError(
+            f"uncertainty: {where}: {first['msg'].removeprefix('Value error, ')}",
+            cure=Cure(notebook='e.g. uncertainty={"tilt": {"value": "0.5 deg", "as": "standard"}}'),
+        ) from error
+
+
+def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
+    """Return a friction result with the uncertainty of each segment and its parts.
+
+    Parameters
+    ----------
+    friction
+        From `friction_coefficient` (segment).
+    known
+        Standard uncertainties by name, from `known_uncertainties`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `tribolab.metrology.budget_parts.combined`.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no friction coefficient.
+    """
+    if "friction_coefficient" not in friction:
+        raise AnalysisError(
+            "no 'friction_coefficient': a run without normal force has forces only",
+            function="uncertainty_budget",
+        )
+    parts = contributions(readings_of(friction), known)
+    noise = friction["friction_coefficient_sem"].values.astype(float)
+    by_zero = known["friction_zero"].standard if "friction_zero" in known else 0.0
+    if "zero_stated" in friction.attrs and by_zero:
+        # the standard error holds the zero as it was stated; it is a part of its own here
+        zero = float(friction.attrs["zero_stated"])
+        per_load = parts["friction_zero"] / by_zero
+        noise = np.sqrt(np.maximum(noise**2 - (zero * per_load) ** 2, 0.0))
+        parts["friction_zero"] = zero * per_load
+    widening, dof = _freedom(friction)
+    scatter = [Scatter(noise / widening, dof, NOISE)]
+    return combined(friction, "segment", scatter, parts, known)
+
+
+def _freedom(friction: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return what widened each standard error for few effective samples, and what is left free."""
+    size = friction.sizes["segment"]
+    if "effective_samples" not in friction:
+        return np.ones(size), np.full(size, np.inf)
+    samples = friction["effective_samples"].values
+    few = samples < STUDENT
+    free = np.maximum(np.where(few, samples, STUDENT) - 1, 1.0)
+    widening = np.where(few, special.stdtrit(free, 0.975) / special.ndtri(0.975), 1.0)
+    return widening, np.where(few, free, np.inf)

@@ -1,0 +1,150 @@
+"""Parts of an uncertainty put together: root of the sum of squares, Welch-Satterthwaite, U95."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from tribolab.io.uncertainty import Known
+from tribolab.stamping import stamp
+
+NOISE, BETWEEN = "noise within the run", "between runs"
+NOT_STATED = "calibration not stated: statistical only"
+_RECTANGULAR = ("half-width", "step")
+_DOMINATES = 0.7  # share of the variance from which on one rectangular part shapes the whole
+
+
+class Scatter(NamedTuple):
+    """What the data themselves say of the uncertainty, one entry for each value.
+
+    Parameters
+    ----------
+    u, dof
+        Standard uncertainty without Student's factor, and its degrees of freedom.
+    name
+        What it is the scatter of: `NOISE` or `BETWEEN`.
+    """
+
+    u: np.ndarray
+    dof: np.ndarray
+    name: str | np.ndarray
+
+
+def effective_dof(parts: np.ndarray, dof: np.ndarray) -> np.ndarray:
+    """Degrees of freedom of a combined uncertainty, by Welch and Satterthwaite.
+
+    Parameters
+    ----------
+    parts
+        Contributions, in one unit (part, ...).
+    dof
+        Their degrees of freedom (part, ...).
+
+    Notes
+    -----
+    ``u^4 / sum(u_i^4/nu_i)`` with u^2 the sum of the u_i^2 (JCGM 100:2008, Eq. (G.2b)).
+
+    Examples
+    --------
+    >>> effective_dof(np.array([3.0, 4.0]), np.array([4.0, np.inf])).round(1).item()
+    30.9
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        variance = np.sum(parts**2, axis=0)
+        nu = variance**2 / np.sum(parts**4 / dof, axis=0)
+    return np.where(variance > 0, nu, np.inf)[()]
+
+
+def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
+    """Return t_0.975 of so many degrees of freedom.
+
+    Examples
+    --------
+    >>> coverage_factor(np.array([4.0, np.inf])).round(3)
+    array([2.776, 1.96 ])
+    """
+    few = np.minimum(np.asarray(dof, float), 1e9)
+    return np.where(np.isfinite(few), special.stdtrit(np.maximum(few, 1.0), 0.975), np.nan)
+
+
+def combined(
+    data: xr.Dataset,
+    dim: str,
+    scatter: list[Scatter],
+    parts: Mapping[str, np.ndarray],
+    known: Mapping[str, Known],
+) -> xr.Dataset:
+    """Return the values with their uncertainty, degrees of freedom, U95 and parts.
+
+    Parameters
+    ----------
+    data
+        Values over `dim`.
+    dim
+        The dim of the values.
+    scatter
+        What the data say themselves.
+    parts
+        Signed contribution of each input [1] (dim); NaN where it could not be computed.
+    known
+        What is stated of the inputs.
+
+    Returns
+    -------
+    xarray.Dataset
+        `data` with ``friction_coefficient_u``, ``_dof``, ``_U95`` (dim) and ``uncertainty_part``,
+        ``uncertainty_part_dof`` (part, dim). Attributes: ``uncertainty_says``: what the
+        uncertainty does not hold, in words.
+    """
+    size = data.sizes[dim]
+    names = [str(s.name) for s in scatter] + list(parts)
+    values = np.array([s.u for s in scatter] + list(parts.values()), float).reshape(-1, size)
+    freedom = [np.broadcast_to(s.dof, size) for s in scatter]
+    stated = [known[name].dof if name in known else np.inf for name in parts]
+    freedom += [np.full(size, dof) for dof in stated]
+    dof = np.array(freedom, float).reshape(-1, size)
+    missing = [n for n, row in zip(names, values, strict=True) if size and np.isnan(row).all()]
+    counted = np.where([[n in missing] for n in names], 0.0, values)
+    u = np.sqrt(np.sum(counted**2, axis=0))
+    nu = effective_dof(counted, dof)
+    result = data.drop_vars(["uncertainty_part", "uncertainty_part_dof"], errors="ignore")
+    result = result.assign(
+        friction_coefficient_u=(dim, u),
+        friction_coefficient_dof=(dim, np.where(np.isfinite(u), nu, np.nan)),
+        friction_coefficient_U95=(dim, coverage_factor(nu) * u),
+        uncertainty_part=(("part", dim), counted),
+        uncertainty_part_dof=(("part", dim), dof),
+    ).assign_coords(part=np.array(names, dtype=str))
+    return stamp(result, uncertainty_says=_says(known, names, counted, missing))
+
+
+def _says(
+    known: Mapping[str, Known], names: list[str], parts: np.ndarray, missing: list[str]
+) -> str:
+    """Say what an uncertainty does not hold, or holds too widely."""
+    said = [] if any(name in known for name in names) else [NOT_STATED]
+    if missing:
+        left = ", ".join(part_words(name) for name in missing)
+        said.append(f"not counted, because no normal force was recorded: {left}")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = parts**2 / np.sum(parts**2, axis=0)
+    for name, row in zip(names, share, strict=True):
+        stated = known[name].distribution if name in known else ""
+        if stated in _RECTANGULAR and row.size and np.nanmedian(row) > _DOMINATES:
+            said.append(f"too wide, because one rectangular part dominates: {part_words(name)}")
+    return "; ".join(said)
+
+
+def part_words(name: str) -> str:
+    """Return what a part of the uncertainty is called in words.
+
+    Examples
+    --------
+    >>> part_words("cross_talk_friction_from_normal"), part_words("noise within the run")
+    ('cross-talk friction from normal', 'noise within the run')
+    """
+    return name.replace("cross_talk", "cross-talk").replace("_", " ")

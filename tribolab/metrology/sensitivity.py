@@ -1,0 +1,194 @@
+"""How each input of a measured friction coefficient moves it: the sensitivities of its budget."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.coefficient.reversal import RESTS, WEIGHED
+from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
+from tribolab.friction.zero.of_run import PAIRED
+from tribolab.io.uncertainty import Known
+
+TOLD_BY_LOOPS = 3  # pairs from which on the loops themselves show how the zero drifts
+# inputs of the friction coefficient; the other names are inputs of the model beside it
+OF_FRICTION = (
+    "friction_gain",
+    "normal_gain",
+    "friction_linearity",
+    "normal_linearity",
+    "tilt",
+    "yaw",
+    "cross_talk_friction_from_normal",
+    "cross_talk_normal_from_friction",
+    "friction_zero",
+    "normal_zero",
+    "zero_drift",
+    "resolution",
+)
+AMBIGUOUS = "zero_or_tilt"  # what a load that changed leaves where the two are not told apart
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What the sensitivities depend on, one entry for each segment.
+
+    Parameters
+    ----------
+    mu, load
+        Friction coefficient and mean normal force [N]; the load is NaN where none was recorded.
+    direction
+        +1 or -1.
+    both_ways
+        Whether the coefficient is that of a forward and a backward stroke together.
+    inverse_load_change
+        (1/N_forward - 1/N_backward)/2 of its pair [1/N]; 0 without one.
+    middle
+        Middle of the loop beyond what rests without load show [N].
+    zero_told, normal_zero_told
+        Whether the run itself told the zeros, whose errors are then in the noise.
+    drift_told
+        Whether the loops showed how the zero drifts.
+    middle_is
+        What the middle of the loops was taken for; "" without loops.
+    """
+
+    mu: np.ndarray
+    load: np.ndarray
+    direction: np.ndarray
+    both_ways: np.ndarray
+    inverse_load_change: np.ndarray
+    middle: np.ndarray
+    zero_told: np.ndarray
+    normal_zero_told: np.ndarray
+    drift_told: bool
+    middle_is: str
+
+
+def readings_of(friction: xr.Dataset) -> Readings:
+    """Collect from a friction result what the sensitivities depend on.
+
+    Parameters
+    ----------
+    friction
+        From `tribolab.friction_coefficient` (segment).
+    """
+    mu = friction["friction_coefficient"].values.astype(float)
+    nothing = np.zeros(mu.size)
+    load = _values(friction, "normal_force", np.nan)
+    pair = _values(friction, "pair", -1).astype(int)
+    sign = _values(friction, "direction", 1.0)
+    offset = str(friction.attrs.get("offset", ""))
+    both = (pair >= 0) & (offset in PAIRED)
+    change, middle = nothing, nothing
+    if both.any() and "normal_force" in friction:
+        with np.errstate(divide="ignore"):
+            change = _of_pairs(np.where(load > 0, sign / load, np.nan), pair, both)
+        middle = np.where(both, _values(friction, "friction_force_offset", 0.0), 0.0)
+    by_itself = offset not in ("", "stated") and not offset.startswith("none")
+    return Readings(
+        mu,
+        load,
+        np.where(sign == 0, 1.0, sign),
+        both,
+        np.nan_to_num(change),
+        middle,
+        np.full(mu.size, by_itself) & ~both,
+        _values(friction, "normal_force_offset", 0.0) != 0,
+        int(pair.max(initial=-1)) + 1 >= TOLD_BY_LOOPS,
+        str(friction.attrs.get("middle_of_loop", "")),
+    )
+
+
+def _values(friction: xr.Dataset, name: str, default: float) -> np.ndarray:
+    if name in friction:
+        return np.asarray(friction[name].values, float)
+    return np.full(friction.sizes["segment"], default)
+
+
+def _of_pairs(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
+    """Return the mean over the strokes of each pair, at both; 0 without a pair."""
+    sums, count = np.zeros((2, int(pair.max(initial=-1)) + 1))
+    np.add.at(sums, pair[both], values[both])
+    np.add.at(count, pair[both], 1.0)
+    return np.where(both, (sums / np.maximum(count, 1))[pair], 0.0)
+
+
+def contributions(at: Readings, known: Mapping[str, Known]) -> dict[str, np.ndarray]:
+    """Return by how much one standard uncertainty of each input moves mu, with its sign.
+
+    Parameters
+    ----------
+    at
+        From `readings_of`.
+    known
+        Standard uncertainties by the names of `tribolab.io.uncertainty.NAMES`; those that do not
+        move the friction coefficient are left out.
+
+    Returns
+    -------
+    dict
+        Of each input (segment) [1]; NaN where the normal force that it takes was not recorded.
+
+    Notes
+    -----
+    With the true normal force N, the direction s, gains g, tilts alpha and beta, cross-talk c and
+    zeros z the channels read ``S_x = (1+g_x)(s mu N cos alpha + N sin alpha + c_xn N) + z_x`` and
+    ``S_n = (1+g_n)(N cos beta - s mu N sin beta + c_nx s mu N) + z_n``. Linear in one direction:
+    ``mu (g_x - g_n) + s (1 + mu^2) tilt + s c_xn - s mu^2 c_nx + s z_x/N - mu z_n/N``. Of both
+    directions together tilt, cross-talk and the zero of friction cancel but for what a change of
+    load between the strokes leaves. Hysteresis changes its sign with the direction and does not
+    cancel. The yaw acts by mu yaw^2/2, whose root of the mean square counts [1]_ [2]_.
+
+    References
+    ----------
+    .. [1] Schmitz, Action, Ziegert, Sawyer (2005), J. Tribol. 127, 673-678. doi:10.1115/1.1843853
+    .. [2] Burris and Sawyer (2009), Tribol. Lett. 35, 17-23. doi:10.1007/s11249-009-9438-2
+    """
+    mu, one_way = at.mu, ~at.both_ways
+    per_load = 1 / np.where(at.load > 0, at.load, np.nan)
+    u = {name: entry.standard for name, entry in known.items()}
+    zero = np.where(one_way & ~at.zero_told, at.direction * per_load, 0.0)
+    normal_zero = np.where(at.normal_zero_told, 0.0, -mu * per_load)
+    drift = np.where(at.both_ways & (not at.drift_told), per_load / 2, 0.0)
+    sensitivity = {
+        "friction_gain": mu,
+        "normal_gain": -mu,
+        "friction_linearity": per_load,
+        "normal_linearity": -mu * per_load,
+        "tilt": np.where(one_way, at.direction * (1 + mu**2), 0.0),
+        "yaw": -mu * np.sqrt(0.75) * u.get("yaw", 0.0),
+        "cross_talk_friction_from_normal": np.where(one_way, at.direction, 0.0),
+        "cross_talk_normal_from_friction": np.where(one_way, -at.direction * mu**2, 0.0),
+        "friction_zero": zero,
+        "normal_zero": normal_zero,
+        "zero_drift": drift,
+        "resolution": np.where(one_way, 1.0, np.sqrt(0.5)) * per_load,
+    }
+    parts = {name: sensitivity[name] * u[name] for name in OF_FRICTION if name in u}
+    return parts | _left_by_load(at, u, parts)
+
+
+def _left_by_load(
+    at: Readings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return what a change of load between the strokes leaves of the tilt and of the zero.
+
+    Where both are stated and no rest tells them apart, the middle of the loop was shared between
+    them, and what is left of either has the variance a b/(a + b) of both.
+    """
+    if at.middle_is in ("", RESTS):
+        return {}
+    if at.middle_is == WEIGHED:
+        tilting, zero = at.load * u.get("tilt", 0.0), u.get("friction_zero", 0.0)
+        force = tilting * zero / np.sqrt(np.maximum(tilting**2 + zero**2, 1e-300))
+        left = np.where(at.both_ways, np.nan_to_num(force) * at.inverse_load_change, 0.0)
+        return {"tilt": parts.get("tilt", 0.0) + left}
+    if at.middle_is != TAKEN_FOR_ZERO or "friction_zero" in u:
+        return {}
+    # somewhere between all of it and nothing
+    left = np.abs(at.middle * at.inverse_load_change) / np.sqrt(3)
+    return {AMBIGUOUS: left} if left.any() else {}
