@@ -9,7 +9,13 @@ import xarray as xr
 import tribolab as tl
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.uncertainty import Known, StatedUncertainty, Uncertainty
-from tribolab.metrology.budget_parts import coverage_factor, effective_dof
+from tribolab.metrology.budget_parts import (
+    BETWEEN,
+    Scatter,
+    combined,
+    coverage_factor,
+    effective_dof,
+)
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.rig import Calibration
 from tribolab.stamping import stamp
@@ -175,6 +181,21 @@ def test_u95_of_four_degrees_of_freedom_covers_what_students_t_says():
     miss = np.abs(drawn.mean(axis=1) + calibration)
     assert np.mean(miss <= coverage_factor(nu) * u) == pytest.approx(0.95, abs=0.006)
     assert np.mean(miss <= 2 * u) < np.mean(miss <= coverage_factor(nu) * u)
+
+
+@pytest.mark.parametrize("runs", [2, 3])
+@pytest.mark.parametrize("ratio", [0.0, 0.25, 1.0, 3.0])
+def test_u95_of_few_runs_beside_a_calibration_holds_93_to_97_per_cent(runs, ratio):
+    rng = np.random.default_rng([runs, int(100 * ratio)])
+    drawn = rng.normal(0, 1, (20_000, runs))
+    wide = ratio / np.sqrt(runs)
+    scatter = Scatter(drawn.std(axis=1, ddof=1) / np.sqrt(runs), np.array(runs - 1.0), BETWEEN)
+    known = {"friction_gain": Known(wide, np.inf, "calibration", "standard", "")}
+    data = xr.Dataset({"friction_coefficient": ("segment", drawn.mean(axis=1))})
+    parts = {"friction_gain": np.full(20_000, wide)}
+    result = combined(data, "segment", [scatter], parts, known)
+    miss = np.abs(drawn.mean(axis=1) + wide * rng.normal(0, 1, 20_000))
+    assert 0.93 < np.mean(miss <= result.friction_coefficient_U95.values) < 0.97
 
 
 def test_a_student_factor_is_taken_once():

@@ -47,12 +47,12 @@ RIG = Rig(Protocol(SPEEDS, stroke=0.15e-3), force_cell=CELL)
 LAW = friction_law("Sb-S", "glycerol", LOAD)
 NO_SLIP = StickSlip()
 SHARED = {
-    "friction_gain": 0.004,
-    "normal_gain": 0.003,
+    "friction_gain": 0.006,
+    "normal_gain": 0.005,
     "cross_talk_friction_from_normal": 0.003,
     "cross_talk_normal_from_friction": 0.003,
-    "friction_linearity": 0.03,
-    "normal_linearity": 0.03,
+    "friction_linearity": 0.06,
+    "normal_linearity": 0.06,
 }
 TILT = np.radians(0.4)
 UNITS = {"tilt": "rad", "friction_zero": "N", "normal_zero": "N", "resolution": "N"}
