@@ -37,6 +37,14 @@ def drawings():
     spread = tl.model_uncertainty(
         xu2026.contact, None, speed=[1e-3, 1e-1], shear_stress=0.0, **given
     )
+    several = tl.stribeck_curve(
+        xu2026.contact, psd, 1.4, [310.0, 910.0], 8e5, np.geomspace(1e-7, 1e-1, 19), cells=60
+    )
+    points = several[["friction_coefficient"]].isel(sliding_speed=slice(3, -3))
+    points["friction_coefficient_sem"] = 0.02 * points.friction_coefficient
+    jointly = tl.fit_shear_stress_jointly(
+        points, xu2026.contact, psd, 1.4, points["load"], curves=several
+    )
     film = tl.film_profile(xu2026.contact, psd, speed=1e-3, **given)
     factors = tl.flow_factors(psd)
     factors = factors.dataset(factors.rms_roughness * np.geomspace(0.3, 3, 5))
@@ -141,6 +149,7 @@ def drawings():
             "sawtooth stick-slip",
         ),
         "mixed_curve": (lambda **k: plot.mixed_curve(fit, model, **k), 2, "viscous part"),
+        "joint_fit": (lambda **k: plot.joint_fit(jointly, **k), 2, "310 N/m"),
         "lubrication_factors": (
             lambda **k: plot.lubrication_factors({"Sb-S": factors}, **k), 2, "Sb-S",
         ),

@@ -70,6 +70,10 @@ _PUBLIC = {
     "flow_factors": "tribolab.lubrication.factors",
     "fit_shear_stress": "tribolab.fit.shear_stress",
     "fit_shear_stresses": "tribolab.fit.several",
+    "fit_shear_stress_jointly": "tribolab.fit.joint.fit",
+    "JointPriors": "tribolab.fit.joint.priors",
+    "DryFriction": "tribolab.fit.joint.inputs",
+    "compare_shear_stress_models": "tribolab.fit.joint.comparison",
     "sliding_mode": "tribolab.mode.verdict",
     "Mode": "tribolab.mode.model",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
@@ -136,6 +140,10 @@ __all__ = [
     "flow_factors",
     "fit_shear_stress",
     "fit_shear_stresses",
+    "fit_shear_stress_jointly",
+    "JointPriors",
+    "DryFriction",
+    "compare_shear_stress_models",
     "sliding_mode",
     "Mode",
     "model_uncertainty",
@@ -168,6 +176,10 @@ if TYPE_CHECKING:
     from tribolab.draft.draft import draft_dialect
     from tribolab.draft.read import read
     from tribolab.errors import TribolabError
+    from tribolab.fit.joint.comparison import compare_shear_stress_models
+    from tribolab.fit.joint.fit import fit_shear_stress_jointly
+    from tribolab.fit.joint.inputs import DryFriction
+    from tribolab.fit.joint.priors import JointPriors
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress

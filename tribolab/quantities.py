@@ -285,6 +285,11 @@ _ROWS = [
     ("largest_relative_change", "", "1", "largest relative change of friction at one speed"),
     ("largest_relative_change_speed", "", "m/s", "sliding speed of the largest relative change"),
     ("shear_stress_change", "", "1", "relative change of the fitted shear stress"),
+    # comparison: joint fit of several loads
+    ("friction_coefficient_load", "\\mu", "1", "friction coefficient, with what a load shares"),
+    ("relative_residual", "", "1", "logarithm of measured over computed friction"),
+    ("shared_residual", "", "1", "part of it that a level and neighbouring speeds share"),
+    ("run_number", "", "1", "number of the run, from 0"),
 ]
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     )
     from tribolab.plot.curves import half_loop, stribeck
     from tribolab.plot.film import film_profiles, lubrication_factors
+    from tribolab.plot.joint import joint_fit
     from tribolab.plot.knobs import knobs
     from tribolab.plot.mixed import (
         friction_factor_effect,
@@ -53,6 +54,7 @@ _HOMES = {
     "friction_spread": "tribolab.plot.spread",
     "gaps": "tribolab.plot.contact",
     "half_loop": "tribolab.plot.curves",
+    "joint_fit": "tribolab.plot.joint",
     "knobs": "tribolab.plot.knobs",
     "line_pressure": "tribolab.plot.contact",
     "lubrication_factors": "tribolab.plot.film",
@@ -93,6 +95,7 @@ __all__ = [
     "friction_spread",
     "gaps",
     "half_loop",
+    "joint_fit",
     "knobs",
     "line_pressure",
     "lubrication_factors",

@@ -1,0 +1,1 @@
+"""All loads of a surface in one fit: what friction tells of shear stress and liquid together."""

@@ -1,0 +1,252 @@
+"""Several models of the same curves held against each other, and which of them the data want."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.errors import AnalysisError, shown
+from tribolab.fit.joint.fit import fit_shear_stress_jointly
+from tribolab.fit.joint.priors import JointPriors
+from tribolab.fit.joint.result import JointFit
+from tribolab.untyped import Arguments
+from tribolab.words import number
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_BARE, _STRONG = 1.0, 3.0  # of ln of odds: not worth a mention below, strong from here
+POWER_LAW = "power law"
+CONSTANT = "constant shear stress"
+WITHOUT_FACTORS = "without friction factors"
+
+
+@dataclass(frozen=True)
+class ComparedModel:
+    """One model beside the reference.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    evidence
+        ln of the odds for it against the reference, from all points.
+    prediction
+        ln of the density with which it predicts the points of each load from all others, summed
+        over the loads, less that of the reference; NaN of one load.
+    prediction_error
+        Standard error of that sum, from the spread over the loads; NaN of fewer than three.
+    shear_stress, shear_stress_low, shear_stress_high
+        sigma_0 [Pa] under the model and its 95 % interval, of the first surface.
+    words
+        What the data say.
+    """
+
+    name: str
+    evidence: float
+    prediction: float
+    prediction_error: float
+    shear_stress: float
+    shear_stress_low: float
+    shear_stress_high: float
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class ModelComparison:
+    """Joint fits of the same curves under several models.
+
+    Parameters
+    ----------
+    reference
+        Name of the model that all are held against.
+    models
+        In the order given, the reference first.
+    fits
+        The fits by the models' names.
+    """
+
+    reference: str
+    models: tuple[ComparedModel, ...]
+    fits: Mapping[str, JointFit]
+
+    def table(self) -> pd.DataFrame:
+        """Return a row for each model."""
+        import pandas as pd
+
+        return pd.DataFrame([vars(model) for model in self.models]).set_index("name")
+
+    def _repr_html_(self) -> str:
+        """Odds and words of each model in a row; all numbers folded away."""
+        rows = "".join(
+            f"<tr><th>{model.name}</th><td>{_odds(model.evidence)}</td>"
+            f"<td>{_odds(model.prediction)}</td><td>{model.words}</td></tr>"
+            for model in self.models
+        )
+        table = self.table().to_html(float_format=lambda value: f"{value:.4g}")
+        return (
+            "<table><thead><tr><th></th><th>ln of odds</th><th>by predicted loads</th><th></th>"
+            f"</tr></thead><tbody>{rows}</tbody></table>"
+            f"<details><summary>all numbers in SI</summary>{table}</details>"
+        )
+
+
+def compare_shear_stress_models(
+    measured: xr.Dataset,
+    contact: LineContact,
+    psd: xr.Dataset,
+    viscosity: str | float,
+    load: str | float | xr.DataArray,
+    variants: Mapping[str, Mapping[str, Any]] | None = None,
+    **given: Any,
+) -> ModelComparison:
+    """Fit the curves of all loads under several models, and say which the data want.
+
+    Parameters
+    ----------
+    measured, contact, psd, viscosity, load
+        As for `fit_shear_stress_jointly`.
+    variants
+        For each model's name what it changes of the arguments of `fit_shear_stress_jointly`, such
+        as ``{"adhesive area": {"area_enhancement": enhancement}}``; the first is the reference. By
+        default one shear stress that is a power of speed and load, a constant one, and no friction
+        factors.
+    **given
+        Further arguments that all share.
+
+    Returns
+    -------
+    ModelComparison
+
+    Raises
+    ------
+    AnalysisError
+        If a model cannot be fitted; it is named.
+
+    Notes
+    -----
+    Two tellers, and the more cautious of them is believed: the evidence, which weighs how well a
+    model describes the points against how much it could have described, and which the priors
+    move; and leave-one-out over the loads, ``sum_l ln p(y_l | other loads)``, which asks what a
+    model foretells and is hardly moved by them. Odds of e (2.7) are not worth a mention, of
+    e^3 (20) strong [1]_. Where the two have not the same sign the data do not tell. Of a model with
+    fewer free parameters that is wanted it is said that it is enough.
+
+    References
+    ----------
+    .. [1] R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90, 773 (1995).
+       doi:10.1080/01621459.1995.10476572
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from tribolab.lubrication.stribeck import stribeck_curve
+    >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
+    >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, {"wavenumber": q})
+    >>> contact, speed = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5), np.geomspace(1e-7, 1e-1, 19)
+    >>> curves = stribeck_curve(contact, psd, 1.4, [310.0, 910.0], 1e6, speed, cells=60)
+    >>> measured = curves[["friction_coefficient"]].sel(sliding_speed=slice(9e-7, 1.1e-2))
+    >>> measured["friction_coefficient_sem"] = 0.01 * measured.friction_coefficient
+    >>> told = compare_shear_stress_models(
+    ...     measured, contact, psd, 1.4, measured["load"], curves=curves
+    ... )
+    >>> told.table().words.iloc[1]
+    'constant shear stress is enough'
+    """
+    priors = given.pop("priors", None) or JointPriors()
+    fits: dict[str, JointFit] = {}
+    for name, changed in (variants or usual_variants(priors)).items():
+        mine: Arguments = {"priors": priors, **given, **changed}
+        try:
+            fits[name] = fit_shear_stress_jointly(measured, contact, psd, viscosity, load, **mine)
+        except AnalysisError as error:
+            raise AnalysisError(error, where=shown(name)) from error
+    return compared(fits)
+
+
+def usual_variants(priors: JointPriors) -> dict[str, Arguments]:
+    """Return the models that are compared if nothing else is said."""
+    return {
+        POWER_LAW: {"priors": priors},
+        CONSTANT: {"priors": replace(priors, speed_exponent=0.0, load_exponent=0.0)},
+        WITHOUT_FACTORS: {"friction_factors": False},
+    }
+
+
+def compared(fits: Mapping[str, JointFit]) -> ModelComparison:
+    """Hold fits of the same points against the first of them.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no fit, or they are not of the same points.
+    """
+    if not fits:
+        raise AnalysisError("variants: no model is named")
+    reference, first = next(iter(fits.items()))
+    models = []
+    for name, fit in fits.items():
+        if fit.points.sizes != first.points.sizes:
+            raise AnalysisError(
+                f"{shown(name)}: it is of other points than {shown(reference)}, and only models of "
+                "the same points can be compared"
+            )
+        evidence = fit.log_evidence - first.log_evidence
+        apart = np.array([fit.left_out[load] - first.left_out[load] for load in first.left_out])
+        prediction = float(apart.sum()) if apart.size > 1 else np.nan
+        error = float(apart.std(ddof=1) * np.sqrt(apart.size)) if apart.size > 2 else np.nan
+        stress = fit.marginals[0]
+        said = "the reference"
+        if name != reference:
+            said = _said((name, _free(fit)), (reference, _free(first)), evidence, prediction)
+        models.append(
+            ComparedModel(
+                name, evidence, prediction, error, stress.value, stress.low, stress.high, said
+            )
+        )
+    return ModelComparison(reference, tuple(models), dict(fits))
+
+
+def _free(fit: JointFit) -> int:
+    """Return how many parameters were not held fixed."""
+    return sum(np.isfinite(marginal.told) for marginal in fit.marginals)
+
+
+def _said(
+    model: tuple[str, int], reference: tuple[str, int], evidence: float, prediction: float
+) -> str:
+    """Say what the data want, by the more cautious of the two tellers.
+
+    Parameters
+    ----------
+    model, reference
+        Name, and number of free parameters.
+    evidence, prediction
+        As in `ComparedModel`.
+
+    Examples
+    --------
+    >>> _said(("b", 4), ("a", 3), 6.0, 4.0), _said(("b", 4), ("a", 3), -2.0, -5.0)
+    ('the data need b', 'a is enough')
+    >>> _said(("b", 4), ("a", 3), 6.0, -4.0), _said(("b", 3), ("a", 3), 2.0, 6.0)
+    ('the data do not tell b from a', 'the data lean to b')
+    """
+    tellers = np.array([evidence, prediction])
+    tellers = tellers[np.isfinite(tellers)]
+    strength = float(np.abs(tellers).min())
+    if strength < _BARE or np.ptp(np.sign(tellers)) > 0:
+        return f"the data do not tell {model[0]} from {reference[0]}"
+    wanted, other = (model, reference) if evidence > 0 else (reference, model)
+    if wanted[1] < other[1]:
+        return f"{wanted[0]} is enough"
+    verb = "need" if strength >= _STRONG else "lean to"
+    return f"the data {verb} {wanted[0]}"
+
+
+def _odds(value: float) -> str:
+    return "–" if np.isnan(value) else number(value, 2)

@@ -1,0 +1,218 @@
+"""Arguments of a joint fit taken apart: a curve, its load and what is computed beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.geometry import LineContact
+from tribolab.errors import AnalysisError, Cure, shown
+from tribolab.fit.joint.load_curve import LoadCurve
+from tribolab.fit.joint.priors import JointPriors
+from tribolab.fit.joint.response import Response, constant_response, response_of
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.stamping import labelled
+from tribolab.untyped import Arguments
+from tribolab.words import number
+
+_REACH = 4.0  # standard deviations of ln eta that the computed curves go beyond the speeds
+_PER_DECADE = 8
+_NORMAL = 1.959963984540054
+_OWN = ("sliding_speed", "run")
+
+
+@dataclass(frozen=True)
+class DryFriction:
+    """Friction measured without the liquid, as what is known of the shear stress beforehand.
+
+    Parameters
+    ----------
+    measured
+        As the wet curves, at some of their loads.
+    area_ratio
+        Real contact area dry over that in the liquid [1], both with adhesion; over the loads, or
+        one for all.
+    area_ratio_range
+        Ends of what that ratio may be, some 95 %, from the range of the works of adhesion; by
+        default it is taken as known.
+
+    Notes
+    -----
+    Adhesion and molecules both change when the liquid comes between. That the shear stress in the
+    real contact is another then is left open by a factor, ``dry_over_wet`` of `JointPriors`.
+    """
+
+    measured: xr.Dataset
+    area_ratio: float | xr.DataArray
+    area_ratio_range: tuple[float, float] | None = None
+
+    @property
+    def area_ratio_error(self) -> float:
+        """Standard error of ln of the ratio.
+
+        Raises
+        ------
+        AnalysisError
+            If the range does not ascend from above zero.
+        """
+        if self.area_ratio_range is None:
+            return 0.0
+        low, high = self.area_ratio_range
+        if not 0 < low <= high < np.inf:
+            raise AnalysisError(
+                f"area_ratio_range: two finite numbers above zero, the lesser first, are wanted; "
+                f"got {low:g} and {high:g}"
+            )
+        return float(np.log(high / low) / (2 * _NORMAL))
+
+
+def loads_of(measured: xr.Dataset, load: str | float | xr.DataArray) -> xr.DataArray:
+    """Return the loads [N/m] over the load dim of the measured curves, if it has one."""
+    given = measured.get("friction_coefficient")
+    if given is None or "sliding_speed" not in given.dims:
+        raise AnalysisError(
+            "a 'friction_coefficient' over 'sliding_speed' and the loads is wanted",
+            where="measured",
+            cure=Cure(notebook="tl.measured_stribeck_curve with labels makes such curves"),
+        )
+    dims = [dim for dim in given.dims if dim not in (*_OWN, "surface")]
+    if len(dims) > 1:
+        raise AnalysisError(
+            f"measured: the curves are over {' and '.join(map(repr, dims))}; one of them may be "
+            "the load, choose one value of the other",
+        )
+    loads = labelled(load, "load")
+    if loads.ndim == 1 and dims and loads.dims != (dims[0],) and loads.size == given.sizes[dims[0]]:
+        loads = xr.DataArray(loads.values, dims=dims, coords={dims[0]: measured[dims[0]]})
+    if set(loads.dims) != set(dims):
+        raise AnalysisError(
+            f"load: the measured curves are over {dims[0] if dims else 'no load'}, and a load in "
+            "N/m is wanted for each of them"
+        )
+    if not bool(((loads > 0) & np.isfinite(loads)).all()):
+        raise AnalysisError("load: positive, finite values in N/m are wanted")
+    if dims and dims[0] in measured.coords:
+        try:
+            loads = loads.sel({dims[0]: measured[dims[0]]})
+        except KeyError:
+            raise AnalysisError(
+                f"load: not every {shown(str(dims[0]))} that was measured has one"
+            ) from None
+    return loads
+
+
+def surfaces_of(measured: xr.Dataset, psd: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """Give name and spectrum of every surface; "" is the name of the only one."""
+    if "surface" not in measured["friction_coefficient"].dims:
+        yield "", psd
+        return
+    for surface in measured["surface"].values.tolist():
+        if psd is not None and "surface" in psd.dims:
+            if surface not in psd["surface"].values:
+                raise AnalysisError(f"psd: there is no spectrum of {shown(surface)}")
+            spectrum = psd.sel(surface=surface)
+            yield surface, spectrum.dropna("wavenumber", how="all", subset=["psd_2d"])
+        else:
+            yield surface, psd
+
+
+def computed_curves(
+    psd: xr.Dataset,
+    loads: xr.DataArray,
+    measured: xr.Dataset,
+    contact: LineContact,
+    viscosity: float,
+    priors: JointPriors,
+    model: Arguments,
+) -> xr.Dataset:
+    """Compute the curves of a surface at all loads, over all that the viscosity may be."""
+    speed = measured["sliding_speed"].values
+    speed = speed[np.isfinite(speed) & (speed > 0)]
+    if not speed.size:
+        raise AnalysisError("measured: no sliding speed is above zero")
+    beyond = _REACH * priors.viscosity_spread + 0.3
+    low, high = np.log(speed.min()) - beyond, np.log(speed.max()) + beyond
+    count = int(np.ceil(_PER_DECADE * (high - low) / np.log(10))) + 1
+    grid = np.concatenate([[0.0], np.exp(np.linspace(low, high, count))])
+    force = loads.values if loads.ndim else float(loads)
+    options = {name: value for name, value in model.items() if name != "friction_factors"}
+    curve = stribeck_curve(
+        contact, psd, viscosity, force, 0.0, grid if psd is not None else grid[1:], **options
+    )
+    curve.attrs["friction_factors"] = "no" if model.get("friction_factors") is False else "yes"
+    return curve.rename(load=loads.dims[0]).assign_coords(loads.coords) if loads.ndim else curve
+
+
+def curves_of_surface(
+    surface: str,
+    measured: xr.Dataset,
+    loads: xr.DataArray,
+    computed: xr.Dataset,
+    area_enhancement: float | xr.DataArray,
+    dry: DryFriction | None,
+) -> Iterator[LoadCurve]:
+    """Give the curves of a surface at every load, those that were measured dry behind."""
+    for place in range(loads.size):
+        labels = {dim: place for dim in loads.dims}
+        at = loads.isel(labels)
+        response = _response(computed, at, loads)
+        response = response.enlarged(_value(area_enhancement, surface, at))
+        name = _name(surface, at, loads)
+        load = float(at)
+        wet = _chosen(measured, surface, at)
+        if wet is not None:
+            yield LoadCurve(name, surface, load, wet, response)
+        without = None if dry is None else _chosen(dry.measured, surface, at)
+        if dry is not None and without is not None:
+            area = constant_response(response.rest * _value(dry.area_ratio, surface, at))
+            yield LoadCurve(f"{name} dry", surface, load, without, area, dry=True)
+
+
+def _response(computed: xr.Dataset, at: xr.DataArray, loads: xr.DataArray) -> Response:
+    curve = computed
+    for dim in loads.dims:
+        if dim in computed.coords and dim in computed.dims:
+            curve = computed.sel({dim: at[dim]}, drop=True)
+        elif "load" in computed.dims:
+            curve = computed.sel(load=float(at), method="nearest", drop=True)
+        else:
+            raise AnalysisError(f"curves: they are not over {shown(str(dim))}, nor over the load")
+    return response_of(curve, friction_factors=computed.attrs.get("friction_factors") != "no")
+
+
+def _chosen(measured: xr.Dataset, surface: str, at: xr.DataArray) -> xr.Dataset | None:
+    """Return what was measured of a surface at a load; None if nothing was."""
+    labels: Arguments = {str(dim): at[dim].item() for dim in at.coords if dim in measured.dims}
+    if surface and "surface" in measured.dims:
+        labels["surface"] = surface
+    for dim, label in labels.items():
+        if label not in measured[dim].values:
+            return None
+    mine = measured.sel(labels, drop=True)
+    return mine if bool(np.isfinite(mine["friction_coefficient"]).any()) else None
+
+
+def _value(given: float | xr.DataArray, surface: str, at: xr.DataArray) -> float:
+    """Return what belongs to a surface and load of a number or an array; above zero it must be."""
+    if isinstance(given, xr.DataArray):
+        for dim in at.coords:
+            if dim in given.dims:
+                given = given.sel({dim: at[dim].item()}, drop=True)
+        if surface and "surface" in given.dims:
+            given = given.sel(surface=surface, drop=True)
+    value = float(given)
+    if not 0 < value < np.inf:
+        raise AnalysisError(f"a ratio of areas must be finite and above zero; got {value:g}")
+    return value
+
+
+def _name(surface: str, at: xr.DataArray, loads: xr.DataArray) -> str:
+    """Call a curve by its load, and by its surface where there are several."""
+    dim = loads.dims[0] if loads.dims else ""
+    text = f"{number(float(at))} N/m"
+    if dim == "normal_force":
+        text = f"{number(float(at[dim]))} N"
+    return f"{surface} at {text}" if surface else text

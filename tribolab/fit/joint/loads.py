@@ -1,0 +1,252 @@
+"""Fit the curves of several loads together: from what is measured and computed to the result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.fit.joint.load_curve import LoadCurve, Measured, points_of
+from tribolab.fit.joint.model import (
+    SPEED,
+    Curve,
+    JointModel,
+    Parameters,
+    Points,
+    parameters_of,
+    shared_errors,
+)
+from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
+from tribolab.fit.joint.priors import JointPriors
+from tribolab.fit.joint.result import JointFit, Marginal
+from tribolab.fit.joint.spectrum import spectrum_covariance
+from tribolab.stamping import stamp
+
+_ENDS = 0.025, 0.975
+_NORMAL = 1.959963984540054
+_HALF_NORMAL = 0.03133797, 2.24140273  # quantiles at these ends, over the scale
+_DRAWN = 61  # speeds of a drawn curve
+
+
+def fit_loads(
+    curves: Sequence[LoadCurve],
+    viscosity: float,
+    priors: JointPriors | None = None,
+    *,
+    common_error: float = 0.0,
+    spectrum_error: Mapping[str, xr.Dataset] | None = None,
+    area_ratio_error: float = 0.0,
+    speed_range: tuple[float, float] = (0.0, np.inf),
+) -> JointFit:
+    """Fit shear stress, exponents and viscosity to the curves of all loads at once.
+
+    Parameters
+    ----------
+    curves
+        Measured curves in one liquid, of one surface or several, and dry ones.
+    viscosity
+        The liquid's as stated [Pa s].
+    priors
+        By default those of `JointPriors`.
+    common_error
+        Relative standard error [1] of the shear stress that all loads share.
+    spectrum_error
+        By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum.
+    area_ratio_error
+        Standard error of ln of the ratio of areas that multiplies the dry curves' response.
+    speed_range
+        Lowest and highest speed [m/s] to take.
+
+    Returns
+    -------
+    JointFit
+
+    Raises
+    ------
+    AnalysisError
+        If no curve is of a wet contact, or the points are too few.
+    """
+    priors = priors or JointPriors()
+    wet = [curve for curve in curves if not curve.dry]
+    if not wet:
+        raise AnalysisError("no curve was measured in the liquid")
+    surfaces = list(dict.fromkeys(curve.surface for curve in curves))
+    measured = points_of(curves, speed_range)
+    reference = float(np.exp(np.mean(np.log(np.unique([curve.load for curve in wet])))))
+    computed = [
+        Curve(
+            curve.response,
+            surfaces.index(curve.surface),
+            float(np.log(curve.load / reference)),
+            curve.dry,
+        )
+        for curve in curves
+    ]
+    transfer = [float(np.hypot(priors.dry_over_wet, area_ratio_error))] * len(surfaces)
+    any_dry = len(wet) < len(curves)
+    parameters = parameters_of(len(surfaces), viscosity, priors, transfer if any_dry else ())
+    model = JointModel(measured.points, computed, parameters, reference)
+    posterior = posterior_of(model, priors, parameters.mean)
+    alone = _left_out(model, priors, posterior, curves)
+    shared = parameters.stress
+    posterior.covariance[:, shared, shared] += common_error**2
+    if spectrum_error:
+        bands = {surfaces.index(surface): band for surface, band in spectrum_error.items()}
+        added = spectrum_covariance(model, posterior, priors, bands)
+        posterior = posterior._replace(covariance=posterior.covariance + added)
+    names = surfaces if len(surfaces) > 1 else [""]
+    return JointFit(
+        marginals=tuple(_marginals(parameters, posterior, priors, names)),
+        correlation=_correlation(posterior.spread),
+        reference_speed=SPEED,
+        reference_load=reference,
+        log_evidence=posterior.log_evidence,
+        left_out=alone,
+        points=_points(model, posterior, priors, curves, measured),
+        curves=_bands(model, posterior, curves),
+        common_error=common_error,
+        spectrum_error=tuple(spectrum_error or ()),
+        skipped=measured.left_out,
+    )
+
+
+def _left_out(
+    model: JointModel, priors: JointPriors, posterior: Posterior, curves: Sequence[LoadCurve]
+) -> dict[str, float]:
+    """Return ln p(points of a wet curve | all others) for each, from two evidences."""
+    if np.unique(model.points.curve).size < 2:
+        return {}
+    rest = {}
+    for number, curve in enumerate(curves):
+        if not curve.dry:
+            others = posterior_of(model.without(np.array([number])), priors, posterior.centre)
+            rest[curve.name] = posterior.log_evidence - others.log_evidence
+    return rest
+
+
+def _marginals(
+    parameters: Parameters, posterior: Posterior, priors: JointPriors, surfaces: Sequence[str]
+) -> list[Marginal]:
+    """Return median, interval and prior of every parameter, logarithms undone."""
+    middle, low, high = (posterior.quantile(p) for p in (0.5, *_ENDS))
+    spread = np.sqrt(np.diag(posterior.spread))
+    reach = _NORMAL * parameters.spread
+    marginals = []
+    for place, (name, surface, logarithmic) in enumerate(_places(parameters, surfaces)):
+        values = np.array([middle, low, high, parameters.mean - reach, parameters.mean + reach])[
+            :, place
+        ]
+        if logarithmic:
+            values = np.exp(values)
+        before = parameters.spread[place]
+        told = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
+        value, *ends = map(float, values)
+        marginals.append(Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], told))
+    for name, scale in (("level", priors.level), ("correlated", priors.correlated)):
+        value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_ENDS))
+        least, most = (scale * quantile for quantile in _HALF_NORMAL)
+        told = max(0.0, 1 - (last - first) / (most - least))
+        marginals.append(Marginal(name, "", value, first, last, least, most, told))
+    return marginals
+
+
+def _places(parameters: Parameters, surfaces: Sequence[str]) -> list[tuple[str, str, bool]]:
+    """Return name, surface and whether it is a logarithm, for each place in the vector."""
+    names = [("", "", False)] * parameters.mean.size
+    for places, name, logarithmic in (
+        (parameters.stress, "shear_stress", True),
+        (parameters.speed, "speed_exponent", False),
+        (parameters.load, "load_exponent", False),
+        (parameters.dry, "dry_over_wet", True),
+    ):
+        for place, surface in zip(places, surfaces, strict=False):
+            names[place] = name, surface, logarithmic
+    names[parameters.viscosity] = "viscosity", "", True
+    return names
+
+
+def _correlation(covariance: np.ndarray) -> np.ndarray:
+    size = np.sqrt(np.diag(covariance))
+    fixed = size == 0
+    size = np.where(fixed, 1.0, size)
+    return covariance / np.outer(size, size) + np.diag(fixed.astype(float))
+
+
+def _points(
+    model: JointModel,
+    posterior: Posterior,
+    priors: JointPriors,
+    curves: Sequence[LoadCurve],
+    measured: Measured,
+) -> xr.Dataset:
+    """Return the points beside the model, and what of the residuals is shared."""
+    points = model.points
+    shared = shared_errors(points, points, priors.correlation_length)
+    computed, ascribed = np.zeros(points.log_speed.size), np.zeros(points.log_speed.size)
+    for weight, tau, kappa, theta in zip(
+        posterior.weight, posterior.level, posterior.correlated, posterior.mean, strict=True
+    ):
+        if weight < 1e-4 * posterior.weight.max():
+            continue
+        value, _ = model.predicted(theta)
+        together = tau**2 * shared.level + kappa**2 * shared.near
+        whole = together + np.diag(points.error**2)
+        computed += weight * value
+        ascribed += weight * (together @ np.linalg.solve(whole, points.log_friction - value))
+    total = posterior.weight[posterior.weight >= 1e-4 * posterior.weight.max()].sum()
+    friction = np.exp(points.log_friction)
+    columns = {
+        "surface": np.array([curves[k].surface for k in points.curve], dtype=str),
+        "curve": np.array([curves[k].name for k in points.curve], dtype=str),
+        "run_number": measured.run,
+        "sliding_speed": np.exp(points.log_speed),
+        "friction_coefficient": friction,
+        "friction_coefficient_sem": friction * points.error,
+        "friction_coefficient_model": np.exp(computed / total),
+        "relative_residual": points.log_friction - computed / total,
+        "shared_residual": ascribed / total,
+    }
+    return stamp(xr.Dataset({name: ("point", values) for name, values in columns.items()}))
+
+
+def _bands(model: JointModel, posterior: Posterior, curves: Sequence[LoadCurve]) -> xr.Dataset:
+    """Return the model over speed at each load with 95 % bands: by its parameters, and by all."""
+    ends = model.points.log_speed.min(), model.points.log_speed.max()
+    grid = np.linspace(*ends, _DRAWN)
+    number = np.repeat(np.arange(len(curves)), grid.size)
+    at = Points(np.tile(grid, len(curves)), number, number, number, number)
+    used = posterior.weight >= 1e-4 * posterior.weight.max()
+    weight = posterior.weight[used] / posterior.weight[used].sum()
+    rows: list[np.ndarray] = []
+    variances, shared = [], []
+    for k in np.flatnonzero(used):
+        value, slopes = model.predicted(posterior.mean[k], at)
+        rows.append(value)
+        variances.append(np.einsum("pi,ij,pj->p", slopes, posterior.covariance[k], slopes))
+        shared.append(posterior.level[k] ** 2 + posterior.correlated[k] ** 2)
+    means, alone = np.array(rows), np.sqrt(variances)
+    whole = np.sqrt(np.array(variances) + np.array(shared)[:, None])
+    friction = {
+        f"friction_coefficient{ending}": (
+            ("curve", "sliding_speed"),
+            np.exp(mixture_quantile(weight, means, deviation, probability)).reshape(
+                len(curves), grid.size
+            ),
+        )
+        for ending, deviation, probability in (
+            ("", alone, 0.5),
+            ("_low", alone, _ENDS[0]),
+            ("_high", alone, _ENDS[1]),
+            ("_load_low", whole, _ENDS[0]),
+            ("_load_high", whole, _ENDS[1]),
+        )
+    }
+    named = {
+        "curve": np.array([curve.name for curve in curves], dtype=str),
+        "sliding_speed": np.exp(grid),
+        "load": ("curve", np.array([curve.load for curve in curves])),
+        "surface": ("curve", np.array([curve.surface for curve in curves], dtype=str)),
+    }
+    return stamp(xr.Dataset(friction, named))

@@ -1,0 +1,64 @@
+"""What is thought of a joint fit's parameters before anything is measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from tribolab.errors import AnalysisError
+
+
+@dataclass(frozen=True)
+class JointPriors:
+    """Priors of a joint fit: normal in what they are said of, half-normal where it is a spread.
+
+    Parameters
+    ----------
+    shear_stress, shear_stress_spread
+        Median of sigma_0 [Pa] and the standard deviation of its logarithm.
+    speed_exponent, load_exponent
+        Standard deviations of n and m about 0; 0 holds them there: one shear stress for all.
+    viscosity_spread
+        Standard deviation of ln eta about the viscosity that is stated.
+    level
+        Scale of tau, the relative error that all points of a run or load share.
+    correlated
+        Scale of kappa, the relative error that neighbouring speeds share.
+    correlation_length
+        Of that error, in ln v.
+    dry_over_wet
+        Standard deviation of ln of the dry over the wet shear stress, where dry curves are given.
+
+    Raises
+    ------
+    AnalysisError
+        If a number is not finite, or negative.
+
+    Notes
+    -----
+    An exponent's interval under the prior alone is twice its number to either side: n from -0.2 to
+    0.2 is a factor of 6 over four decades, m from -0.6 to 0.6 a factor of 3 over the loads of Xu
+    et al. (2026), who find m between -0.3 and 0.
+    """
+
+    shear_stress: float = 0.5e6
+    shear_stress_spread: float = 1.0
+    speed_exponent: float = 0.1
+    load_exponent: float = 0.3
+    viscosity_spread: float = 0.3
+    level: float = 0.10
+    correlated: float = 0.03
+    correlation_length: float = 1.15
+    dry_over_wet: float = 0.3
+
+    def __post_init__(self) -> None:
+        """Refuse what is no spread."""
+        free = ("speed_exponent", "load_exponent", "viscosity_spread")  # these may be held fixed
+        for name in (field.name for field in fields(self)):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and (value > 0 or (value == 0 and name in free))):
+                or_zero = " or zero" if name in free else ""
+                raise AnalysisError(
+                    f"priors: {name} must be finite and above zero{or_zero}; got {value:g}"
+                )

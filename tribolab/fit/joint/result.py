@@ -1,0 +1,266 @@
+"""What a joint fit found: marginals, what goes together, what is not identified, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from tribolab.words import many, number, percent
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_UNTOLD, _LITTLE = 0.2, 0.5  # of the prior's standard deviation that the data take away
+_TOGETHER = 0.8  # correlation from which two parameters are hardly told apart
+_FAR = 0.09  # correlated error from which the model does not describe the curves
+NAMES = {  # of a parameter: its unit, and in words
+    "shear_stress": ("Pa", "shear stress"),
+    "speed_exponent": ("1", "exponent of speed"),
+    "load_exponent": ("1", "exponent of load"),
+    "viscosity": ("Pa s", "viscosity"),
+    "dry_over_wet": ("1", "dry over wet shear stress"),
+    "level": ("1", "error common to a level"),
+    "correlated": ("1", "error that neighbouring speeds share"),
+}
+
+
+@dataclass(frozen=True)
+class Marginal:
+    """What is known of one parameter of a joint fit.
+
+    Parameters
+    ----------
+    name
+        ``shear_stress`` (sigma_0), ``speed_exponent`` (n), ``load_exponent`` (m), ``viscosity``,
+        ``dry_over_wet`` shear stress; ``level`` (tau) and ``correlated`` (kappa) error.
+    surface
+        The surface that it is of; "" if of all, or if there is one only.
+    value, low, high
+        Median and ends of the 95 % interval, in SI.
+    prior_low, prior_high
+        Ends of the 95 % interval before anything was measured.
+    told
+        Share [1] of the prior's standard deviation that the data took away: 0 if they tell
+        nothing; of a parameter that was held fixed NaN.
+    """
+
+    name: str
+    surface: str
+    value: float
+    low: float
+    high: float
+    prior_low: float
+    prior_high: float
+    told: float
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return NAMES[self.name][0]
+
+    @property
+    def identified(self) -> str:
+        """Return "yes", "weakly", "not identified" or "held fixed"."""
+        if np.isnan(self.told):
+            return "held fixed"
+        if self.told < _UNTOLD:
+            return "not identified"
+        return "weakly" if self.told < _LITTLE else "yes"
+
+    @property
+    def words(self) -> str:
+        """The parameter's name as it is said."""
+        said = NAMES[self.name][1]
+        return f"{said} of {self.surface}" if self.surface else said
+
+
+@dataclass(frozen=True, eq=False)
+class JointFit:
+    """A joint fit of friction over speed at several loads.
+
+    Parameters
+    ----------
+    marginals
+        Of every parameter, in the order of `correlation`; the sizes of the shared errors last.
+    correlation
+        Posterior correlation of the parameters but for those sizes (parameter, parameter).
+    reference_speed, reference_load
+        v0 [m/s] and F0 [N/m] that sigma_0 is for.
+    log_evidence
+        ln of the probability density of the points under this model and its priors.
+    left_out
+        ln of the density of each wet curve's points, given all other curves, by its name.
+    points
+        Over (point): ``surface``, ``curve``, ``run``, ``sliding_speed``, ``friction_coefficient``
+        with ``_sem`` and ``_model``; ``relative_residual``, ln of measured over computed friction;
+        ``shared_residual``, what of it is ascribed to level and neighbouring speeds.
+    curves
+        Over (curve, sliding_speed): ``friction_coefficient`` of the model with ``_low`` and
+        ``_high``, ends of its 95 % band by the parameters, ``_load_low`` and ``_load_high``, of
+        that with the errors that a load's points share; ``load`` [N/m] and ``surface`` (curve).
+    common_error
+        Relative standard error [1] of the shear stress that all loads share; it is in the interval.
+    spectrum_error
+        Surfaces whose spectrum's error is in the intervals.
+    skipped
+        How many points were not taken since their friction is not above zero.
+    """
+
+    marginals: tuple[Marginal, ...]
+    correlation: np.ndarray = field(repr=False)
+    reference_speed: float
+    reference_load: float
+    log_evidence: float
+    left_out: dict[str, float]
+    points: xr.Dataset = field(repr=False)
+    curves: xr.Dataset = field(repr=False)
+    common_error: float
+    spectrum_error: tuple[str, ...]
+    skipped: int
+
+    def marginal(self, name: str, surface: str = "") -> Marginal:
+        """Return what is known of a parameter, of a surface where there are several.
+
+        Raises
+        ------
+        KeyError
+            If there is no such parameter.
+        """
+        for marginal in self.marginals:
+            if marginal.name == name and (not surface or marginal.surface in ("", surface)):
+                return marginal
+        raise KeyError(f"{name} {surface}".strip())
+
+    @property
+    def described(self) -> bool:
+        """Whether the model describes the curves: neighbouring speeds err by less than a tenth."""
+        return self.marginal("correlated").value <= _FAR
+
+    def table(self) -> pd.DataFrame:
+        """Return a row for each parameter: median, 95 % interval, that of the prior, and words."""
+        import pandas as pd
+
+        rows = [
+            {
+                "parameter": marginal.name,
+                "surface": marginal.surface,
+                "value": marginal.value,
+                "low": marginal.low,
+                "high": marginal.high,
+                "unit": marginal.unit,
+                "prior_low": marginal.prior_low,
+                "prior_high": marginal.prior_high,
+                "told": marginal.told,
+                "identified": marginal.identified,
+            }
+            for marginal in self.marginals
+        ]
+        return pd.DataFrame(rows).set_index("parameter")
+
+    def correlations(self) -> pd.DataFrame:
+        """Return the posterior correlation of every two parameters."""
+        import pandas as pd
+
+        names = [marginal.words for marginal in self.marginals[: len(self.correlation)]]
+        return pd.DataFrame(self.correlation, names, names)
+
+    @property
+    def words(self) -> list[str]:
+        """What the data do not tell, and what goes together, a sentence each."""
+        return [
+            *(_untold(marginal) for marginal in self._physical if marginal.told < _LITTLE),
+            *(_beyond(marginal) for marginal in self._physical if _is_beyond(marginal)),
+            *self._together(),
+            *self._misfit(),
+        ]
+
+    @property
+    def _physical(self) -> tuple[Marginal, ...]:
+        """All but the sizes of the shared errors, of which few loads always tell little."""
+        return self.marginals[: len(self.correlation)]
+
+    def _together(self) -> list[str]:
+        """Pairs of parameters that are hardly told apart."""
+        said = []
+        for i, j in np.argwhere(np.triu(np.abs(self.correlation), 1) > _TOGETHER):
+            first, second = self.marginals[i], self.marginals[j]
+            said.append(
+                f"{first.words} and {second.words} are hardly told apart: their errors correlate "
+                f"by {number(self.correlation[i, j], 2)}"
+            )
+        return said
+
+    def _misfit(self) -> list[str]:
+        """Where the model does not describe the curves, and points that are not taken."""
+        said = []
+        if not self.described:
+            off = percent(self.marginal("correlated").value)
+            said.append(
+                f"the model does not describe these curves: neighbouring speeds are off together "
+                f"by {off}, so the intervals say how such a model would have to be bent"
+            )
+        if self.skipped:
+            said.append(
+                f"{many(self.skipped, 'point')} with a friction not above zero "
+                f"{'is' if self.skipped == 1 else 'are'} not taken"
+            )
+        return said
+
+    def _repr_html_(self) -> str:
+        """Median and interval of every parameter in a row, then the sentences."""
+        rows = "".join(
+            f"<tr><th>{marginal.words}</th><td>{in_words(marginal)}</td>"
+            f"<td>{marginal.identified}</td></tr>"
+            for marginal in self.marginals
+        )
+        said = "".join(f"<li>{sentence}</li>" for sentence in self.words)
+        table = self.table().to_html(float_format=lambda value: f"{value:.4g}")
+        return (
+            "<table><thead><tr><th></th><th>median, 95 % interval</th><th>identified</th></tr>"
+            f"</thead><tbody>{rows}</tbody></table><ul>{said}</ul>"
+            f"<details><summary>all numbers in SI</summary>{table}</details>"
+        )
+
+
+def in_words(marginal: Marginal) -> str:
+    """Return median and 95 % interval as a reader would say them.
+
+    Examples
+    --------
+    >>> in_words(Marginal("shear_stress", "", 0.84e6, 0.81e6, 0.87e6, 1e5, 3e6, 0.98))
+    '0.84 MPa (0.81 to 0.87)'
+    """
+    value, low, high = marginal.value, marginal.low, marginal.high
+    if marginal.name in ("level", "correlated"):
+        return f"{percent(value)} ({number(100 * low, 2)} to {number(100 * high, 2)})"
+    factor, unit = (1e-6, " MPa") if marginal.unit == "Pa" else (1.0, f" {marginal.unit}")
+    unit = "" if marginal.unit == "1" else unit
+    return f"{number(factor * value)}{unit} ({number(factor * low)} to {number(factor * high)})"
+
+
+def _is_beyond(marginal: Marginal) -> bool:
+    """Whether a parameter lies outside of what was thought possible beforehand."""
+    return not marginal.prior_low <= marginal.value <= marginal.prior_high
+
+
+def _beyond(marginal: Marginal) -> str:
+    """Say that data and prior do not agree."""
+    before = replace(marginal, low=marginal.prior_low, high=marginal.prior_high)
+    _, _, ends = in_words(before).partition("(")
+    return (
+        f"{marginal.words}: {in_words(marginal)} lies outside of what was thought possible "
+        f"beforehand, {ends.rstrip(')')}; check what was stated"
+    )
+
+
+def _untold(marginal: Marginal) -> str:
+    """Say that the data tell nothing, or little, of a parameter."""
+    if marginal.told < _UNTOLD:
+        return (
+            f"{marginal.words}: not identified; the interval is what was assumed beforehand, "
+            f"{in_words(marginal)}"
+        )
+    return f"{marginal.words}: the data tell little of it, {in_words(marginal)}"
