@@ -43,6 +43,13 @@ class DryFriction:
     -----
     Adhesion and molecules both change when the liquid comes between. That the shear stress in the
     real contact is another then is left open by a factor, ``dry_over_wet`` of `JointPriors`.
+
+    Examples
+    --------
+    >>> friction = {"friction_coefficient": ("sliding_speed", [0.5])}
+    >>> curve = xr.Dataset(friction, {"sliding_speed": [1e-5]})
+    >>> round(DryFriction(curve, 1.2, (1.0, 1.4)).area_ratio_error, 3)
+    0.086
     """
 
     measured: xr.Dataset

@@ -40,6 +40,12 @@ class JointPriors:
     An exponent's interval under the prior alone is twice its number to either side: n from -0.2 to
     0.2 is a factor of 6 over four decades, m from -0.6 to 0.6 a factor of 3 over the loads of Xu
     et al. (2026), who find m between -0.3 and 0.
+
+    Examples
+    --------
+    >>> constant = JointPriors(speed_exponent=0, load_exponent=0)  # one shear stress for all
+    >>> constant.viscosity_spread
+    0.3
     """
 
     shear_stress: float = 0.5e6
