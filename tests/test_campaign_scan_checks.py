@@ -132,7 +132,7 @@ def test_where_no_scan_passes_all_are_used_and_marked(tmp_path, files, scans):
     assert any("all that follows from them is marked" in text for text in said(outcome, "note"))
     quiet = processed(tmp_path, planned(files[:1], skip=("dropouts",)))
     assert quiet.quality == "pass"
-    limits = {"dropouts": {"fail": 0.5, "suspect": 0.5, "in_a_row": 1e4}}
+    limits = {"dropouts": {"fail": 0.5, "stretch": 0.5, "suspect": 0.5, "in_a_row": 1e4}}
     assert processed(tmp_path, planned(files[:1], limits=limits)).quality == "pass"
 
 

@@ -120,6 +120,13 @@ _ROWS = [
     # surfaces, measured (surface room)
     ("scan", "", "1", "number of the scan"),
     ("dropout", "", "1", "1 where the height was filled"),
+    ("gap_error", "", "1", "relative standard error that missing heights bring"),
+    ("Ra_gap_error", "", "m", "standard error of Ra that missing heights bring"),
+    ("Rq_gap_error", "", "m", "standard error of Rq that missing heights bring"),
+    ("Rz_gap_error", "", "m", "standard error of Rz that missing heights bring"),
+    ("Rsk_gap_error", "", "1", "standard error of Rsk that missing heights bring"),
+    ("Rku_gap_error", "", "1", "standard error of Rku that missing heights bring"),
+    ("Rdq_gap_error", "", "1", "standard error of Rdq that missing heights bring"),
     ("form_tilt", "", "1", "tilt that was removed"),
     ("form_curvature", "", "1/m", "curvature that was removed, positive where hollow", "nothing"),
     ("independent_values", "", "1", "effective number of independent values"),

@@ -11,6 +11,7 @@ from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 
+_MOVED = 0.02  # share of points that move, from which on they are no rare jumps
 _BLOCK = 512  # points whose slopes are compared with each other
 
 
@@ -24,6 +25,20 @@ def longest_run(marked: np.ndarray) -> int:
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(np.int8), [0]])))
     return int((edges[1::2] - edges[::2]).max(initial=0))
+
+
+def at_the_ends(marked: np.ndarray) -> np.ndarray:
+    """Those of the marked points of each row (row, x) that reach one of its ends.
+
+    Examples
+    --------
+    >>> at_the_ends(np.array([[True, False, True, False, True, True]])).astype(int).tolist()
+    [[1, 0, 0, 0, 1, 1]]
+    """
+    return np.asarray(
+        np.logical_and.accumulate(marked, axis=1)
+        | np.logical_and.accumulate(marked[:, ::-1], axis=1)[:, ::-1]
+    )
 
 
 def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
@@ -89,8 +104,19 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.median(np.abs(known - middle))) / 0.6745 if known.size else 0.0
+    """Robust standard deviation of differences; where most are zero, that of the others.
+
+    A gauge of coarse digits, or one that is read out more often than it moves, shows the same
+    height for some points, and then its next one.
+    """
+    away = np.abs(values[np.isfinite(values)] - middle)
+    if not away.size:
+        return 0.0
+    usual = float(np.median(away))
+    if usual == 0.0:
+        moved = away[away > 0]
+        usual = float(np.median(moved)) if moved.size >= _MOVED * away.size else 0.0
+    return usual / 0.6745
 
 
 def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:

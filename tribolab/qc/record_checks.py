@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.errors import AnalysisError, shown
 from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.pieces import anywhere, one_by_one
 from tribolab.qc import schema, signals, timing
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT, uniform
-from tribolab.qc.register import Check, Limit, Result, Skip, sample_result
+from tribolab.qc.register import OBJECTIONS, Check, Limit, Result, Skip, sample_result
 from tribolab.qc.subject import RunSubject
 from tribolab.room import filled
 from tribolab.words import Count
@@ -179,8 +180,25 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
         text = "{count:single sample stands|single samples stand} out from both neighbours, {where}"
-        results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
+        result = sample_result(name, flags, subject.time, text, fail_share=limits["fail"])
+        if result.status in OBJECTIONS and _sticks_and_slips(subject):
+            result = replace(result, cure=_SLIPS)
+        results.append(result)
     return results
+
+
+_SLIPS = (
+    "The contact sticks and slips: a slip shorter than a sample looks like this; record faster to "
+    "tell. What repeats at rest, too, is a disturbance. The mean hardly moves."
+)
+_STRONG = 0.03  # standard deviation over friction, from which on an oscillation is stick-slip
+
+
+def _sticks_and_slips(subject: RunSubject) -> bool:
+    try:
+        return bool(np.isfinite(subject.strong_periods(_STRONG)).any())
+    except (Skip, AnalysisError):
+        return False
 
 
 RECORD_CHECKS = (

@@ -114,23 +114,41 @@ def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: flo
 def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     missing = ~np.isfinite(subject.rows)
     flags = signals.missing(np.where(missing, np.nan, 0.0))
-    count, share = int(missing.sum()), float(missing.mean())
-    if not count:
-        return [Result("pass", "height", "nothing missing", 0.0, flags=flags)]
-    row = int(np.argmax([profiles.longest_run(m) for m in missing]))
-    longest = profiles.longest_run(missing[row])
-    at = np.flatnonzero(missing[row])
+    cropped = str(subject.scans.attrs.get("cropped", ""))
+    if not missing.any():
+        text = cropped or "nothing missing"
+        return [Result("pass", "height", text, 0.0, flags=flags, noted=bool(cropped))]
+    ends = np.zeros_like(missing) if subject.is_map else profiles.at_the_ends(missing)
+    inside = missing & ~ends
+    count, share = int(missing.sum()), float(inside.mean())
+    row = int(np.argmax([profiles.longest_run(m) for m in inside]))
+    if not inside[row].any():
+        row = int(np.argmax(ends.any(axis=1)))
+        at = np.flatnonzero(ends[row])
+        where = subject.where(row, int(at[0]), int(at[-1]))
+        text = f"{Count(count):height is|heights are} missing at the ends, which are left out"
+        left_out = float(ends.mean(axis=1).max())
+        status = "suspect" if left_out > limits["fail"] else "pass"
+        cure = "Let the scan begin and end on the surface."
+        return [
+            Result(status, "height", text, left_out, "1", where, count, flags, True, cure),
+        ]
+    longest = profiles.longest_run(inside[row])
+    at = np.flatnonzero(inside[row])
     where = subject.where(row, int(at[0]), int(at[-1]))
     span = longest * subject.pitch
     text = (
-        f"{Count(count):height is|heights are} missing ({share:.2%}), at most {longest} in a row "
-        f"({span * 1e6:.4g} um), {where}"
+        f"{Count(count):height is|heights are} missing ({missing.mean():.2%}), at most {longest} "
+        f"in a row ({span * 1e6:.4g} um), {where}"
     )
+    text += f"; {cropped}" if cropped else ""
     whole = float(subject.x[-1] - subject.x[0])
+    # a map has other rows across a gap, a profile has not
+    far = not subject.is_map and span > limits["stretch"] * whole
     status = "pass"
     if share > limits["suspect"] or longest > limits["in_a_row"]:
         status = "suspect"
-    if share > limits["fail"] or span > limits["fail"] * whole:
+    if share > limits["fail"] or far:
         status = "fail"
     return [Result(status, "height", text, share, "1", where, count, flags, noted=True)]
 
@@ -245,16 +263,26 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     return [Result(status, "height", text, factor, "1", subject.profile_names[odd])]
 
 
+def _self_affine(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
+    if not subject.usable or subject.level:
+        return [Result("skipped", "height", "there is no roughness to look at")]
+    if (why := subject.not_self_affine) == "":
+        return [Result("pass", "height", "no wave and no lay stands out", 0.0)]
+    return [Result("suspect", "height", why, 1.0)]
+
+
 PROFILE_CHECKS = (
     Check(
         "dropouts",
         1,
         "Are heights missing?",
-        "Clean the surface or coat it; short gaps are bridged by straight lines.",
+        "Gaps are bridged, and the error they bring is in the bands; a cleaner or coated surface "
+        "has fewer.",
         {
             "suspect": Limit(1e-3, "1", "bridged singly, they change no spectrum"),
             "in_a_row": Limit(8.0, "1", "a bridge this long takes waves of its length away"),
-            "fail": Limit(0.05, "1", "more is bridge than a spectrum bears"),
+            "fail": Limit(0.25, "1", "up to a fifth the error of gaps is known to hold"),
+            "stretch": Limit(0.05, "1", "a profile without so much of its length in one piece"),
         },
         _dropouts,
     ),
@@ -311,6 +339,15 @@ PROFILE_CHECKS = (
         "out.",
         {},
         _level,
+    ),
+    Check(
+        "self_affine",
+        11,
+        "May a self-affine law carry the spectrum on to shorter waves?",
+        "Trust the measured part of the spectrum; contact and adhesion that rest on the "
+        "extrapolated part are not those of this surface.",
+        {},
+        _self_affine,
     ),
 )
 

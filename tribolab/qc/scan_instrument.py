@@ -59,9 +59,32 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             f"{stated_ones[row] * size:.6g} {unit}"
         )
         results.append(Result(status, name, text, value))
+    if (odd := _implausible(subject, limits)) is not None:
+        results.append(odd)
     if not results and attrs.get("stated_length_m") is None:
         return [Result("skipped", "length", "the file states neither length nor pitch")]
     return results
+
+
+def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | None:
+    """Say whether a scan is longer, or steeper, than surfaces are; None if it is not."""
+    length = float(subject.x[-1] - subject.x[0])
+    largest = limits["map"] if subject.is_map else limits["profile"]
+    if length > largest:
+        text = f"the scan is {length:.4g} m long by its units"
+        return Result("suspect", "length", text, length, "m")
+    _, profiles = subject.form
+    if not profiles or subject.level:
+        return None
+    slopes = [float(np.diff(profile.height.values).std()) / subject.pitch for profile in profiles]
+    steepest = max(slopes)
+    if steepest > limits["slope"]:
+        text = (
+            f"the rms slope is {steepest:.3g}, {np.degrees(np.arctan(steepest)):.3g} deg: heights "
+            "and positions do not fit each other"
+        )
+        return Result("suspect", "pitch", text, steepest)
+    return None
 
 
 def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
@@ -155,6 +178,9 @@ INSTRUMENT_CHECKS = (
         {
             "suspect": Limit(0.01, "1", "run-in and rounding stay below a hundredth"),
             "fail": Limit(0.1, "1", "wavenumbers wrong by a tenth change C by a third"),
+            "profile": Limit(1.0, "m", "drive units are a fifth of it long"),
+            "map": Limit(0.5, "m", "few areal instruments reach as far"),
+            "slope": Limit(20.0, "1", "87 deg: no gauge follows such flanks everywhere"),
         },
         _length,
     ),

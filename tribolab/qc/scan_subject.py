@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.surface.character import why_not_self_affine
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.psd import psd_1d
@@ -110,6 +111,21 @@ class ScanSubject:
         _, profiles = self.form
         flat = [level_rows(profile.height.values[None])[0] for profile in profiles]
         return np.flatnonzero(flat).tolist()
+
+    @cached_property
+    def not_self_affine(self) -> str:
+        """What speaks against a self-affine surface; empty if nothing does."""
+        x = self.x - self.x[0]
+        if not self.is_map:
+            _, profiles = self.form
+            rows = np.stack([profile.height.values for profile in profiles])
+            return why_not_self_affine(xr.Dataset({"height": (("scan", "x"), rows)}, {"x": x}))
+        if not np.isfinite(self.rows).any() or min(self.scans.height.shape[-2:]) < _FEWEST:
+            return ""
+        scans = self.scans[["height"]].assign_attrs(self.scans.attrs)
+        if "form_removed" not in scans.attrs:
+            scans = remove_form(scans, "polynomial")
+        return why_not_self_affine(scans)
 
     @cached_property
     def spectra(self) -> list[xr.Dataset]:

@@ -5,14 +5,31 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.errors import AnalysisError
 from tribolab.stamping import stamp
 from tribolab.surface.annuli import confidence_band
 from tribolab.surface.binning import correlation, log_bins, window
+from tribolab.surface.character import why_not_self_affine
 from tribolab.surface.form import remove_form
+from tribolab.surface.gaps import (
+    bridged,
+    gap_effect,
+    gaps_in,
+    logarithm,
+    lost_from,
+    still_worth,
+)
 from tribolab.surface.level import level_map, refuse_level
 
 _FEWEST = 16
+
+
+def _power(maps: np.ndarray, taper: np.ndarray) -> np.ndarray:
+    """Mean power of maps (scan, y, x) at each line; one transform at a time: maps are large."""
+    power = np.zeros(taper.shape)
+    for heights in maps:
+        power += np.abs(np.fft.fft2(heights * taper)) ** 2 / len(maps)
+    return power
 
 
 def psd_2d_of_map(
@@ -23,7 +40,8 @@ def psd_2d_of_map(
     Parameters
     ----------
     scan
-        ``height`` [m] (y, x) or (scan, y, x), evenly spaced, without dropouts.
+        ``height`` [m] (y, x) or (scan, y, x), evenly spaced. Missing heights (NaN) are bridged,
+        and the spectrum is corrected for them.
     form
         What to take away first: ``"auto"`` (a polynomial of second order unless form was removed
         before), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
@@ -35,12 +53,14 @@ def psd_2d_of_map(
     xarray.Dataset
         As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
         that along x, and both it and the mean hide what a lay of the surface does. Of several
-        maps the spectra are averaged.
+        maps the spectra are averaged. Where heights are missing, the band holds ``gap_error`` too,
+        the relative standard error that the gaps bring; wavenumbers from which on they took half
+        of the power are left out, and ``gaps_hide_above_1_m`` says so.
 
     Raises
     ------
     AnalysisError
-        If the map is too small, holds NaN, or does not vary.
+        If the map is too small, more than half of it is missing, or it does not vary.
 
     Notes
     -----
@@ -59,19 +79,14 @@ def psd_2d_of_map(
         raise AnalysisError(
             f"a map of {size} points is too small for a spectrum", function="psd_2d"
         )
-    if not np.isfinite(height).all():
-        raise AnalysisError(
-            "the map holds NaN",
-            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
-            function="psd_2d",
-        )
+    missing = gaps_in(scan.transpose(..., "y", "x"))
+    if missing is not None:
+        missing = missing.reshape(height.shape)
+        height = bridged(height, missing, is_map=True)
     refuse_level("psd_2d", scan, [level_map(row) for row in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     taper = np.outer(window(size[0]), window(size[1]))
-    power, whole = np.zeros(size), 0.0
-    for row in height:  # one transform at a time: maps are large
-        power += np.abs(np.fft.fft2(row * taper)) ** 2 / len(height)
-        whole += float(np.mean((row * taper) ** 2)) / len(height)
+    power, whole = _power(height, taper), float(np.mean((height * taper) ** 2))
     scale = steps[0] * steps[1] / (4 * np.pi**2 * taper.size)
     ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
@@ -82,12 +97,27 @@ def psd_2d_of_map(
     inside = (index >= 0) & (index < bins.starts.size)
     index = index[inside]
     lines = np.bincount(index, minlength=bins.starts.size)
-    mean = np.bincount(index, power.ravel()[inside], bins.starts.size) * scale / lines
+    per_line = scale / lines
+
+    def annuli(values: np.ndarray) -> np.ndarray:
+        return np.bincount(index, values.ravel()[inside], bins.starts.size) * per_line
+
+    mean = annuli(power)
     node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
-    low, high = confidence_band(mean, independent)
     known = np.arange(node.size) > 0  # the first annulus is what form and window take
+    lost, effect = float("inf"), None
+    if missing is not None:
+
+        def powers(maps: np.ndarray) -> np.ndarray:
+            return logarithm(annuli(_power(maps, taper)))
+
+        effect = gap_effect(height, missing, powers, is_map=True)
+        mean, independent = mean * np.exp(-effect.shift), still_worth(independent, effect)
+        lost = lost_from(node, effect)
+        known &= node < max(lost, node[min(4, node.size - 1)])
+    low, high = confidence_band(mean, independent)
     cell = (2 * np.pi) ** 2 / (taper.size * steps[0] * steps[1])
     along_x, along_y = (power * kx**2).sum(), (power * ky[:, None] ** 2).sum()
     data = xr.Dataset(
@@ -100,6 +130,8 @@ def psd_2d_of_map(
         },
         {"wavenumber": node[known]},
     )
+    if effect is not None:
+        data["gap_error"] = ("wavenumber", effect.error[known])
     attrs = {
         **scan.attrs,
         "convention": "<h^2> = 2 pi int q C dq",
@@ -108,4 +140,8 @@ def psd_2d_of_map(
         "anisotropy": float(np.sqrt(along_y / along_x)),
         "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
     }
+    if why := why_not_self_affine(scan):
+        attrs["not_self_affine"] = why
+    if np.isfinite(lost):
+        attrs["gaps_hide_above_1_m"] = lost
     return stamp(data.assign_attrs(attrs))

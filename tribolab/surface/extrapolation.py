@@ -16,6 +16,7 @@ from tribolab.units import to_si
 MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
 _ABOVE_ROLLOFF = 1.5  # the fit keeps so far above the roll-off
+_STEEPEST = 2.0  # Hurst exponent; smoothed surfaces reach 1.2, tips and filters 1.5
 _NORMAL = 1.959963984540054  # 95 % of a normal distribution
 
 
@@ -80,13 +81,13 @@ def extrapolate(
         ``psd_2d`` with its band from `q_low` to `q_high`, and ``origin``: 0 measured, 1
         extrapolated to small, 2 to large wavenumbers. Attributes ``hurst_exponent`` and its
         standard error, ``fit_low_1_m``, ``fit_high_1_m``, ``rolloff_wavenumber_1_m`` and
-        ``rolloff`` (what is known of it).
+        ``rolloff`` (what is known of it); ``not_self_affine`` says what speaks against the law.
 
     Raises
     ------
     AnalysisError
         If q_low is not below q_high, the spectrum is none, it does not fall over the fitted
-        decade, or that decade holds fewer than three points.
+        decade or falls as no rough surface's does, or that decade holds fewer than three points.
 
     Notes
     -----
@@ -112,6 +113,8 @@ def extrapolate(
     if not (c > 0).any():
         raise AnalysisError("the spectrum is zero everywhere", function="extrapolate")
     law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
+    if high > q[-1]:
+        _refuse_steep(law, decade, str(psd.attrs.get("not_self_affine", "")))
     measured = _Part(q, c, _relative_band(psd, c), MEASURED)
     parts = [measured.between(low, high)]
     if low < q[0]:
@@ -154,6 +157,26 @@ def extrapolate(
         "assumption; longer scans would show it",
     }
     return stamp(data.assign_attrs(attrs))
+
+
+def _refuse_steep(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
+    """Refuse a fall that no rough surface has."""
+    hurst = -0.5 * law.slope - 1
+    if hurst <= _STEEPEST:
+        return
+    why = why or "a gauge, a groove, or what a filter or the window left of a single wave"
+    raise AnalysisError(
+        f"C(q) falls between {decade[0]:.4g} and {decade[1]:.4g} 1/m as on a surface with a Hurst "
+        f"exponent of {hurst:.2g}; rough surfaces have 0 to {_STEEPEST:g}, so no power law leads "
+        f"on from there ({why})",
+        cure=Cure(
+            notebook="take the measured spectrum alone (q_high = its last wavenumber), or another "
+            "fit_decade",
+            campaign="say q_high in [roughness], no more than the last measured wavenumber, or "
+            "another fit_decade",
+        ),
+        function="extrapolate",
+    )
 
 
 def origin_flags() -> dict[str, str | list[int]]:

@@ -8,6 +8,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.provenance import history_line
 from tribolab.stamping import stamp
+from tribolab.surface.gaps import bridged
 from tribolab.surface.level import rounding_only
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.
@@ -22,12 +23,14 @@ _CHUNK = 1 << 20  # heights that are worked on at a time
 
 
 def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
-    """Fill dropouts (NaN) along x by straight lines between their neighbours, and count them.
+    """Fill dropouts (NaN) from the heights beside them, and count them.
 
     Parameters
     ----------
     scans
-        ``height`` [m] (..., x); at the ends of a profile the nearest height is repeated.
+        Profiles, ``height`` [m] (..., x), which straight lines fill; at the ends the nearest
+        height is repeated. Maps (..., y, x) are filled from four sides, see
+        `tribolab.surface.gaps.bridged`.
 
     Returns
     -------
@@ -38,7 +41,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     AnalysisError
-        If a profile has fewer than two heights.
+        If a profile or map has fewer than two heights.
 
     Examples
     --------
@@ -47,27 +50,23 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     >>> filled.height.values.tolist(), filled.attrs["dropouts"]
     ([0.0, 1e-06, 2e-06], 1)
     """
-    dims = [str(d) for d in scans.height.dims if d != "x"] + ["x"]
+    axes = [d for d in ("y", "x") if d in scans.height.dims]
+    dims = [str(d) for d in scans.height.dims if d not in axes] + axes
     height = scans.height.transpose(*dims)
     missing = ~np.isfinite(height)
     number = int(missing.sum())
     result = scans.assign_attrs(dropouts=number, dropout_share=number / missing.size)
     if number == 0:
         return result
-    present = int((~missing).sum("x").min())
+    present = int((~missing).sum(axes).min())
     if present < 2:
         raise AnalysisError(
-            f"a profile has {present} heights that are numbers, two are the least; "
+            f"a scan has {present} heights that are numbers, two are the least; "
             "leave that scan out",
             function="fill_dropouts",
         )
-    rows = height.values.reshape(-1, height.sizes["x"]).copy()
-    holes = missing.values.reshape(rows.shape)
-    x = scans.x.values
-    for index in np.flatnonzero(holes.any(1)):
-        row, hole = rows[index], holes[index]
-        row[hole] = np.interp(x[hole], x[~hole], row[~hole])
-    filled = height.copy(data=rows.reshape(height.shape))
+    values = bridged(height.values, missing.values, is_map="y" in dims)
+    filled = height.copy(data=values)
     return stamp(result.assign(height=filled, dropout=missing.astype("int8")))
 
 

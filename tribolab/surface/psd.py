@@ -12,8 +12,18 @@ from tribolab.surface import abel
 from tribolab.surface.annuli import annular_spectrum, bins_of, confidence_band, join
 from tribolab.surface.areal import psd_2d_of_map
 from tribolab.surface.binning import log_bins, shape, window
+from tribolab.surface.character import why_not_self_affine
 from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.fourier import binned_power, fast_length
+from tribolab.surface.gaps import (
+    bridged,
+    gap_effect,
+    gaps_in,
+    logarithm,
+    lost_from,
+    still_worth,
+    without_ends,
+)
 from tribolab.surface.level import level_rows, refuse_level
 from tribolab.surface.reliability import trusted_band
 from tribolab.surface.smooth_law import fitted_law
@@ -35,7 +45,8 @@ def psd_1d(
     Parameters
     ----------
     scans
-        ``height`` [m] (scan, x) or (x), evenly spaced, without dropouts.
+        ``height`` [m] (scan, x) or (x), evenly spaced. Missing heights (NaN) are bridged, and the
+        spectrum is corrected for them; missing ends are cut off.
     form
         What to take away first, see `remove_form`; ``"auto"`` takes a circle from scans whose
         form was not removed before, ``"none"`` only the mean.
@@ -55,12 +66,14 @@ def psd_1d(
         ``psd_1d`` [m3] with ``psd_1d_low``, ``psd_1d_high`` (95 % band), the number of
         ``independent_values`` and ``trusted`` (1 or 0), over ``wavenumber`` [1/m] with the bins'
         edges ``wavenumber_low`` and ``wavenumber_high``. The attributes say what limits the
-        trusted band and how well Parseval's relation holds.
+        trusted band and how well Parseval's relation holds. Where heights are missing, the band
+        holds ``gap_error`` too, the relative standard error that the gaps bring.
 
     Raises
     ------
     AnalysisError
-        If the heights hold NaN, are too few, or if those of a scan do not vary but for rounding.
+        If the heights are too few, more than half of a scan's are missing, or those of a scan do
+        not vary but for rounding.
 
     Notes
     -----
@@ -92,28 +105,33 @@ def psd_1d(
     length = fast_length(points)
     taken = removed_order(scans)
     bins = log_bins(length // 2, taken + 2, bins_per_decade)
-    power = binned_power(heights.data, window(points, flanks), bins, length, workers)
-    if not np.isfinite(power.heights):
-        raise AnalysisError(
-            "the heights hold NaN or infinity",
-            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
-            function="psd_1d",
-        )
+    taper, missing = window(points, flanks), gaps_in(scans)
+    if missing is not None:
+        heights = heights.copy(data=bridged(heights.values, missing, is_map=False))
+    power = binned_power(heights.data, taper, bins, length, workers)
     refuse_level("psd_1d", scans, level_rows(heights.data))
     spacing = 2 * np.pi / (length * pitch)
     mean = power.bins / (bins.counts * number) * pitch / (2 * np.pi * points)
     q = bins.nodes * spacing
     slope = np.gradient(np.log(np.maximum(mean, 1e-300)), np.log(q)) if q.size > 2 else 0 * q
     ratio, independent = shape(bins, np.clip(slope, -6, 1), points / length, flanks)
+    worth, effect = number * independent, None
+    if missing is not None:
+
+        def powers(rows: np.ndarray) -> np.ndarray:
+            return logarithm(binned_power(rows, taper, bins, length, workers).bins)
+
+        effect = gap_effect(heights.values, missing, powers, is_map=False)
+        mean, worth = mean * np.exp(-effect.shift), still_worth(worth, effect)
     value = mean / ratio
-    low, high = confidence_band(value, number * independent)
+    low, high = confidence_band(value, worth)
     edges = bins.edges * spacing
     data = xr.Dataset(
         {
             "psd_1d": ("wavenumber", value),
             "psd_1d_low": ("wavenumber", low),
             "psd_1d_high": ("wavenumber", high),
-            "independent_values": ("wavenumber", number * independent),
+            "independent_values": ("wavenumber", worth),
             "mean_square_height": ("wavenumber", 2 * mean * bins.counts * spacing),
         },
         {
@@ -122,7 +140,10 @@ def psd_1d(
             "wavenumber_high": ("wavenumber", edges[1:]),
         },
     )
-    trusted, limits = trusted_band(data, scans, tip_radius, taken + 2)
+    if effect is not None:
+        data["gap_error"] = ("wavenumber", effect.error)
+    lost = float("inf") if effect is None else lost_from(q, effect)
+    trusted, limits = trusted_band(data, scans, tip_radius, taken + 2, lost)
     data["trusted"] = ("wavenumber", trusted)
     whole = power.heights / (number * points)
     attrs = {
@@ -136,6 +157,8 @@ def psd_1d(
         "mean_square_height_m2": whole,
         "parseval_error": abs(power.lines / power.heights - 1),
     }
+    if why := why_not_self_affine(scans):
+        attrs["not_self_affine"] = why
     return stamp(data.assign_attrs(attrs))
 
 
@@ -253,6 +276,7 @@ def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
         )
     if form == "auto":
         form = "none" if "form_removed" in scans.attrs else "circle"
+    scans = without_ends(scans)
     scans = scans if form == "none" else remove_form(scans, form)
     return scans.rename({others[0]: "scan"}) if others else scans.expand_dims("scan")
 

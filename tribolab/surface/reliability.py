@@ -64,7 +64,11 @@ def noise_cutoff(wavenumber: np.ndarray, psd_1d: np.ndarray) -> float:
 
 
 def trusted_band(
-    spectrum: xr.Dataset, scans: xr.Dataset, tip_radius: str | float | None, lowest: int
+    spectrum: xr.Dataset,
+    scans: xr.Dataset,
+    tip_radius: str | float | None,
+    lowest: int,
+    lost: float = float("inf"),
 ) -> tuple[np.ndarray, dict[str, float | str]]:
     """Mark the bins that can be trusted.
 
@@ -78,6 +82,8 @@ def trusted_band(
         Radius of the tip [m] or text, instead of the scans'.
     lowest
         First Fourier line that form removal and window leave untouched.
+    lost
+        Wavenumber [1/m] from which on gaps hide the surface.
 
     Returns
     -------
@@ -93,6 +99,8 @@ def trusted_band(
     if radius is not None:
         radius = to_si(radius, "m", "tip_radius")
         highs["stylus tip"] = tip_cutoff(q, c, right - left, radius)
+    if lost < highs["Nyquist"]:
+        highs["gaps"] = lost
     lows = {"form removal": float(left[first])}
     if "lambda_s_m" in scans.attrs:
         kept = -0.5 * np.log(1 - _FILTER_LOSS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 
@@ -10,6 +12,7 @@ from tribolab.provenance import history_line
 from tribolab.several import over_dims
 from tribolab.stamping import stamp
 from tribolab.surface.filters import gaussian_filter
+from tribolab.surface.gaps import bridged, gap_effect, gaps_in, without_ends
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
 from tribolab.units import positive, to_si
@@ -27,7 +30,8 @@ def roughness_parameters(
     Parameters
     ----------
     scans
-        ``height`` [m] (..., x) without form and dropouts.
+        ``height`` [m] (..., x) without form. Missing heights (NaN) are bridged, and the results
+        are corrected for them; missing ends of profiles are cut off.
     lambda_c
         Long-wave cut-off [m] or text; None leaves long waves in. ``"auto"``: nothing for a
         profile that the instrument filtered (attribute ``lambda_c_m``), else the standard 0.8 mm,
@@ -43,13 +47,14 @@ def roughness_parameters(
     -------
     xarray.Dataset
         ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1], with the dims of the heights
-        but x. The attributes say which cut-offs were applied and over which length.
+        but x. The attributes say which cut-offs were applied and over which length. Where heights
+        are missing, ``Ra_gap_error`` and so on are the standard errors that the gaps bring.
 
     Raises
     ------
     AnalysisError
-        If the heights hold NaN or do not vary but for rounding, or if the profile is shorter than
-        two cut-offs.
+        If the heights do not vary but for rounding, if more than half of a scan's are missing, or
+        if the profile is shorter than two cut-offs.
 
     Notes
     -----
@@ -70,69 +75,123 @@ def roughness_parameters(
     >>> round(float(found.Rq) * 1e6, 4), round(float(found.Ra) * 1e6, 4)
     (0.7071, 0.6366)
     """
+    scans = without_ends(scans)
     x = scans.x.values
     pitch, points = float((x[-1] - x[0]) / (x.size - 1)), x.size
-    if not np.isfinite(scans.height).all():
-        raise AnalysisError(
-            "the heights hold NaN",
-            cure=Cure(notebook="fill the dropouts with fill_dropouts()"),
-            function="roughness_parameters",
-        )
     cut, filtered = _long_cutoff(lambda_c, scans, pitch * points)
-    profile = scans
     fine = None if lambda_s in ("auto", None) else to_si(lambda_s, "m", "lambda_s")
-    if fine is not None:
-        profile = gaussian_filter(profile, fine)
-    height = profile.height.transpose(..., "x")
-    if cut is not None and not filtered:
-        edge = int(round(0.5 * cut / pitch))
-        if points - 2 * edge < cut / pitch:
-            raise AnalysisError(
-                f"{pitch * points:.3g} m are shorter than two cut-offs "
-                f"lambda_c = {cut:.3g} m; give a smaller lambda_c",
-                function="roughness_parameters",
-            )
-        rough = height - gaussian_filter(profile, cut).height
-        height = rough.isel(x=slice(edge, points - edge))
-    rows = height.values
-    lengths = 5 if cut is None else max(1, int(round(rows.shape[-1] * pitch / cut - 0.25)))
-    size = rows.shape[-1] // lengths
-    parts = rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
-    deviation = parts if sampling_lengths and cut is not None else rows[..., None, :]
-    if cut is None:  # else the filter's mean line is the zero of the profile
-        deviation = deviation - deviation.mean(-1, keepdims=True)
-    slope = _slope(rows, pitch)
-    given = scans.height.transpose(..., "x").values.reshape(-1, points)
-    level = level_rows(given) | rounding_only(deviation.reshape(len(given), -1), given)
-    refuse_level("roughness_parameters", scans, level)
-    square = np.mean(deviation**2, -1)
-    if not (square > 0).all():
-        raise AnalysisError(
-            "a whole sampling length is level, its skewness is not defined",
-            cure=Cure(
-                notebook="cut the scan, or take sampling_lengths=False", campaign="cut the scan"
-            ),
-            function="roughness_parameters",
-        )
-    dims = height.dims[:-1]
-    values = {
-        "Ra": np.abs(deviation).mean(-1).mean(-1),
-        "Rq": np.sqrt(square).mean(-1),
-        "Rz": np.ptp(parts, axis=-1).mean(-1),
-        "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
-        "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
-        "Rdq": np.sqrt(np.mean(slope**2, -1)),
-    }
+    given = scans.height.transpose(..., "y", "x") if "y" in scans.dims else scans.height
+    given = given.transpose(..., "x")
+    missing = gaps_in(xr.Dataset({**scans.data_vars, "height": given}, attrs=scans.attrs))
+    is_map = "y" in given.dims
+    if missing is not None:
+        given = given.copy(data=bridged(given.values, missing, is_map=is_map))
+    evaluation = _Evaluation(pitch, cut, filtered, fine, sampling_lengths)
+    values = evaluation.parameters(scans.assign(height=given))
+    dims = given.dims[:-1]
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
+    if missing is not None:
+        data = _corrected(data, scans.assign(height=given), missing, evaluation)
     applied = {"lambda_c_m": cut, "lambda_s_m": fine}
+    length, lengths = evaluation.lengths(points)
     return stamp(
         data,
         **{k: v for k, v in applied.items() if v is not None},
         filtered_by="instrument" if filtered else "tribolab" if cut or fine else "nothing",
-        evaluation_length_m=rows.shape[-1] * pitch,
+        evaluation_length_m=length,
         sampling_lengths=lengths,
         history=history_line("roughness parameters"),
     )
+
+
+class _Evaluation(NamedTuple):
+    """How roughness is evaluated: pitch, cut-offs [m], who filtered, over which lengths."""
+
+    pitch: float
+    cut: float | None
+    filtered: bool
+    fine: float | None
+    sampling: bool
+
+    @property
+    def edge(self) -> int:
+        """Points at each end in which the filter runs in."""
+        return int(round(0.5 * self.cut / self.pitch)) if self.cut and not self.filtered else 0
+
+    def lengths(self, points: int) -> tuple[float, int]:
+        """Return the evaluation length [m] of profiles of so many points, and its parts."""
+        length = (points - 2 * self.edge) * self.pitch
+        return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
+
+    def parameters(self, scans: xr.Dataset) -> dict[str, np.ndarray]:
+        """Return the parameters of profiles without gaps."""
+        pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
+        profile = scans if self.fine is None else gaussian_filter(scans, self.fine)
+        height = profile.height.transpose(..., "x")
+        if cut is not None and not self.filtered:
+            if points - 2 * self.edge < cut / pitch:
+                raise AnalysisError(
+                    f"{pitch * points:.3g} m are shorter than two cut-offs "
+                    f"lambda_c = {cut:.3g} m; give a smaller lambda_c",
+                    function="roughness_parameters",
+                )
+            rough = height - gaussian_filter(profile, cut).height
+            height = rough.isel(x=slice(self.edge, points - self.edge))
+        rows = height.values
+        _, lengths = self.lengths(points)
+        size = rows.shape[-1] // lengths
+        parts = rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
+        deviation = parts if self.sampling and cut is not None else rows[..., None, :]
+        if cut is None:  # else the filter's mean line is the zero of the profile
+            deviation = deviation - deviation.mean(-1, keepdims=True)
+        slope = _slope(rows, pitch)
+        given = scans.height.transpose(..., "x").values.reshape(-1, points)
+        level = level_rows(given) | rounding_only(deviation.reshape(len(given), -1), given)
+        refuse_level("roughness_parameters", scans, level)
+        square = np.mean(deviation**2, -1)
+        if not (square > 0).all():
+            raise AnalysisError(
+                "a whole sampling length is level, its skewness is not defined",
+                cure=Cure(
+                    notebook="cut the scan, or take sampling_lengths=False", campaign="cut the scan"
+                ),
+                function="roughness_parameters",
+            )
+        return {
+            "Ra": np.abs(deviation).mean(-1).mean(-1),
+            "Rq": np.sqrt(square).mean(-1),
+            "Rz": np.ptp(parts, axis=-1).mean(-1),
+            "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
+            "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
+            "Rdq": np.sqrt(np.mean(slope**2, -1)),
+        }
+
+
+def _corrected(
+    data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
+) -> xr.Dataset:
+    """Take the shift by gaps off, and say the standard error that is left (``Ra_gap_error``)."""
+    shape = scans.height.shape
+    is_map = "y" in scans.height.dims
+    grid = shape[-2:] if is_map else shape[-1:]
+
+    def parameters(height: np.ndarray) -> np.ndarray:
+        same = scans.assign(height=scans.height.copy(data=height.reshape(shape)))
+        return np.stack(list(evaluation.parameters(same).values()))
+
+    effect = gap_effect(
+        scans.height.values.reshape(-1, *grid),
+        missing.reshape(-1, *grid),
+        parameters,
+        is_map=is_map,
+    )
+    dims = data["Ra"].dims
+    for name, shift, error in zip(list(data), effect.shift, effect.error, strict=True):
+        if name == "Rz":  # few gaps hide a highest peak, but those that do hide much
+            error = np.full_like(error, error.max())
+        data[name] = data[name] - shift
+        data[f"{name}_gap_error"] = (dims, error)
+    return data
 
 
 def _long_cutoff(

@@ -1,0 +1,106 @@
+"""Whether a surface can be self-affine: waves that repeat, and a lay, speak against it."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.surface.gaps import bridged, gaps_in
+
+_MOST_POINTS = 8192  # of a profile that are looked at: a wave that rules has some points a period
+_PERIODS = 12  # fewer of them in a scan are no wave that repeats: chance makes six
+_LOBE = 2  # lines on either side that a Hann window spreads a wave over
+_RULES = 0.55  # share of the mean square height that one wave holds on no random surface
+_LAY = 0.4  # slopes along a lay over those across; chance makes 0.6 of smooth small maps
+
+
+def why_not_self_affine(scans: xr.Dataset) -> str:
+    """Say why no self-affine law carries on the spectrum of these scans; nothing if it may.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (scan, x), (y, x) or (scan, y, x), without form.
+
+    Returns
+    -------
+    str
+        Words for a sentence; empty if nothing speaks against it.
+
+    Notes
+    -----
+    One wave of at least twelve periods that holds more than half of the mean square height is a
+    groove, a gauge, or marks of a tool. The lay of a map is the ratio of the rms slopes along the
+    main axes of ``<grad h grad h>``, which no rotation of the map changes.
+
+    Examples
+    --------
+    >>> x = 1e-6 * np.arange(4000)
+    >>> wave = xr.Dataset({"height": ("x", 1e-6 * np.sin(2 * np.pi * x / 8e-5))}, {"x": x})
+    >>> why_not_self_affine(wave)
+    'one wave of 80 um holds 100 % of the mean square height: a gauge, a groove or marks of a tool'
+    """
+    is_map = "y" in scans.height.dims
+    dims = ("y", "x") if is_map else ("x",)
+    height = scans.height.transpose(..., *dims)
+    values, missing = height.values, gaps_in(scans.assign(height=height))
+    if missing is not None:
+        values = bridged(values, missing, is_map=is_map)
+    if not np.isfinite(values).all() or min(values.shape[-len(dims) :]) < 2 * _PERIODS:
+        return ""
+    steps = {dim: float(np.ptp(scans[dim].values)) / (scans.sizes[dim] - 1) for dim in dims}
+    for dim in dims:
+        rows = np.moveaxis(values, -1, -2) if dim == "y" else values
+        share, length = dominant_wave(rows.reshape(-1, rows.shape[-1]), steps[dim])
+        if share >= _RULES:
+            return (
+                f"one wave of {1e6 * length:.3g} um holds {100 * share:.0f} % of the mean square "
+                "height: a gauge, a groove or marks of a tool"
+            )
+    if is_map and (ratio := slope_ratio(values, steps["y"], steps["x"])) < _LAY:
+        return (
+            f"slopes one way are {1 / ratio:.2g} times those across it: the surface has a lay, or "
+            "the rows of the map are not in line"
+        )
+    return ""
+
+
+def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
+    """Return the share of the mean square height that one wave holds, and its length [m].
+
+    Parameters
+    ----------
+    rows
+        Heights [m] (row, x) without gaps.
+    pitch
+        Distance of neighbouring points [m].
+    """
+    joined = -(-rows.shape[-1] // _MOST_POINTS)
+    number = rows.shape[-1] // joined
+    rows = rows[:, : joined * number].reshape(len(rows), number, joined).mean(axis=-1)
+    taper = np.hanning(number)
+    rows = rows - (rows @ taper / taper.sum())[:, None]
+    power = (np.abs(np.fft.rfft(rows * taper, axis=-1)) ** 2).mean(axis=0)
+    total = float(power.sum())
+    if number < 4 * _PERIODS or not total > 0:
+        return 0.0, float("nan")
+    lobes = np.convolve(power, np.ones(2 * _LOBE + 1), mode="same")
+    lobes[:_PERIODS] = 0.0
+    line = _PERIODS + int(np.argmax(power[_PERIODS:]))
+    near = np.arange(line - _LOBE, min(line + _LOBE + 1, power.size))
+    middle = float(near @ power[near] / power[near].sum())
+    return min(float(lobes[line]) / total, 1.0), number * joined * pitch / middle
+
+
+def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
+    """Rms slope along the lay of maps (..., y, x) over that across it; 1 if there is none."""
+    along_x = np.diff(height, axis=-1)[..., :-1, :] / step_x
+    along_y = np.diff(height, axis=-2)[..., :, :-1] / step_y
+    tensor = np.array(
+        [
+            [np.mean(along_x**2), np.mean(along_x * along_y)],
+            [np.mean(along_x * along_y), np.mean(along_y**2)],
+        ]
+    )
+    least, most = np.linalg.eigvalsh(tensor)
+    return float(np.sqrt(max(least, 0.0) / most)) if most > 0 else 1.0

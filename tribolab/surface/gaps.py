@@ -1,0 +1,220 @@
+"""Scans with missing heights: how gaps are bridged, and what they do to a result.
+
+What a gap takes from a result is found out on the scan itself: the same gaps are laid over other
+places of it, bridged there, too, and the result computed anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+
+TRIALS = 16  # places where the gaps are laid
+_MOST = 0.5  # share of missing heights from which on a scan says too little
+_FEW = 8  # heights at an end: they are bridged by the nearest one
+_STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
+_NORMAL = 1.96
+_DOUBT = 0.3  # share of a correction that it may be wrong by: gaps are where they are for a reason
+_LOST = float(np.log(2.0))  # a correction by this factor is more gap than measurement
+
+
+class GapEffect(NamedTuple):
+    """What gaps did to a result: its mean shift, and the standard error that is left.
+
+    The result less the shift is what the whole scan would have shown, within 1.96 errors in 95 %
+    of cases.
+    """
+
+    shift: np.ndarray
+    error: np.ndarray
+
+
+def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
+    """Where heights are missing, or were filled by `fill_dropouts`: truth like ``height``.
+
+    Returns None where there are none.
+    """
+    missing = ~np.isfinite(scans.height)
+    if "dropout" in scans:
+        missing = missing | (scans.dropout > 0)
+    values = missing.transpose(*scans.height.dims).values
+    return values if values.any() else None
+
+
+def without_ends(scans: xr.Dataset) -> xr.Dataset:
+    """Cut profiles to the stretch between the first and last height that all of them have.
+
+    A map stays as it is, and so do profiles of which less than half would be left, or that lack a
+    few heights only.
+    """
+    missing = gaps_in(scans)
+    if missing is None or "y" in scans.height.dims:
+        return scans
+    axis = list(scans.height.dims).index("x")
+    present = ~np.moveaxis(missing, axis, -1).reshape(-1, scans.sizes["x"])
+    if not present.any(axis=1).all():
+        return scans
+    first = int(present.argmax(axis=1).max())
+    last = present.shape[1] - int(present[:, ::-1].argmax(axis=1).max())
+    lost = max(first, present.shape[1] - last)
+    if lost <= _FEW or last - first < max(2, present.shape[1] // 2):
+        return scans
+    return scans.isel(x=slice(first, last))
+
+
+def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
+    """Fill gaps: in profiles (..., x) by straight lines, in maps (..., y, x) from four sides.
+
+    Parameters
+    ----------
+    height
+        Heights [m]; what stands in a gap does not count.
+    missing
+        Truth, like the heights.
+    is_map
+        Whether the last two dimensions are a map.
+
+    Returns
+    -------
+    numpy.ndarray
+        The heights; in the gaps of a map the mean of the nearest heights to the left and right,
+        above and below, each weighted by one over its distance.
+
+    Examples
+    --------
+    >>> row = np.array([0.0, np.nan, np.nan, 3.0, np.nan])
+    >>> bridged(row, np.isnan(row), is_map=False).tolist()
+    [0.0, 1.0, 2.0, 3.0, 3.0]
+    """
+    if not missing.any():
+        return height
+    total, weights = np.zeros(height.shape), np.zeros(height.shape)
+    for axis in (-1, -2) if is_map else (-1,):
+        for backwards in (False, True):
+            value, distance = _nearest(height, missing, axis, backwards=backwards)
+            weight = np.where(np.isfinite(distance), 1.0 / distance, 0.0)
+            total += weight * value
+            weights += weight
+    if not (weights[missing] > 0).all():
+        if not is_map:
+            raise AnalysisError(
+                "a profile has no height that is a number; leave that scan out",
+                function="fill_dropouts",
+            )
+        alone = missing & (weights == 0)  # the corner of two strips
+        total[alone], weights[alone] = float(np.mean(height[~missing])), 1.0
+    return np.where(missing, np.divide(total, weights, where=missing, out=total), height)
+
+
+def _nearest(
+    height: np.ndarray, missing: np.ndarray, axis: int, *, backwards: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nearest height that is there, in one direction, and its distance in points."""
+    if backwards:
+        height, missing = np.flip(height, axis), np.flip(missing, axis)
+    number = height.shape[axis]
+    place = np.expand_dims(np.arange(number), tuple(range(1, -axis)))
+    last = np.maximum.accumulate(np.where(missing, -1, place), axis=axis)
+    value = np.take_along_axis(height, np.maximum(last, 0), axis=axis)
+    distance = np.where(last >= 0, np.maximum(place - last, 1), np.inf)
+    value = np.where(last >= 0, value, 0.0)
+    if backwards:
+        value, distance = np.flip(value, axis), np.flip(distance, axis)
+    return value, distance
+
+
+def gap_effect(
+    height: np.ndarray,
+    missing: np.ndarray,
+    measure: Callable[[np.ndarray], np.ndarray],
+    *,
+    is_map: bool,
+    rows: bool = False,
+) -> GapEffect:
+    """Say what gaps did to a result, by laying the same gaps over other places of the scan.
+
+    Parameters
+    ----------
+    height
+        Bridged heights [m] (scan, x) or (scan, y, x).
+    missing
+        Truth, like the heights.
+    measure
+        Computes the result of heights; what errs by a factor gives its logarithm.
+    is_map
+        Whether the scans are maps.
+    rows
+        Whether each row of a map has a result of its own; its gaps then stay in it.
+
+    Returns
+    -------
+    GapEffect
+        Of the shape that `measure` gives.
+
+    Raises
+    ------
+    AnalysisError
+        If more than half of a scan is missing.
+
+    Notes
+    -----
+    The gaps are moved along (round the ends) and mirrored, in sixteen ways that are the same each
+    time. They fall on what is bridged already as often as the share of the gaps, which the mean
+    shift is corrected for. Three tenths of the shift are added to the error: gaps of real scans
+    stand on flanks and in pits rather than anywhere.
+    """
+    share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
+    if share > _MOST:
+        raise AnalysisError(
+            f"{share:.0%} of the heights are missing; what is left says too little of the surface: "
+            "leave that scan out"
+        )
+    rng = np.random.default_rng(20)
+    whole = measure(height)
+    changes = []
+    for _ in range(TRIALS):
+        gaps = _elsewhere(missing, rng, (-2, -1) if is_map and not rows else (-1,))
+        changes.append(measure(bridged(height, gaps, is_map=is_map)) - whole)
+    every = np.stack(changes)
+    shift = every.mean(axis=0) / (1.0 - share)
+    # gaps that hit the one highest peak make tails longer than the normal distribution's
+    farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
+    scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
+    return GapEffect(shift, np.hypot(np.sqrt(1.0 + 1.0 / TRIALS) * scatter, _DOUBT * shift))
+
+
+def logarithm(power: np.ndarray) -> np.ndarray:
+    """Logarithm of what is a factor; of nothing that of the smallest number."""
+    return np.log(np.maximum(power, np.finfo(float).tiny))
+
+
+def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
+    """Return how many independent values have the error of these and that of the gaps together.
+
+    >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]))
+    >>> round(float(still_worth(np.array([100.0]), effect)[0]), 9)
+    50.0
+    """
+    return np.asarray(1.0 / (1.0 / independent + effect.error**2))
+
+
+def lost_from(wavenumber: np.ndarray, effect: GapEffect) -> float:
+    """Wavenumber [1/m] from which on the gaps took, or added, half of the power; else infinite."""
+    lost = np.abs(effect.shift) > _LOST
+    return float(wavenumber[np.argmax(lost)]) if lost.any() else float("inf")
+
+
+def _elsewhere(missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]) -> np.ndarray:
+    """Return the gaps of each scan, moved and mirrored at random along some axes."""
+    moved = np.empty_like(missing)
+    for scan, gaps in enumerate(missing):  # a loop over scans
+        for axis in axes:
+            gaps = np.roll(gaps, int(rng.integers(gaps.shape[axis])), axis)
+            gaps = np.flip(gaps, axis) if rng.random() < 0.5 else gaps
+        moved[scan] = gaps
+    return moved
