@@ -16,7 +16,7 @@ from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
-from tribolab.lubrication.mixed import _film, _linearised, _rupture, couette_number
+from tribolab.lubrication.mixed import _film, _jacobian, _rupture, couette_number
 from tribolab.lubrication.stribeck import film_profile, stribeck_curve
 from tribolab.lubrication.sweep import dry_state
 
@@ -76,7 +76,11 @@ def test_no_fluid_pulls_and_the_cavity_opens_towards_the_outlet(name, speed):
     factors = flow_factors(reference_psd(name))
     entrained = speed / 2 * (u + factors.rms_roughness * factors.at(u).phi_s)
     assert np.all(np.diff(entrained[cavity]) > 0)
-    assert entrained[cavity][0] >= float(found.flux) * (1 - 1e-2)
+    # the film ruptures in the cell whose faces entrain less and more than flows
+    first = int(np.argmax(cavity))
+    faces = (u[first - 1 : first + 1] + u[first : first + 2]) / 2
+    held, freed = speed / 2 * (faces + factors.rms_roughness * factors.at(faces).phi_s)
+    assert held <= float(found.flux) <= freed
 
 
 @pytest.mark.parametrize("friction_factors", [True, False])
@@ -135,9 +139,9 @@ def test_the_jacobian_is_the_derivative_of_the_equations():
     separation = separation_table(psd, E_STAR)
     problem = lubrication_problem(CONTACT, separation, flow_factors(psd), 310.0, 1e-6, 60, 1.0)
     couette = couette_number(problem, 1.4, 3e-5)
-    state = dry_state(problem, CONTACT, psd, 310.0)
+    state = dry_state(problem, CONTACT, separation_table(psd, E_STAR), 310.0)
     film = _film(problem, couette, state)
-    matrix, _ = _linearised(problem, film)
+    matrix = _jacobian(problem, film)
     weight = film.total.max() / problem.load  # of the load's row
     rng = np.random.default_rng(1)
     for _ in range(3):
@@ -212,7 +216,8 @@ def test_vanishing_roughness_is_smooth():
 def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
     """Between first and second order: the front of the cavity sits on a cell.
 
-    Where in the cell shifts the film to and fro: the order is that over two doublings, 1.5 to 2.4.
+    Where in the cell shifts the film to and fro, by 2e-5 of it already on 100 cells: the order is
+    that of friction over two doublings.
     """
     psd = reference_psd(name) if name else None
     films, frictions = [], []
@@ -222,7 +227,7 @@ def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
         frictions.append(float(curve.friction_coefficient[0]))
     assert abs(films[2] / films[1] - 1) < finest
     assert abs(frictions[2] / frictions[1] - 1) < 1e-3
-    order = np.log2(abs(films[0] - films[2]) / abs(films[1] - films[2])) / 2
+    order = np.log2(abs(frictions[0] - frictions[2]) / abs(frictions[1] - frictions[2])) / 2
     assert order > 1.0
 
 
@@ -256,7 +261,7 @@ def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, nam
             cells=200,
         )
     except AnalysisError as error:
-        reasons = "not thin beside the radius", "pressed flat"
+        reasons = "not thin beside the radius", "pressed flat", "far above"
         assert any(reason in str(error) for reason in reasons)
         return
     assert float(curve.residual.max()) < 1e-8

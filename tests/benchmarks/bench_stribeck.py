@@ -2,14 +2,25 @@
 
 Run from the project's root::
 
-    OPENBLAS_NUM_THREADS=1 PYTHONPATH=tests python tests/benchmarks/bench_stribeck.py
+    OPENBLAS_NUM_THREADS=1 PYTHONPATH=.:tests python tests/benchmarks/bench_stribeck.py
+
+With the folder of another checkout the curves of both are timed in turns, and nothing else::
+
+    ... bench_stribeck.py ../before
+
+It exits with 1 if the median curve takes more than 0.15 s, that of Smooth at 2110 N/m more than
+0.4 s, or more than a third of the other checkout's time, in seconds of the processor.
 """
 
 from __future__ import annotations
 
+import os
 import statistics
+import subprocess
+import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 import numpy as np
 from contact_cases import CONTACT, E_STAR, reference_psd
@@ -30,6 +41,7 @@ from tribolab.lubrication.mixed import (
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.sweep import dry_state
 
+MEDIAN, SEALED, RATIO = 0.15, 0.4, 1 / 3
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)
 CASES = [("Smooth", 310.0)] + [
     (name, load) for name in ("Sb-S", "Sb-R") for load in (310.0, 910.0, 1510.0, 2110.0)
@@ -60,6 +72,46 @@ def nine_curves() -> None:
         f"  median {statistics.median(times):.2f} s ({statistics.median(spent):.2f} s busy) "
         f"a curve of {SPEEDS.size} speeds; all nine {sum(times):.1f} s ({sum(spent):.1f} s busy)"
     )
+
+
+def busy_seconds() -> list[float]:
+    """Seconds of the processor for each curve and for Smooth at 2110 N/m, the best of three."""
+    best = []
+    for name, load in [*CASES, ("Smooth", 2110.0)]:
+        psd, spent = reference_psd(name), []
+        for _ in range(3):
+            _tabulated.cache_clear()
+            busy = time.process_time()
+            stribeck_curve(CONTACT, psd, 1.4, load, 1e6, SPEEDS)
+            spent.append(time.process_time() - busy)
+        best.append(min(spent))
+    return best
+
+
+def in_turns(before: str, turns: int = 3) -> int:
+    """Time this checkout and another in processes of their own; returns the exit code."""
+    tests = Path(__file__).resolve().parents[1]
+    ends = {"before": [], "now": []}
+    for _ in range(turns):
+        for which, root in (("before", Path(before).resolve()), ("now", tests.parent)):
+            printed = subprocess.run(
+                [sys.executable, __file__, "--seconds"],
+                env={**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{tests}"},
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
+            ends[which].append([float(word) for word in printed.split()])
+    best = {which: np.min(rows, axis=0) for which, rows in ends.items()}
+    for (name, load), *pair in zip([*CASES, ("Smooth", 2110.0)], *best.values(), strict=True):
+        print(f"  {name:7}{load:6.0f} N/m: {pair[0]:.3f} s before, {pair[1]:.3f} s now")
+    medians = {which: float(np.median(times[:-1])) for which, times in best.items()}
+    ratio = medians["now"] / medians["before"]
+    print(f"  median of the nine {medians['before']:.3f} s before, {medians['now']:.3f} s now")
+    print(f"  ratio {ratio:.2f} (at most {RATIO:.2f} is wanted)")
+    missed = medians["now"] > MEDIAN or best["now"][-1] > SEALED or ratio > RATIO
+    print("  missed" if missed else "  met")
+    return int(missed)
 
 
 def for_lists() -> None:
@@ -151,7 +203,7 @@ def against_picard() -> None:
         400,
         1.0,
     )
-    state = dry_state(problem, CONTACT, psd, 310.0)
+    state = dry_state(problem, CONTACT, separation_table(psd, E_STAR), 310.0)
     for speed in SPEEDS:
         number = couette_number(problem, 1.4, speed)
         start = time.perf_counter()
@@ -184,7 +236,7 @@ def against_two_threads() -> None:
     times = {}
     for threads in (1, 2, 1, 2):
         with threadpool_limits(threads, user_api="blas"):
-            state = dry_state(problem, CONTACT, psd, 310.0)
+            state = dry_state(problem, CONTACT, separation_table(psd, E_STAR), 310.0)
             start = time.perf_counter()
             for speed in SPEEDS[:24]:
                 try:
@@ -197,6 +249,12 @@ def against_two_threads() -> None:
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--seconds"]:
+        print(*busy_seconds())
+        sys.exit()
+    if sys.argv[1:]:
+        print("curves of 33 speeds, in turns, seconds of the processor")
+        sys.exit(in_turns(sys.argv[1]))
     print("the paper's nine curves")
     nine_curves()
     on_two_cores()

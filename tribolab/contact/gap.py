@@ -10,7 +10,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
-from tribolab.contact.persson import ROOT_PI, mean_separation, pressure_values, rough_band, tail
+from tribolab.contact.persson import (
+    ROOT_PI,
+    coarse_tail,
+    mean_separation,
+    pressure_values,
+    rough_band,
+)
 from tribolab.errors import AnalysisError, nearest, shown
 from tribolab.several import over_dims
 from tribolab.stamping import labelled, stamp
@@ -22,6 +28,8 @@ Variant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
 COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
+_FAR = 8.0  # heights of a Gaussian from its middle, where nothing is left of it
+_NEGLIGIBLE = 1e-9  # share of the open area that is left out
 _LUMP = 1e-4  # cut-offs under which gaps are counted in one cell
 _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on each
 
@@ -113,8 +121,13 @@ def gap_distributions(
     variants: Sequence[Variant] = ("flow", "plain"),
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
+    points: int = _POINTS,
 ) -> list[xr.Dataset]:
-    """Several variants of `gap_distribution` at once: what they share is computed but once."""
+    """Several variants of `gap_distribution` at once: what they share is computed but once.
+
+    Half the `points` in each half decade of u do where the surfaces are within some ten
+    roughnesses.
+    """
     for variant in variants:
         if variant not in ("flow", "plain"):
             known = nearest(variant, ["flow", "plain"])
@@ -140,7 +153,9 @@ def gap_distributions(
     facts |= examine("gap_distribution", slope=rms_slope(psd))
     return [
         stamp(
-            _distribution(over, mean, openings, area, variant, smallest), variant=variant, **facts
+            _distribution(over, mean, openings, area, variant, smallest, points),
+            variant=variant,
+            **facts,
         )
         for variant in variants
     ]
@@ -153,6 +168,7 @@ def _distribution(
     area: np.ndarray,
     variant: Variant,
     cutoff: float,
+    points: int,
 ) -> xr.Dataset:
     """Spread the openings of each pressure over a grid of gaps, with the mean that is given."""
     if variant == "flow":
@@ -162,7 +178,7 @@ def _distribution(
     openings = openings._replace(
         gap=openings.gap * scale[:, None], height=openings.height * scale[:, None]
     )
-    gap, step = _grid(openings, cutoff)
+    gap, step = _grid(openings, cutoff, points)
     density = np.stack(
         [_density(gap, step[0], *(part[i] for part in openings)) for i in range(mean.size)]
     )
@@ -267,8 +283,10 @@ def _nested_separation(
     weight = (stop - start) * mean_inverse[panel]
     first = np.flatnonzero(np.diff(row, prepend=-1))
     result = np.zeros_like(stiffness)
-    for i, relative in enumerate(stiffness / ROOT_PI):
-        value = weight * tail(relative[row] / slope, gamma).sum(axis=0)
+    with np.errstate(divide="ignore"):
+        log_slope = np.log(slope)
+    for i, log_stiffness in enumerate(np.log(stiffness / ROOT_PI)):
+        value = weight * coarse_tail(log_stiffness[row] - log_slope, gamma).sum(axis=0)
         result[i, :-1] = np.add.reduceat(value, first)
     return result
 
@@ -282,7 +300,7 @@ def _folded_mean(openings: _Openings) -> np.ndarray:
     return (share * folded).sum(axis=-1)
 
 
-def _grid(openings: _Openings, cutoff: float) -> tuple[np.ndarray, np.ndarray]:
+def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Gaps and steps: one cell from 0 to `_LUMP` cut-offs, then panels of equal ratio.
 
     Waves much shorter than the gap's own scale open by less than any atom; the one cell holds
@@ -292,7 +310,7 @@ def _grid(openings: _Openings, cutoff: float) -> tuple[np.ndarray, np.ndarray]:
     low = round(np.log10(_LUMP) * _PANELS)
     high = max(int(np.ceil(np.log10(widest / cutoff) * _PANELS)), low + 1)
     edges = cutoff * 10 ** (np.arange(low, high + 1) / _PANELS)
-    t, weight = np.polynomial.legendre.leggauss(_POINTS)
+    t, weight = np.polynomial.legendre.leggauss(points)
     half = np.diff(np.log(edges))[:, None] / 2
     gap = np.exp(np.log(edges[:-1, None]) + half * (1 + t))
     return (
@@ -312,12 +330,14 @@ def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
     """Sum of folded Gaussians at the gaps asked for; the mean density in the first cell."""
-    some = share > 0
+    some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
-    a, b, factor = at[1:, None] / height, gap / height, share / (np.sqrt(2 * np.pi) * height)
-    bells = _bell(a - b)
-    a += b
-    bells += _bell(a)
-    density = bells @ factor
-    ends = (first + gap) / (np.sqrt(2) * height), (first - gap) / (np.sqrt(2) * height)
-    return np.insert(density, 0, share @ (erf(ends[0]) + erf(ends[1])) / (2 * first))
+    narrow, b = 1 / height, gap / height
+    a, factor = at[1:, None] * narrow, share * narrow / np.sqrt(2 * np.pi)
+    density = np.empty_like(at)
+    np.matmul(_bell(a - b), factor, out=density[1:])
+    near = b < _FAR  # of what reaches back over u = 0
+    density[1:] += _bell(a[:, near] + b[near]) @ factor[near]
+    ends = (first + gap) * narrow / np.sqrt(2), (first - gap) * narrow / np.sqrt(2)
+    density[0] = share @ (erf(ends[0]) + erf(ends[1])) / (2 * first)
+    return density

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 from scipy.linalg import lu_factor, lu_solve
@@ -90,9 +92,7 @@ def rough_line_contact(
     if points < 21 or points % 2 == 0:
         raise AnalysisError(f"points: an odd number of at least 21 is wanted; got {points}")
     table = separation_table(psd, contact.effective_modulus, gamma)
-    x = _cells(force, contact, table.decay_length, points)
-    kernel = line_kernel(x, np.full(points, x[1] - x[0]), contact.effective_modulus)
-    pressure, separation, steps, residual = _newton(x, force, contact, table, kernel)
+    x, pressure, separation, steps, residual = solve_line(force, contact, table, points)
     width = contact_width(x, pressure)
     profile = xr.Dataset(
         {
@@ -117,6 +117,23 @@ def rough_line_contact(
         steps=steps,
         contact_width_definition=f"pressure above {WIDTH_LEVEL:g} of its maximum (inferred)",
     )
+
+
+class LineProfile(NamedTuple):
+    """Pressure and separation over the cells of a dry line contact, and how they were reached."""
+
+    x: np.ndarray  # [m] (n)
+    pressure: np.ndarray  # [Pa] (n)
+    separation: np.ndarray  # [m] (n)
+    steps: int
+    residual: float  # of p - p(u), in units of the maximum pressure
+
+
+def solve_line(force: float, contact: LineContact, table: Separation, points: int) -> LineProfile:
+    """Solve `rough_line_contact` at a load [N/m] on a table of the surface's separation."""
+    x = _cells(force, contact, table.decay_length, points)
+    kernel = line_kernel(x, np.full(points, x[1] - x[0]), contact.effective_modulus)
+    return LineProfile(x, *_newton(x, force, contact, table, kernel))
 
 
 def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> np.ndarray:

@@ -250,6 +250,14 @@ def tail(y: np.ndarray, gamma: float) -> np.ndarray:
     return np.where(x > highest, 0.0, result)
 
 
+def coarse_tail(log_y: np.ndarray, gamma: float) -> np.ndarray:
+    """F of `tail` over ln y, to 1e-5 of it where y < 1: quicker, for sums over very many y."""
+    values, steps, lowest, per_unit = _coarse_table(float(gamma))
+    place = np.clip((log_y - lowest) * per_unit, 0, values.size - 1)
+    cell = place.astype(np.intp)
+    return values[cell] + steps[cell] * (place - cell)
+
+
 def tail_slope(y: np.ndarray, gamma: float) -> np.ndarray:
     """-dF/d(ln y) = [gamma + 3 (1 - gamma) erf(y)^2] exp(-y^2)."""
     return (gamma + 3 * (1 - gamma) * erf(y) ** 2) * np.exp(-np.minimum(y * y, 745.0))
@@ -270,6 +278,14 @@ def _tail_table(gamma: float) -> tuple[CubicHermiteSpline, float, float]:
     value = gamma / 2 * exp1(np.exp(2 * x)) + 3 * (1 - gamma) * both
     slope = -tail_slope(np.exp(x), gamma) / value
     return CubicHermiteSpline(x, np.log(value), slope), float(x[0]), float(x[-1])
+
+
+@functools.lru_cache(maxsize=8)
+def _coarse_table(gamma: float) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """F on equal steps of ln y and its differences: level below the first, 0 beyond the last."""
+    x, step = np.linspace(-25.0, np.log(26.0), 14001, retstep=True)
+    values = np.append(tail(np.exp(x[:-1]), gamma), 0.0)
+    return values, np.diff(values, append=0.0), float(x[0]), float(1 / step)
 
 
 def _area(pressure: np.ndarray, stiffness: np.ndarray | float) -> np.ndarray:

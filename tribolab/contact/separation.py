@@ -59,6 +59,14 @@ class Separation:
     _curve: PPoly = field(repr=False)  # ln p over U
 
     @functools.cached_property
+    def _with_slope(self) -> PPoly:
+        """The curve and its slope (2), looked up at once."""
+        curve = self._curve
+        both = np.zeros((*curve.c.shape, 2))
+        both[..., 0], both[1:, :, 1] = curve.c, curve.derivative().c
+        return PPoly(both, curve.x)
+
+    @functools.cached_property
     def _ends(self) -> tuple[float, float, float, float, float]:
         """Far end: ln p, d ln p/du; near end: p, u, -d ln u/d(p^2)."""
         far, near = self._curve.x[[-1, 0]]
@@ -120,10 +128,11 @@ class Separation:
     def _evaluate(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         log_far, slope_far, p_near, u_near, steep = self._ends
         u_far = self.table_separation[0]
-        inside = np.clip(u, u_near, u_far)
+        inside = np.minimum(np.maximum(u, u_near), u_far)
         ratio = inside / self.rms_roughness
         curve = ratio + np.log(-np.expm1(-ratio))
-        log_p, slope = self._curve(curve), self._curve(curve, 1) * self._chain(inside)
+        both = self._with_slope(curve)
+        log_p, slope = both[..., 0], both[..., 1] * self._chain(inside)
         log_p = log_p + slope_far * np.maximum(u - u_far, 0)
         slope = np.where(u > u_far, slope_far, slope)
         pressure = np.exp(log_p)

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator, PPoly
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from scipy.special import erfinv
 
 from tribolab.contact.gap import COMPLETE, gap_distributions
@@ -35,7 +35,7 @@ FACTORS = (
 
 # Table: u - u_c from _NEAR to _FAR roughnesses above percolation (a distribution of gaps cannot be
 # summed on its grid much beyond), and down to _LOW roughnesses below it.
-_NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 90
+_NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 64
 
 
 class Factors(NamedTuple):
@@ -255,6 +255,7 @@ def _tabulated(
             closing,
             -np.array([9 * ends - 3, 3 * ends]) * height**2,
             np.ones(2),
+            smooth=True,
         ),
         friction=FactorTable(
             np.concatenate([below, above]),
@@ -262,6 +263,7 @@ def _tabulated(
             0.0,
             np.array([1.0, 3 * ends]) * height**2,
             np.array([1.0, 0.0]),
+            smooth=True,
         ),
         limits=examine("flow_factors", slope=rms_slope(psd)),
     )
@@ -275,7 +277,9 @@ def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
 
 @dataclass(frozen=True, eq=False)
 class FactorTable:
-    """Some factors, each a monotone cubic in ln phi over ln(u - origin), with their far ends.
+    """Some factors, each a cubic in ln phi over ln(u - origin), with their far ends.
+
+    The cubics are monotone ones, or splines where the factors are known to be smooth.
 
     Beyond the last node phi = limit + A(u)/u^2, A going to its known value as 1/u^2 does; below
     the first the power law of the first cell goes on.
@@ -286,39 +290,42 @@ class FactorTable:
     origin: float
     coefficient: np.ndarray  # of 1/u^2 at infinity (factor)
     limit: np.ndarray  # at infinity (factor)
-    _curve: PchipInterpolator = field(init=False, repr=False)
-    _slope: PPoly = field(init=False, repr=False)
+    smooth: bool = False
+    _curve: PPoly = field(init=False, repr=False)  # ln phi and its slope (2, factor)
 
     def __post_init__(self) -> None:
         """Fit the curve once."""
-        log_u = np.log(self.u - self.origin)
-        curve = PchipInterpolator(log_u, np.log(self.values), axis=1)
-        object.__setattr__(self, "_curve", curve)
-        object.__setattr__(self, "_slope", curve.derivative())
+        cubic = CubicSpline if self.smooth else PchipInterpolator
+        curve = cubic(np.log(self.u - self.origin), np.log(self.values), axis=1)
+        both = np.zeros((*curve.c.shape[:2], 2, len(self.values)))
+        both[:, :, 0], both[1:, :, 1] = curve.c, curve.derivative().c
+        object.__setattr__(self, "_curve", PPoly(both, curve.x))
 
     def __call__(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and slopes over u, each (factor, shape of u)."""
         distance = np.maximum(u - self.origin, 0)
-        first, last = self._curve.x[[0, -1]]
-        with np.errstate(divide="ignore"):
+        first, last = self._curve.x[0], self._curve.x[-1]
+        with np.errstate(divide="ignore", invalid="ignore"):
             log_u = np.log(distance)
-        inside = np.clip(log_u, first, last)
-        rate = self._slope(inside)
-        below = np.clip(log_u - first, -1e3, 0)
-        value = np.exp(self._curve(inside) + rate * below)
-        value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # a power's end, or a level
-        with np.errstate(invalid="ignore", divide="ignore"):
-            slope = np.where(distance > 0, value * rate / distance, 0)
-        end = self.u[-1]
-        if not np.any(u > end):
-            return value, slope
-        shape = (-1,) + (1,) * np.ndim(u)
-        c, limit = self.coefficient.reshape(shape), self.limit.reshape(shape)
-        excess = (self.values[:, -1].reshape(shape) - limit) * end**2 - c
-        with np.errstate(divide="ignore"):
-            far = limit + c / u**2 + excess * end**2 / u**4
-            far_slope = -2 * c / u**3 - 4 * excess * end**2 / u**5
-        return np.where(u > end, far, value), np.where(u > end, far_slope, slope)
+            curve = self._curve(np.minimum(np.maximum(log_u, first), last))
+            log_value, rate = curve.transpose(-2, -1, *range(u.ndim))
+            if np.any(log_u < first):
+                log_value = log_value + rate * np.maximum(np.minimum(log_u - first, 0), -1e3)
+            value = np.exp(log_value)
+            slope = value * rate / distance
+            if np.any(distance == 0):
+                value = np.where((distance > 0) | (rate < 0.5), value, 0.0)  # a power's, a level
+                slope = np.where(distance > 0, slope, 0.0)
+            end = self.u[-1]
+            beyond = u > end
+            if not np.any(beyond):
+                return value, slope
+            shape = (-1,) + (1,) * np.ndim(u)
+            c, limit = self.coefficient.reshape(shape), self.limit.reshape(shape)
+            excess = ((self.values[:, -1].reshape(shape) - limit) * end**2 - c) * end**2
+            part, rest = c / u**2, excess / u**4
+            far, far_slope = limit + part + rest, -(2 * part + 4 * rest) / u
+        return np.where(beyond, far, value), np.where(beyond, far_slope, slope)
 
 
 def _averages(
@@ -331,7 +338,7 @@ def _averages(
 ) -> tuple[np.ndarray, ...]:
     """phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
     pressure = pressure_of.pressure(u)
-    flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff)
+    flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff, points=8)
     gap, weight = flow["gap"].values, flow["gap_weight"].values
     touching = flow["contact_area_ratio"].values
     # the sums' own mean, so that their error of quadrature cancels in phi - 1

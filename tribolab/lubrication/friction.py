@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tribolab.lubrication.domain import outside_drag
-from tribolab.lubrication.factors import Factors
 from tribolab.lubrication.mixed import Problem, Solution
 
 
-def fluid_friction(
-    problem: Problem, solution: Solution, friction_factors: bool
-) -> tuple[float, float]:
-    """Couette and pressure part of the friction coefficient, Eq. (4) without the solid's.
+class FluidFriction(NamedTuple):
+    """Couette and pressure part of a friction coefficient, Eq. (4) without the solid's."""
+
+    couette: float
+    pressure: float
+
+
+def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction, FluidFriction]:
+    """Friction of the fluid with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
 
     Notes
     -----
@@ -23,27 +29,24 @@ def fluid_friction(
     """
     u, fields, mesh = solution.state.film, solution.fields, problem.mesh
     if solution.couette == 0:
-        return 0.0, 0.0
+        return FluidFriction(0.0, 0.0), FluidFriction(0.0, 0.0)
     # the pressure's drag from the end of the domain, where it is 0, over the cells' faces
     between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2])
-    both = np.stack([u, between])
-    factors = problem.factors.at(both * problem.gap) if friction_factors else _plain(both)
-    covered = np.ones_like(u)
+    factors = problem.factors.at(np.stack([u, between]) * problem.gap)
+    shear = mesh.width / u
     # a cavity holds no more than what flows out of the full film, u* = 2 J/v
-    covered[fields.front :] = np.minimum(
-        1, fields.flux[fields.front] / solution.couette / u[fields.front :]
-    )
-    shear = (factors.phi_f + factors.phi_fs)[0] / u * covered
-    drag = factors.phi_fp[1] * between / 2 @ np.diff(fields.fluid, prepend=0.0)
+    filled = fields.flux[fields.front] / solution.couette
+    shear[fields.front :] *= np.minimum(1, filled / u[fields.front :])
+    drag = between / 2 * np.diff(fields.fluid, prepend=0.0)
+    beyond = outside_drag(problem, solution)
     # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
     unit = problem.gap / (problem.half_width * problem.load)
-    beyond = outside_drag(problem, solution)
-    return (
-        float((solution.couette / 6 * (mesh.width @ shear) + beyond[0]) * unit),
-        float((drag + beyond[1]) * unit),
-    )
 
+    def parts(sheared: float, dragged: float) -> FluidFriction:
+        return FluidFriction(
+            float((solution.couette / 6 * sheared + beyond[0]) * unit),
+            float((dragged + beyond[1]) * unit),
+        )
 
-def _plain(u: np.ndarray) -> Factors:
-    ones, zero = np.ones_like(u), np.zeros_like(u)
-    return Factors(ones, zero, ones, zero, ones)
+    rough = parts((factors.phi_f + factors.phi_fs)[0] @ shear, factors.phi_fp[1] @ drag)
+    return rough, parts(shear.sum(), drag.sum())

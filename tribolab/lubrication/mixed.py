@@ -15,7 +15,8 @@ from tribolab.lubrication.mesh import Mesh
 LEAK = 1e-10
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
-_CONVERGED = 1e-10  # of the maximum pressure, and of the load
+_CONVERGED = 1e-9  # of the maximum pressure, and of the load
+_NEAR = 1e-5  # the same, from where the last step's matrix serves for the next
 _ROUNDING = 1e-8  # the same, where a further step no longer gains
 
 
@@ -52,7 +53,7 @@ class State(NamedTuple):
 
     def moved(self, mesh: Mesh, film: np.ndarray, constant: float) -> State:
         """Return the state changed by these amounts of film and constant."""
-        bent = mesh.stiffness @ film - constant * mesh.lift
+        bent = mesh.elastic @ np.append(film, constant)
         return State(self.film + film, self.constant + constant, self.pressure + bent)
 
 
@@ -126,7 +127,7 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
     ruptures follows exactly from each film (`_rupture`), so that the front moves as far as it
     must in one step; letting each cell change sides by itself takes a step per cell.
     """
-    state, before = start, np.inf
+    state, before, solver = start, np.inf, None
     for step in range(_STEPS + 1):
         film = _film(problem, couette, state)
         error = max(film.error, film.lacking)
@@ -134,12 +135,12 @@ def solve_speed(problem: Problem, couette: float, start: State) -> Solution:
             return _proof(problem, couette, state, film, step)
         if step == _STEPS or not np.isfinite(error):
             break
+        if solver is None or error > min(_NEAR, before / 10):
+            solver = _factored(problem, film)
         before = error
-        matrix, right = _linearised(problem, film)
         # the transpose is what LAPACK reads without a copy
-        factor, pivots, singular = lapack.dgetrf(matrix.T, overwrite_a=True)
-        change, _ = lapack.dgetrs(factor, pivots, right, trans=1, overwrite_b=True)
-        if singular or not np.all(np.isfinite(change)):
+        change, _ = lapack.dgetrs(*solver, _lacking(problem, film), trans=1, overwrite_b=True)
+        if not np.all(np.isfinite(change)):
             raise NotConvergedError("the linearised equations are singular")
         largest = np.max(np.abs(change[:-1]) / state.film)
         part = min(1.0, _CAP / largest)
@@ -153,17 +154,20 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     total = state.pressure
     fluid = total - contact
     # flux J = -T dp/dx + couette Q through the faces; outside the domain p = 0
-    between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2, u[-1:]])
+    between = _at_faces(u)
     phi, phi_slope, entrained, entrained_slope = problem.factors.transport(between * problem.gap)
     entrained = couette * entrained / problem.gap
-    conductance = between**3 * (phi + LEAK) / mesh.distance
-    steep = 3 * between**2 * (phi + LEAK) + between**3 * phi_slope * problem.gap
-    rise = np.diff(fluid, prepend=0.0, append=0.0)
+    square = between * between
+    conductance = square * between * (phi + LEAK) / mesh.distance
+    steep = square * (3 * (phi + LEAK) + between * phi_slope * problem.gap)
+    rise = np.empty_like(between)
+    rise[0], rise[-1] = fluid[0], -fluid[-1]
+    np.subtract(fluid[1:], fluid[:-1], out=rise[1:-1])
     flux = entrained - conductance * rise
     flux_slope = couette * entrained_slope - steep * rise / mesh.distance
     scale = 1 / (conductance[1:] + conductance[:-1])
     front, through = _rupture(entrained, conductance) if couette > 0 else (0, 0.0)
-    balance = scale * np.diff(flux)
+    balance = scale * (flux[1:] - flux[:-1])
     residual = np.append(balance[:front], fluid[front:])
     # the fluid's pressure once more, by the flux alone: exact to rounding also where it is small
     exact = np.zeros_like(u)
@@ -182,30 +186,51 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     )
 
 
-def _linearised(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
-    """Jacobian of the residual and of the load, and minus their values."""
+def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
+    """Factors of the transposed Jacobian, and their pivots."""
+    factor, pivots, singular = lapack.dgetrf(_jacobian(problem, film).T, overwrite_a=True)
+    if singular:
+        raise NotConvergedError("the linearised equations are singular")
+    return factor, pivots
+
+
+def _lacking(problem: Problem, film: _Film) -> np.ndarray:
+    """Minus the residual, and minus what the load lacks."""
+    lack = problem.mesh.width @ film.total - problem.load
+    return -np.append(film.residual, film.total.max() / problem.load * lack)
+
+
+def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
+    """Slopes of the residual and of the load over the film and the constant."""
     mesh, n, front = problem.mesh, film.residual.size, film.fields.front
-    full = np.where(np.arange(n) < front, film.scale, 0.0)
+    full = film.scale.copy()
+    full[front:] = 0.0
     before, after = -full * film.conductance[:-1], -full * film.conductance[1:]
     # a face's film is the mean of its two cells'; at the ends it is the cell's own
     left, right = full * film.flux_slope[:-1] / 2, full * film.flux_slope[1:] / 2
-    elastic = np.column_stack([mesh.stiffness, -mesh.lift])
+    elastic = mesh.elastic
     matrix = np.empty((n + 1, n + 1))
     matrix[:n] = elastic
     wet = slice(1, front), slice(0, min(front, n - 1))  # cells of the full film but for the ends
     matrix[wet[0]] += before[wet[0], None] * elastic[: max(front - 1, 0)]
     matrix[wet[1]] += after[wet[1], None] * elastic[1 : wet[1].stop + 1]
-    i = np.arange(n)
-    matrix[i, i] += right - left - film.yielding
-    matrix[0, 0] -= left[0]
-    matrix[n - 1, n - 1] += right[-1]
-    matrix[i[1:], i[:-1]] -= before[1:] * film.yielding[:-1] + left[1:]
-    matrix[i[:-1], i[1:]] += right[:-1] - after[:-1] * film.yielding[1:]
-    weight = film.total.max() / problem.load
-    matrix[n, :n] = weight * (mesh.width @ mesh.stiffness)
-    matrix[n, n] = -weight * (mesh.width @ mesh.lift)
-    lack = mesh.width @ film.total - problem.load
-    return matrix, -np.append(film.residual, weight * lack)
+    diagonal, below, above = (matrix.ravel()[i :: n + 2] for i in (0, n + 1, 1))
+    diagonal[:n] += right - left - film.yielding
+    diagonal[0] -= left[0]
+    diagonal[n - 1] += right[-1]
+    below[: n - 1] -= before[1:] * film.yielding[:-1] + left[1:]
+    above[: n - 1] += right[:-1] - after[:-1] * film.yielding[1:]
+    matrix[n] = film.total.max() / problem.load * mesh.push
+    return matrix
+
+
+def _at_faces(film: np.ndarray) -> np.ndarray:
+    """Film at the faces, the mean of the two cells beside it; at the ends the cell's own."""
+    faces = np.empty(film.size + 1)
+    faces[0], faces[-1] = film[0], film[-1]
+    np.add(film[1:], film[:-1], out=faces[1:-1])
+    faces[1:-1] *= 0.5
+    return faces
 
 
 def _rupture(entrained: np.ndarray, conductance: np.ndarray) -> tuple[int, float]:

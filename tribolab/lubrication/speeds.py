@@ -124,10 +124,10 @@ def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) 
             return from_start(None)
     rest, start, no_start = [], None, None
     try:
-        if system.psd is None:
+        if system.separation is None:
             start = wet_state(*around, float(moving[0]))
         else:
-            start = dry_state(problem, system.contact, system.psd, force)
+            start = dry_state(problem, system.contact, system.separation, force)
         if at_rest:
             rest = [solve_speed(problem, 0.0, start)]
     except (AnalysisError, NotConvergedError) as error:

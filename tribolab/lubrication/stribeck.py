@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+from contextlib import AbstractContextManager
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width
@@ -29,7 +31,7 @@ from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
 from tribolab.validity import together
 
-CELLS = 400
+CELLS = 280
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
 REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
@@ -124,7 +126,7 @@ def stribeck_curve(
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    with threadpool_limits(1, user_api="blas"):
+    with _one_thread():
         system = _system(
             contact, psd, one(viscosity), rough_body, factors, gamma, cells, domain, inlet_length
         )
@@ -133,26 +135,25 @@ def stribeck_curve(
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
     loads, speeds = _loads(load), _speeds(speed, psd)
     curves = []
-    with threadpool_limits(1, user_api="blas"):  # two threads are slower on matrices this small
+    with _one_thread():
         for force in np.atleast_1d(loads.values):
             curves.append(_curve(system, float(force), speeds.values, friction_factors))
-    parts = {
-        name: (("sliding_speed", "load"), np.stack([curve[name] for curve in curves], axis=1))
-        for name in curves[0]
-    }
+    stacked = {name: np.stack([curve[name] for curve in curves], axis=1) for name in curves[0]}
+    stacked["friction_coefficient"] = (
+        stacked["friction_coefficient_couette"] + stacked["friction_coefficient_pressure"]
+    )
+    solid = stress * stacked["friction_per_shear_stress"]
+    for name in ("friction_coefficient", "friction_without_factors"):
+        stacked[name] = stacked[name] + solid
+    stacked["friction_coefficient_solid"] = solid
+    parts = {name: (("sliding_speed", "load"), values) for name, values in stacked.items()}
     data = xr.Dataset(parts, {"sliding_speed": speeds.values, "load": np.atleast_1d(loads.values)})
     if loads.ndim == 0:
         data = data.isel(load=0)
-    data = with_shear_stress(
-        data.assign(
-            friction_coefficient=data["friction_coefficient_couette"]
-            + data["friction_coefficient_pressure"]
-        ),
-        stress,
-    )
     return stamp(
         data,
         **_facts(system),
+        shear_stress_Pa=stress,
         **line_limits(
             "stribeck_curve",
             contact,
@@ -265,7 +266,7 @@ def film_profile(
         ]
         return _put_together(films)
     v = float(_speeds(speed, psd).values[0])
-    with threadpool_limits(1, user_api="blas"):
+    with _one_thread():
         system = _system(
             contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length
         )
@@ -334,6 +335,18 @@ def _system(
     return System(contact, psd, separation, factors, eta, cells, domain, begins)
 
 
+@functools.cache
+def _libraries() -> ThreadpoolController:
+    """Find what computes on threads, once: it takes as long as some speeds of a curve."""
+    return ThreadpoolController()
+
+
+def _one_thread() -> AbstractContextManager[object]:
+    """BLAS on one thread: two are slower on matrices as small as these."""
+    limited: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
+    return limited
+
+
 def _loads(load: str | ArrayLike) -> xr.DataArray:
     loads = labelled(load, "load")
     if loads.ndim > 1 or not np.all((loads.values > 0) & np.isfinite(loads.values)):
@@ -359,28 +372,29 @@ def _curve(
     points = solve_speeds(system, force, magnitudes)
     # all in one: the pressures of all meshes have one unit
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
+    hertz = hertz_half_width(force, system.contact)
     rows = [
-        _row(system, force, point, area, friction_factors)
+        _row(point, force, float(hertz), area, friction_factors)
         for point, area in zip(points, _area(system, solid), strict=True)
     ]
     return {name: np.array([row[name] for row in rows])[back] for name in rows[0]}
 
 
 def _row(
-    system: System, force: float, point: Point, area: np.ndarray, friction_factors: bool
+    point: Point, force: float, hertz: float, area: np.ndarray, friction_factors: bool
 ) -> dict[str, float]:
     """All that a curve has of one speed, the relative contact area in its cells being known."""
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
     real_length = mesh.width @ area * problem.half_width
-    plain = fluid_friction(problem, solution, False)
-    couette, pressure = fluid_friction(problem, solution, True) if friction_factors else plain
+    rough, plain = fluid_friction(problem, solution)
+    couette, pressure = rough if friction_factors else plain
     return {
         "friction_coefficient_couette": couette,
         "friction_coefficient_pressure": pressure,
         "friction_without_factors": sum(plain),
         "friction_per_shear_stress": real_length / force,
-        "contact_area_ratio": real_length / (2 * hertz_half_width(force, system.contact)),
+        "contact_area_ratio": real_length / (2 * hertz),
         "minimum_separation": film.min() * problem.gap,
         "central_separation": np.interp(0.0, mesh.x, film) * problem.gap,
         "solid_load_share": solid @ mesh.width / problem.load,
