@@ -33,6 +33,8 @@ _PUBLIC = {
     "half_loops": "tribolab.friction.coefficient.half_loops",
     "uncertainty_budget": "tribolab.metrology.budget",
     "friction_per_cycle": "tribolab.friction.coefficient.cycles",
+    "moving_mass": "tribolab.friction.moving_mass",
+    "without_inertia": "tribolab.friction.moving_mass",
     "static_friction": "tribolab.friction.coefficient.static",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
@@ -101,6 +103,8 @@ __all__ = [
     "decide",
     "friction_coefficient",
     "friction_per_cycle",
+    "moving_mass",
+    "without_inertia",
     "static_friction",
     "half_loops",
     "uncertainty_budget",
@@ -189,6 +193,7 @@ if TYPE_CHECKING:
     from tribolab.friction.coefficient.static import static_friction
     from tribolab.friction.decisions.decide import decide
     from tribolab.friction.decisions.decision import Decision
+    from tribolab.friction.moving_mass import moving_mass, without_inertia
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.segments.find import find_segments

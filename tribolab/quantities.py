@@ -32,6 +32,7 @@ _ROWS = [
     ("time", "t", "s", "time from the first sample"),
     ("friction_force", "F_x", "N", "friction force"),
     ("normal_force", "F_N", "N", "normal force"),
+    ("inertial_force", "F_a", "N", "inertial force taken out of the friction force"),
     ("sliding_velocity", "v", "m/s", "sliding velocity, signed"),
     ("position", "x", "m", "position along the sliding direction"),
     ("normal_stress", "\\sigma_0", "Pa", "nominal normal stress"),

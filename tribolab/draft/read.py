@@ -23,6 +23,7 @@ def read(
     pair: bool = True,
     clock_shift: str | float | None = None,
     zero: str | None = None,
+    moving_mass: str | float | None = None,
 ) -> Any: ...  # one run, or a list: a type checker does not know patterns from names
 
 
@@ -34,6 +35,7 @@ def read(
     pair: bool = True,
     clock_shift: str | float | None = None,
     zero: str | None = None,
+    moving_mass: str | float | None = None,
 ) -> xr.Dataset: ...
 
 
@@ -44,6 +46,7 @@ def read(
     pair: bool = True,
     clock_shift: str | float | None = None,
     zero: str | None = None,
+    moving_mass: str | float | None = None,
 ) -> xr.Dataset | list[xr.Dataset]:
     r"""Read one run from its raw file or files, or all the runs that a pattern names.
 
@@ -66,6 +69,10 @@ def read(
     zero
         Where the zero of the friction signal is read: ``"first 200 samples"``, ``"first 2 s"``,
         ``"1.5 s to 3 s"``, or ``"file blank.csv"``, a run without contact beside the file.
+    moving_mass
+        Mass between the contact and the force sensor ("1.2 kg", or a number in kg): its inertia is
+        taken out of the friction force, and stands in ``inertial_force``. Where it is not known,
+        `without_inertia` may find it.
 
     Returns
     -------
@@ -106,6 +113,7 @@ def read(
     ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
     """
     said: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
+    said["moving_mass"] = moving_mass
     if not isinstance(path, PathLike) or not is_pattern(path):
         return read_run(path, instrument, **said)
     files = [file for file in matching(path) if file.is_file()]

@@ -41,7 +41,7 @@ from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.units import positive, to_si
 from tribolab.untyped import Json
 
 
@@ -51,6 +51,7 @@ class Reading(TypedDict, total=False):
     pair: bool
     clock_shift: str | float | None
     zero: str | None
+    moving_mass: str | float | None
 
 
 def read_run(
@@ -60,12 +61,13 @@ def read_run(
     pair: bool = True,
     clock_shift: str | float | None = None,
     zero: str | None = None,
+    moving_mass: str | float | None = None,
 ) -> xr.Dataset:
     """Read one run from its raw file or files, whose names are taken as they are.
 
     Parameters
     ----------
-    path, instrument, pair, clock_shift, zero
+    path, instrument, pair, clock_shift, zero, moving_mass
         As for `tribolab.read`, but for patterns.
 
     Returns
@@ -98,16 +100,30 @@ def read_run(
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
     run = _run(main, zero)
+    mass = main[0][1].moving_mass if moving_mass is None else moving_mass
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
         from tribolab.io.clocks.merge import merge
 
         motion = _run(companions)
-        return with_companion_rows(merge(run, motion, shift), run, motion)
+        joined = with_companion_rows(merge(run, motion, shift), run, motion)
+        return _without_inertia(joined, mass)
     if pair and (expected := companion_name(*main[0])):
         run.attrs["companion_missing"] = expected
-    return run
+    return _without_inertia(run, mass)
+
+
+def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
+    """Take the inertia of a mass out, if one is stated."""
+    if mass is None:
+        return run
+    from tribolab.io.inertia import take_inertia
+
+    where = str(run.attrs["source"])
+    return take_inertia(
+        run, positive(mass, "kg", "moving_mass"), where, moving_mass_source="stated"
+    )
 
 
 class ColumnFacts(TypedDict):

@@ -119,14 +119,17 @@ def _examined(
 
 def _read(run: PlannedRun) -> xr.Dataset:
     from tribolab.draft.on_the_fly import read_run
+    from tribolab.friction.moving_mass import without_inertia
 
     files = list(run.files)
-    return read_run(
+    read = read_run(
         files if len(files) > 1 else files[0],
         run.instrument,
         clock_shift=run.clock_shift,
         zero=run.zero,
+        moving_mass=run.moving_mass,
     )
+    return without_inertia(read)  # where none is stated, the data may tell a mass
 
 
 def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:

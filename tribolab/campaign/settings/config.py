@@ -196,6 +196,8 @@ class RunEntry(Table):
     zero: ZeroPlace | None = None
     """Where the zero of the friction signal is read: "first 200 samples", "first 2 s",
     "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""
+    moving_mass: Annotated[float, PositiveSi("kg", "1.2 kg")] | None = None
+    """Mass between the contact and the force sensor, whose inertia is taken out of the force."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
     cycles: bool = False

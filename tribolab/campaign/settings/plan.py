@@ -47,6 +47,8 @@ class PlannedRun:
         Name of a dialect, or path of a dialect's TOML file, or None: the files tell.
     zero
         Where the zero of the friction signal is read, see `tribolab.read`.
+    moving_mass
+        Between contact and force sensor [kg], if the campaign file gives it.
     segments, friction
         Arguments of `find_segments` and `friction_coefficient`.
     quality
@@ -69,6 +71,7 @@ class PlannedRun:
     clock_shift: float | None
     instrument: str | None
     zero: str | None = None
+    moving_mass: float | None = None
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
@@ -278,6 +281,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "sliding_speed": entry.sliding_speed,
         "clock_shift": entry.clock_shift,
         "zero": zero,
+        "moving_mass": entry.moving_mass,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
@@ -288,6 +292,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "cycles": entry.cycles,
         "clock_shift": entry.clock_shift,
         "zero": zero,
+        "moving_mass": entry.moving_mass,
         "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
     return settings | {

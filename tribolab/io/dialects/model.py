@@ -19,6 +19,7 @@ from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
 from tribolab.io.uncertainty import Uncertainty
+from tribolab.units import positive
 
 
 class Derived(Strict):
@@ -45,6 +46,11 @@ class Dialect(Strict):
     header: Header = Header()
     time: Time = Time()
     rows: Rows = Rows()
+    moving_mass: str | None = Field(
+        None,
+        description="mass between the contact and the force sensor, e.g. '1.2 kg': its inertia is "
+        "taken out of the friction force",
+    )
     speed: Speed = Speed()
     pair: Pair | None = None
     marks: Marks | None = None
@@ -68,6 +74,8 @@ class Dialect(Strict):
             raise ValueError(
                 "a column for 'time' and time.source = 'column' or 'period' belong together"
             )
+        if self.moving_mass is not None:
+            positive(self.moving_mass, "kg", "moving_mass")
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
         without_header = self.header.line is None and self.header.pattern is None

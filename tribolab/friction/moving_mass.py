@@ -1,0 +1,185 @@
+"""The moving mass between contact and sensor, found from the force against the acceleration."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.friction.segments.stretches import name_of
+from tribolab.friction.segments.strokes import find_strokes
+from tribolab.io.inertia import acceleration, take_inertia
+from tribolab.units import positive
+
+_FAST = 0.4  # of the highest speed: below it friction still turns over
+_EVEN = 0.3  # of the highest acceleration: its median is less where ramps alone accelerate
+_SINGULAR = 1e6  # condition beyond which a pair does not tell the terms apart
+_LOOKED_AT = 1 << 20  # samples: a mass does not change within a run
+_FEWEST = 4  # pairs of strokes
+_SAMPLES = 24  # that a pair has at least
+_SURE = 5.0  # standard errors
+_COUNTS = 0.02  # of the friction force: what less does is not looked for
+_BLURRED = 0.05  # share of the variance of the acceleration that may be noise
+
+
+class MovingMass(NamedTuple):
+    """A mass and its standard error [kg], and from how many pairs of strokes."""
+
+    mass: float
+    error: float
+    pairs: int
+
+
+def moving_mass(run: xr.Dataset) -> MovingMass | None:
+    """Find the mass whose inertia is in the friction force; None where the data do not tell.
+
+    Parameters
+    ----------
+    run
+        With ``friction_force`` and ``position`` or a signed ``sliding_velocity``, of a contact that
+        is driven to and fro with a speed that changes all the time, as by a crank.
+
+    Returns
+    -------
+    MovingMass or None
+        None of strokes at constant speed, of fewer than 4 pairs of strokes, where the acceleration
+        is mostly noise, or where the mass is less than 5 standard errors or its force less than 2 %
+        of the friction.
+
+    Notes
+    -----
+    At one place of the stroke friction points one way in the forward stroke and the other way in
+    the backward one, while the acceleration is the same. In each pair of strokes the force is
+    fitted by a constant, by friction that changes sign with the direction and with the speed, and
+    by m a; where friction still turns over (below 40 % of the highest speed) nothing is fitted.
+    The error is that of the mean over the pairs. A spring beside the contact, and friction that
+    lags behind the speed, have the same sign as a mass: what is found is the force in phase with
+    the acceleration, which does no work over a cycle, whatever makes it.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 10, 2e-3)
+    >>> phase = 2 * np.pi * 2 * time
+    >>> speed = 2 * np.pi * 2 * 5e-3 * np.cos(phase)
+    >>> force = 3 * np.sign(speed) - 2.0 * 2 * np.pi * 2 * speed.max() * np.sin(phase)
+    >>> force += 0.01 * np.random.default_rng(0).standard_normal(time.size)
+    >>> data = {"sliding_velocity": ("time", speed), "friction_force": ("time", force)}
+    >>> round(moving_mass(xr.Dataset(data, {"time": time})).mass, 2)
+    2.0
+    """
+    if "friction_force" not in run or "inertial_force" in run:
+        return None
+    try:
+        strokes = find_strokes(run)
+    except AnalysisError:
+        return None
+    time, force = run["time"].values, run["friction_force"].values
+    signals = {n: run[n].values for n in ("sliding_velocity", "position") if n in run}
+    # a parabola through a sixth of a stroke loses a hundredth of a sine's acceleration
+    widest = max(int(np.median(np.diff(strokes.first)) / 12), 2)
+    known = acceleration(signals, time, 0.0, widest)
+    if known is None:
+        return None
+    velocity = signals.get("sliding_velocity")
+    velocity = np.gradient(signals["position"], time) if velocity is None else velocity
+    top = float(np.quantile(np.abs(velocity), 0.98))
+    number = strokes.number
+    inside = (number >= 0) & (np.abs(velocity) > _FAST * top) & np.isfinite(force)
+    spread = float(np.var(known.value[inside])) if inside.any() else 0.0
+    if known.error**2 > _BLURRED * spread or _is_steady(known.value[inside]):
+        return None
+    way, share = np.sign(velocity[inside]), np.abs(velocity[inside]) / top
+    ones = np.ones(way.size)
+    terms = [ones, way, way * share, known.value[inside]]
+    fitted = _fits(number[inside] // 2, terms, force[inside])
+    if len(fitted) < _FEWEST:
+        return None
+    friction = float(np.mean(fitted[:, 1] + 0.8 * fitted[:, 2]))
+    period = 2 * float(np.median(np.diff(strokes.first)))
+    kept = known.gain(period) * spread / (spread - known.error**2)
+    masses = fitted[:, 3] * np.sign(friction) * kept
+    mass, error = float(masses.mean()), float(masses.std(ddof=1) / np.sqrt(masses.size))
+    most = mass * float(np.quantile(np.abs(known.value[inside]), 0.98))
+    if mass < _SURE * error or most < _COUNTS * abs(friction):
+        return None
+    return MovingMass(mass, error, int(masses.size))
+
+
+def without_inertia(run: xr.Dataset, mass: str | float | None = None) -> xr.Dataset:
+    """Take the inertia of a moving mass out of the friction force.
+
+    Parameters
+    ----------
+    run
+        With ``friction_force`` and ``position`` or ``sliding_velocity``.
+    mass
+        Between contact and sensor ("1.2 kg", or a number in kg); else as `moving_mass` finds it.
+
+    Returns
+    -------
+    xarray.Dataset
+        The run with ``inertial_force`` [N] (time) and without it in ``friction_force``; attributes
+        ``moving_mass_kg``, ``moving_mass_source`` and, where it was found, ``moving_mass_sem_kg``.
+        The run as it is where no mass is stated and the data do not tell one.
+
+    Raises
+    ------
+    ReadError
+        If a mass is stated and the run has no friction force, or no motion.
+    AnalysisError
+        If its inertia was taken out before.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 4, 0.01)
+    >>> speed = 0.1 * np.clip(time - 1, 0, 1)  # it is accelerated for a second
+    >>> force = np.where(time > 1, 5.0, 0.0) + 2.0 * 0.1 * ((time > 1) & (time < 2))
+    >>> data = {"sliding_velocity": ("time", speed), "friction_force": ("time", force)}
+    >>> mended = without_inertia(xr.Dataset(data, {"time": time}), "2 kg")
+    >>> mended["friction_force"].sel(time=[1.5, 3.0]).values.round(6).tolist()
+    [5.0, 5.0]
+    """
+    if "inertial_force" in run:
+        if mass is None:
+            return run
+        raise AnalysisError("the inertia was taken out of the run before", where=name_of(run))
+    if mass is not None:
+        kilograms = positive(mass, "kg", "mass")
+        return take_inertia(run, kilograms, name_of(run), moving_mass_source="stated")
+    known = moving_mass(run.isel(time=slice(0, _LOOKED_AT)))
+    if known is None:
+        return run
+    source = f"force in phase with the acceleration, {known.pairs} pairs of strokes"
+    return take_inertia(
+        run, known.mass, name_of(run), moving_mass_source=source, moving_mass_sem_kg=known.error
+    )
+
+
+def _is_steady(acceleration: np.ndarray) -> bool:
+    """Whether a stroke is mostly at constant speed, so that ramps alone are accelerated.
+
+    In those friction builds up and relaxes, which no symmetry tells from inertia. Of a sine's
+    acceleration the median size is half of the highest or more, of ramps' it is far less.
+    """
+    size = np.abs(acceleration)
+    return bool(np.median(size) < _EVEN * np.quantile(size, 0.98))
+
+
+def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.ndarray:
+    """Coefficients of the terms in the force by least squares, in each pair (pair, term)."""
+    count = int(pair.max()) + 1
+    size = np.bincount(pair, minlength=count)
+    normal = np.array(
+        [[np.bincount(pair, a * b, minlength=count) for b in terms] for a in terms]
+    ).transpose(2, 0, 1)
+    right = np.array([np.bincount(pair, a * force, minlength=count) for a in terms]).T
+    good = size >= _SAMPLES
+    scale = np.sqrt(np.einsum("pii->pi", normal[good]))
+    good[good] = (scale > 0).all(axis=1)
+    scale = scale[(scale > 0).all(axis=1)]
+    shaped = normal[good] / scale[:, :, None] / scale[:, None, :]
+    told = np.linalg.cond(shaped) < _SINGULAR
+    answer = np.linalg.solve(shaped[told], (right[good] / scale)[told][:, :, None])[:, :, 0]
+    return np.asarray(answer / scale[told])
