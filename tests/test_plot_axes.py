@@ -89,7 +89,10 @@ def drawings():
         "verdict": ["different", "undecided"],
     }
     beside = pd.DataFrame(pair | {"quantity": ["rms_slope"] * 2, "of": ["Sb-S", "Sb-R"]})
+    pair |= {"mean": [0.5, 0.4], "repeatability_std": [0.01, 0.02], "between_day_std": 0.01}
+    spreads = pd.DataFrame(pair)
     return {
+        "precision": (lambda **k: plot.precision(spreads, **k), 1, "between day"),
         "differences": (lambda **k: plot.differences(beside, **k), 1, "dry"),
         "forest": (lambda **k: plot.forest(beside, **k), 1, "90 %"),
         "stribeck": (lambda **k: plot.stribeck(curve, model, **k), 1, "model"),

@@ -85,6 +85,7 @@ _PUBLIC = {
     "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
     "compare": "tribolab.across.compare",
+    "repeatability": "tribolab.across.repeatability",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -157,6 +158,7 @@ __all__ = [
     "load_review",
     "run_campaign",
     "compare",
+    "repeatability",
     "TribolabError",
     "plot",
     "rig",
@@ -166,6 +168,7 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.across.compare import compare
+    from tribolab.across.repeatability import repeatability
     from tribolab.app.run import run_campaign
     from tribolab.campaign.settings.load import load_campaign
     from tribolab.campaign.settings.review import load_review

@@ -1,4 +1,4 @@
-"""The command that compares results folders."""
+"""The commands that set results beside each other."""
 
 from __future__ import annotations
 
@@ -68,4 +68,39 @@ def compare(
             for change in pair.changes:
                 say(f"{change.kind}: {change.what}: {change.first} → {change.second}")
             say(verdict_text(pair))
+        say(f"page: {page}")
+
+
+def repeatability(
+    campaign: Annotated[
+        Path, typer.Argument(help="The campaign file, its folder, or a results folder.")
+    ],
+    by: Annotated[
+        str,
+        typer.Option(
+            help="What may make runs differ, parted by commas: mount, day, operator, specimen or "
+            "labels of the campaign file; day:mount for mounts that are new every day."
+        ),
+    ] = "mount",
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder of the page and its tables.")
+    ] = Path("repeatability"),
+    debug: Debug = False,
+) -> None:
+    """Tell how well a coefficient repeats: within a mount, between mounts, days, operators.
+
+    Components of variance at each speed and pooled, with the limits r and R of ISO 5725. The
+    campaign file says in its runs who measured them, when, and on which mount.
+
+        tribolab repeatability campaign.toml --by mount,day,operator
+    """
+    with reported(debug, audience="campaign"):
+        from tribolab.across.repeatability import repeatability as repeated
+        from tribolab.across.repeatability import verdict_text
+        from tribolab.across.repeatability_page import write_repeatability
+
+        told = repeated(campaign, by)
+        name = campaign.resolve().parent.name if campaign.is_file() else campaign.resolve().name
+        page = write_repeatability(told, f"Repeatability of {name}", output)
+        say(verdict_text(told))
         say(f"page: {page}")

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         shear_stress_over_speed,
     )
     from tribolab.plot.panels import strokes
+    from tribolab.plot.precision import precision
     from tribolab.plot.reduce import envelope
     from tribolab.plot.runs import trace
     from tribolab.plot.sensitivity import model_sensitivity
@@ -62,6 +63,7 @@ _HOMES = {
     "model_sensitivity": "tribolab.plot.sensitivity",
     "modulus": "tribolab.plot.surfaces",
     "paper_style": "tribolab.plot.style",
+    "precision": "tribolab.plot.precision",
     "save": "tribolab.plot.style",
     "shear_stress": "tribolab.plot.mixed",
     "shear_stress_over_speed": "tribolab.plot.mixed",
@@ -103,6 +105,7 @@ __all__ = [
     "model_sensitivity",
     "modulus",
     "paper_style",
+    "precision",
     "save",
     "slip_events",
     "slip_spectra",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 from tribolab.campaign.settings.fields import (
+    LabelPattern,
     MiddleShare,
     Patterns,
     PositiveSi,
@@ -200,6 +201,19 @@ class RunEntry(Table):
     """Mass between the contact and the force sensor, whose inertia is taken out of the force."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
+    operator: Text | None = None
+    """Who measured these runs: for `tribolab repeatability`, as are the next five."""
+    mount: Text | None = None
+    """Which mounting of the specimen they belong to."""
+    day: Text | None = None
+    """Day on which they were measured; by default as the files say."""
+    specimen: Text | None = None
+    """Which specimen was measured."""
+    labels: dict[Text, Text] = {}
+    """Whatever else may tell runs apart, e.g. labels.batch = "7"."""
+    labels_in_name: LabelPattern | None = None
+    """Where such labels stand in a file's name, without its ending: "*_{mount}_{operator}_*"; {}
+    stands for letters and digits, * for anything."""
     cycles: bool = False
     """The files are consecutive cycles of one run, not runs of their own."""
     segments: Segments | None = None

@@ -16,6 +16,7 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
+from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.errors import UnitError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.units import to_si
@@ -96,6 +97,19 @@ Patterns = Annotated[
         }
     ),
 ]
+
+
+def _name_pattern(value: Any) -> Any:
+    """Check that a pattern names something."""
+    if isinstance(value, str):
+        try:
+            NamePattern(value)
+        except ValueError as error:
+            raise ValueError(f"{shown(repr(value))}: {error}") from error
+    return value
+
+
+LabelPattern = Annotated[Text, BeforeValidator(_name_pattern), Field(examples=["*_{mount}_*"])]
 
 
 def _share(value: Any) -> Any:

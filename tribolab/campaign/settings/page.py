@@ -158,7 +158,8 @@ def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
     if "unit" in kind:
         return kind["unit"], f'`"{kind["examples"][0]}"`'
     if kind["type"] == "object":
-        return "table of tables", ""
+        inner = kind.get("additionalProperties", {})
+        return f"table of {'texts' if inner.get('type') == 'string' else 'tables'}", ""
     if kind["type"] == "array":
         return "list of texts", ""
     words = {"string": "text", "boolean": "`true`, `false`"}

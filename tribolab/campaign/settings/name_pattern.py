@@ -1,0 +1,62 @@
+"""Labels of a run that stand in the names of its files: who measured, on which mount, which day."""
+
+from __future__ import annotations
+
+import re
+
+import regex
+
+_FIELD = re.compile(r"\{([^{}]*)\}|(\*)")
+_LABEL = r"[^\W_]+(?:[+#][^\W_]*)*"  # letters and digits: _ - . and spaces part the labels
+_SECONDS = 0.5
+_MOST_STARS = 6
+
+
+class NamePattern:
+    """A pattern with named gaps, e.g. ``*_{mount}_{operator}_*``.
+
+    Parameters
+    ----------
+    text
+        ``{label}`` stands for letters and digits, ``*`` for anything, all else for itself.
+
+    Raises
+    ------
+    ValueError
+        If it names no label, or one twice.
+
+    Examples
+    --------
+    >>> NamePattern("*_{mount}_{operator}").labels("sb-r_dry_m2_ann")
+    {'mount': 'm2', 'operator': 'ann'}
+    >>> NamePattern("*_{mount}_{operator}").labels("other")
+    {}
+    """
+
+    def __init__(self, text: str) -> None:
+        names = [name for name, star in _FIELD.findall(text) if not star]
+        if not names:
+            raise ValueError("no label is named; write e.g. '*_{mount}_*'")
+        for name in names:
+            if not name.isidentifier():
+                raise ValueError(
+                    f"'{name}' is no label; write a word of letters and digits in {{}}"
+                )
+            if names.count(name) > 1:
+                raise ValueError(f"'{name}' stands there twice")
+        if text.count("*") > _MOST_STARS:
+            raise ValueError(f"more than {_MOST_STARS} * are too many")
+        parts, end = [], 0
+        for gap in _FIELD.finditer(text):
+            parts.append(re.escape(text[end : gap.start()]))
+            parts.append(".*" if gap[2] else f"(?P<{gap[1]}>{_LABEL})")
+            end = gap.end()
+        self._compiled = regex.compile("".join([*parts, re.escape(text[end:])]))
+
+    def labels(self, name: str) -> dict[str, str]:
+        """Return the labels of a name; none if the pattern does not fit."""
+        try:
+            match = self._compiled.fullmatch(name, timeout=_SECONDS)
+        except TimeoutError:
+            return {}
+        return dict(match.groupdict()) if match else {}

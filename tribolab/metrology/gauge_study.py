@@ -1,0 +1,191 @@
+"""Gauge study: parts measured by appraisers in trials, and whose doing the variance is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+from tribolab.errors import AnalysisError
+
+Array = NDArray[np.float64]
+
+POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
+_CATEGORIES = math.sqrt(2)  # ndc: widths of the 97 % interval of the gauge in that of the parts
+
+
+@dataclass(frozen=True)
+class GaugeStudy:
+    """Components of variance of a balanced study, in the square of what was measured.
+
+    Parameters
+    ----------
+    repeatability, appraisers, interaction, parts
+        Variances: of trials, between appraisers, of appraisers with parts, between parts.
+    interaction_p_value
+        Of the F test of the interaction.
+    pooled
+        Whether the interaction was taken into the repeatability, as it is no more than that.
+    """
+
+    repeatability: float
+    appraisers: float
+    interaction: float
+    parts: float
+    interaction_p_value: float
+    pooled: bool
+
+    @property
+    def reproducibility(self) -> float:
+        """Variance between appraisers, their interaction with parts included."""
+        return self.appraisers + self.interaction
+
+    @property
+    def gauge(self) -> float:
+        """Variance of measuring: repeatability and reproducibility."""
+        return self.repeatability + self.reproducibility
+
+    @property
+    def study_variation(self) -> float:
+        """Standard deviation of measuring relative to that of all values."""
+        return math.sqrt(self.gauge / (self.gauge + self.parts))
+
+    @property
+    def categories(self) -> int:
+        """Number of kinds of parts that can be told apart (ndc)."""
+        return int(_CATEGORIES * math.sqrt(self.parts / self.gauge)) if self.gauge else 0
+
+
+def gauge_study(values: ArrayLike) -> GaugeStudy:
+    """Return the components of variance of a balanced crossed study by analysis of variance.
+
+    Parameters
+    ----------
+    values
+        (part, appraiser, trial), two of each or more. In a laboratory a part is a specimen and
+        condition, an appraiser an operator, mount, day or instrument, a trial a run.
+
+    Raises
+    ------
+    AnalysisError
+        If the values are not of that shape, or some are missing.
+
+    Notes
+    -----
+    The interaction is pooled with the repeatability where its F test gives p > 0.25. Components
+    that come out negative are zero.
+
+    References
+    ----------
+    AIAG (2010), Measurement Systems Analysis, 4th edition.
+
+    Examples
+    --------
+    >>> study = gauge_study([[[1.0, 1.2], [1.1, 1.3]], [[2.0, 2.2], [2.1, 2.3]]])
+    >>> round(study.parts, 3), round(study.repeatability, 3), study.pooled
+    (0.496, 0.016, True)
+    """
+    y = _balanced(values)
+    parts, appraisers, trials = y.shape
+    grand, of_part, of_appraiser = y.mean(), y.mean(axis=(1, 2)), y.mean(axis=(0, 2))
+    cell = y.mean(axis=2)
+    squares = {
+        "part": appraisers * trials * ((of_part - grand) ** 2).sum(),
+        "appraiser": parts * trials * ((of_appraiser - grand) ** 2).sum(),
+        "both": trials * ((cell - of_part[:, None] - of_appraiser + grand) ** 2).sum(),
+        "trial": ((y - cell[:, :, None]) ** 2).sum(),
+    }
+    freedom_both, freedom_trial = (parts - 1) * (appraisers - 1), parts * appraisers * (trials - 1)
+    mean_both, mean_trial = squares["both"] / freedom_both, squares["trial"] / freedom_trial
+    chance = (
+        float(stats.f.sf(mean_both / mean_trial, freedom_both, freedom_trial))
+        if (mean_trial > 0)
+        else 0.0
+    )
+    pooled = chance > POOLED_ABOVE
+    if pooled:
+        repeatability = (squares["both"] + squares["trial"]) / (freedom_both + freedom_trial)
+        noise, interaction = repeatability, 0.0
+    else:
+        repeatability, noise = mean_trial, mean_both
+        interaction = max(0.0, (mean_both - mean_trial) / trials)
+    between_parts = (squares["part"] / (parts - 1) - noise) / (appraisers * trials)
+    between = (squares["appraiser"] / (appraisers - 1) - noise) / (parts * trials)
+    return GaugeStudy(
+        float(repeatability),
+        max(0.0, float(between)),
+        float(interaction),
+        max(0.0, float(between_parts)),
+        chance,
+        pooled,
+    )
+
+
+@dataclass(frozen=True)
+class RangeStudy:
+    """Standard deviations by averages and ranges: of equipment, appraisers, gauge and parts."""
+
+    equipment: float
+    appraisers: float
+    gauge: float
+    parts: float
+
+    @property
+    def study_variation(self) -> float:
+        """Standard deviation of measuring relative to that of all values."""
+        return self.gauge / math.hypot(self.gauge, self.parts)
+
+
+def average_and_range(values: ArrayLike) -> RangeStudy:
+    """Return the standard deviations of a balanced study by averages and ranges.
+
+    Parameters
+    ----------
+    values
+        (part, appraiser, trial), as for `gauge_study`.
+
+    Notes
+    -----
+    A mean range divided by the expected range of as many normal values, d2; for the single range of
+    appraisers and that of parts by d2* of one sample, the root of d2^2 + d3^2 (Duncan 1986).
+    """
+    y = _balanced(values)
+    parts, appraisers, trials = y.shape
+    equipment = float(np.ptp(y, axis=2).mean() / _range_of_normal(trials)[0])
+    span_appraisers = np.ptp(y.mean(axis=(0, 2))) / _single_range(appraisers)
+    between = max(0.0, float(span_appraisers**2 - equipment**2 / (parts * trials)))
+    span_parts = float(np.ptp(y.mean(axis=(1, 2))) / _single_range(parts))
+    gauge = math.hypot(equipment, math.sqrt(between))
+    return RangeStudy(equipment, math.sqrt(between), gauge, span_parts)
+
+
+def _balanced(values: ArrayLike) -> Array:
+    y = np.asarray(values, dtype=float)
+    if y.ndim != 3 or min(y.shape) < 2 or not np.isfinite(y).all():
+        raise AnalysisError(
+            "a gauge study wants two parts, appraisers and trials or more, and no value missing; "
+            f"got {' x '.join(map(str, y.shape))}"
+        )
+    return y
+
+
+def _single_range(size: int) -> float:
+    mean, deviation = _range_of_normal(size)
+    return math.hypot(mean, deviation)
+
+
+def _range_of_normal(size: int) -> tuple[float, float]:
+    """Mean and standard deviation of the range of so many standard normal values, d2 and d3."""
+    low = np.linspace(-8.5, 8.5, 1201)
+    step = low[1] - low[0]
+    cdf, pdf = stats.norm.cdf(low), stats.norm.pdf(low)
+    mean = float((1 - (1 - cdf) ** size - cdf**size).sum() * step)
+    span = np.maximum(cdf[None, :] - cdf[:, None], 0.0)  # of the least at low, the greatest above
+    joint = size * (size - 1) * span ** (size - 2) * pdf[:, None] * pdf[None, :]
+    joint *= np.triu(np.ones_like(span), 1)
+    width = low[None, :] - low[:, None]
+    square = float((joint * width**2).sum() * step**2)
+    return mean, math.sqrt(max(0.0, square - mean**2))
