@@ -381,5 +381,8 @@ def test_an_error_that_is_small_by_chance_is_drawn_to_the_others(curves):
     data = measured(friction(curves, 310.0), 0.02)
     data["friction_coefficient_sem"][4] *= 1e-3
     data["runs"] = "sliding_speed", np.full(13, 2)
-    error = points_of([LoadCurve("a", "", 310.0, data, constant_response(1.0))]).points.error
+    data["run_level"] = "run", [0.99, 1.01]  # what is over runs makes no runs of the points
+    points = points_of([LoadCurve("a", "", 310.0, data, constant_response(1.0))]).points
+    assert points.error.size == 13
+    error = points.error
     assert 0.7 < error[4] / error[5] < 1.0

@@ -7,12 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.optimize import nnls
 
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.joint.model import Points
 from tribolab.fit.joint.response import Response
 
 _PRIOR_FREEDOM = 4.0
+_FEWEST = 4
+_ROUNDS = 20
 _NO_ERROR = Cure(
     notebook="give it friction_coefficient_sem, as tl.measured_stribeck_curve does",
     campaign="repeat the runs, or record for longer",
@@ -75,65 +78,74 @@ def points_of(
 
     Notes
     -----
-    A point whose error is not known gets the median of its curve. Errors told by few runs are
-    themselves uncertain, and one that is small by chance would outweigh all others: the variance
-    of a point of k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)``, with s0^2 the mean over the
-    curve of the relative variances [1]_.
+    A point whose error is not known gets the relative one that is the median of its curve. Errors
+    told by few runs are themselves uncertain, and one that is small by chance would outweigh all
+    others: the variance of a point of k runs becomes ``((k - 1) s^2 + 4 s0^2)/(k + 3)`` [1]_, with
+    ``s0^2 = a^2 mu^2 + b^2`` what all such points together say: a part that goes with friction,
+    and one, as of the force's zero, that does not.
 
     References
     ----------
     .. [1] G. K. Smyth, Stat. Appl. Genet. Mol. Biol. 3, 3 (2004). doi:10.2202/1544-6115.1027
     """
-    columns: list[tuple[np.ndarray, ...]] = []
-    levels = left_out = 0
+    parts: list[_Run] = []
     for number, curve in enumerate(curves):
         whole = curve.measured
-        runs = (
-            [whole.isel(run=k) for k in range(whole.sizes["run"])]
-            if "run" in whole.dims
-            else [whole]
+        given = whole.get("friction_coefficient")
+        several = given is not None and "run" in given.dims  # other variables may be over it
+        runs = [whole.isel(run=k) for k in range(whole.sizes["run"])] if several else [whole]
+        parts += [_of_run(curve.name, run, number, place) for place, run in enumerate(runs)]
+    counts = [part.speed.size for part in parts]
+    speed, friction, error, repeats = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("speed", "friction", "error", "repeats")
+    )
+    level = np.repeat(np.arange(len(parts)), counts)
+    of_curve = np.repeat([part.curve for part in parts], counts)
+    run = np.repeat([part.run for part in parts], counts)
+    taken = (speed >= speed_range[0]) & (speed <= speed_range[1])
+    kept = taken & (friction > 0)
+    if kept.sum() < _FEWEST:
+        raise AnalysisError(
+            f"{kept.sum()} points with a friction above zero in all; at least {_FEWEST} are wanted "
+            "for a joint fit"
         )
-        speed, friction, error, run = (
-            np.concatenate(part)
-            for part in zip(*(_of_run(curve.name, r, k) for k, r in enumerate(runs)), strict=True)
-        )
-        taken = (speed >= speed_range[0]) & (speed <= speed_range[1])
-        kept = taken & (friction > 0)
-        left_out += int(np.count_nonzero(taken & ~kept))
-        if not kept.any():
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.where(kept, _moderated(error, friction, repeats, kept) / friction, np.nan)
+    for place, curve in enumerate(curves):
+        mine = kept & (of_curve == place)
+        if not mine.any():
             raise AnalysisError(
                 f"{shown(curve.name)}: no friction above zero from {speed_range[0]:g} to "
                 f"{speed_range[1]:g} m/s"
             )
-        known = kept & np.isfinite(error)
+        known = mine & np.isfinite(relative)
         if not known.any():
             raise AnalysisError(
                 "no point has an error that is known, so nothing says how far to trust it",
                 where=shown(curve.name),
                 cure=_NO_ERROR,
             )
-        relative = np.where(known, error, np.median(error[known])) / np.where(kept, friction, 1.0)
-        columns.append(
-            (
-                np.log(speed[kept]),
-                np.log(friction[kept]),
-                relative[kept],
-                np.full(kept.sum(), number),
-                levels + run[kept],
-                run[kept],
-            )
-        )
-        levels += len(runs)
-    *table, run = (np.concatenate(part) for part in zip(*columns, strict=True))
-    if run.size < 4:
-        raise AnalysisError(f"{run.size} points in all; at least 4 are wanted for a joint fit")
-    return Measured(Points(*table), run, left_out)
+        relative[mine & ~known] = np.median(relative[known])
+    points = Points(
+        np.log(speed[kept]), np.log(friction[kept]), relative[kept], of_curve[kept], level[kept]
+    )
+    return Measured(points, run[kept], int(np.count_nonzero(taken & ~kept)))
 
 
-def _of_run(
-    name: str, measured: xr.Dataset, number: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Speed [m/s], friction, its standard error (NaN: not known) and the run's number by point."""
+class _Run(NamedTuple):
+    """Points of one curve, or of one of its runs; an error that is not known is NaN."""
+
+    speed: np.ndarray
+    friction: np.ndarray
+    error: np.ndarray
+    repeats: np.ndarray
+    curve: int
+    run: int
+
+
+def _of_run(name: str, measured: xr.Dataset, curve: int, run: int) -> _Run:
+    """Return the points of a curve that have a speed and a friction."""
     given = measured.get("friction_coefficient")
     if given is None or given.dims != ("sliding_speed",):
         raise AnalysisError(
@@ -148,19 +160,27 @@ def _of_run(
         if f"friction_coefficient{ending}" in measured:
             values = measured[f"friction_coefficient{ending}"].values.astype(float)
             error = np.where(np.isfinite(values) & (values > 0), values, error)
-    if "runs" in measured:
-        error = _moderated(error, friction, measured["runs"].values)
+    repeats = measured["runs"].values if "runs" in measured else np.zeros(friction.size)
     there = np.isfinite(friction) & (speeds > 0)
-    return speeds[there], friction[there], error[there], np.full(there.sum(), number)
+    return _Run(speeds[there], friction[there], error[there], repeats[there], curve, run)
 
 
-def _moderated(error: np.ndarray, friction: np.ndarray, runs: np.ndarray) -> np.ndarray:
-    """Draw the variances that few runs tell to their mean over the curve."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.where(friction > 0, error / friction, np.nan) ** 2
-    several = np.isfinite(relative) & (runs > 1)
-    if not several.any():
+def _moderated(
+    error: np.ndarray, friction: np.ndarray, repeats: np.ndarray, kept: np.ndarray
+) -> np.ndarray:
+    """Draw the variances that few runs tell to what all points say together."""
+    several = kept & np.isfinite(error) & (repeats > 1)
+    if several.sum() < _FEWEST:
         return error
-    usual, freedom = relative[several].mean(), np.where(several, runs - 1, 0)
-    drawn = (freedom * relative + _PRIOR_FREEDOM * usual) / (freedom + _PRIOR_FREEDOM)
-    return np.where(several, np.sqrt(drawn) * friction, error)
+    variance = error[several] ** 2
+    columns = np.stack([friction[several] ** 2, np.ones(several.sum())], axis=1)
+    usual = np.full(variance.size, variance.mean())
+    for _ in range(_ROUNDS):  # of a variance known by k - 1 squares the error goes with itself
+        parts, _ = nnls(columns / usual[:, None], variance / usual)
+        usual = np.maximum(columns @ parts, 1e-3 * variance.mean())
+    freedom = repeats[several] - 1
+    drawn = error.copy()
+    drawn[several] = np.sqrt(
+        (freedom * variance + _PRIOR_FREEDOM * usual) / (freedom + _PRIOR_FREEDOM)
+    )
+    return drawn
