@@ -38,6 +38,21 @@ def test_a_file_of_this_kind_is_read_in_its_way_and_right(name, tmp_path):
     assert (judged.sem < 0.03 * judged.truth).all()
 
 
+@pytest.mark.parametrize("unit", ["Nm", "N m", "mNm", "Nmm", "Ncm", "N-m", "µNm"])
+def test_a_torque_is_understood_however_its_unit_is_written(unit, tmp_path):
+    factor = {"Nm": 1, "N m": 1, "N-m": 1, "mNm": 1e3, "Nmm": 1e3, "Ncm": 100, "µNm": 1e6}[unit]
+    path = write_kind("rotary_torque", tmp_path).path
+    head, *rows = path.read_bytes().decode("latin-1").split("Time [s]")[1].split("\n")
+    cells = [row.split(";") for row in rows if row]
+    for row in cells:
+        row[1] = f"{float(row[1].replace(',', '.')) * factor:.6f}".replace(".", ",")
+    text = "Reibradius: 25,0 mm\nTime [s]" + head.replace("N m", unit) + "\n"
+    path.write_text(text + "\n".join(";".join(row) for row in cells) + "\n", "utf-8")
+    run = tl.read(path)
+    assert float(np.abs(run["friction_force"]).max()) == pytest.approx(4.0, rel=0.1)
+    assert float(run["sliding_velocity"].max()) == pytest.approx(0.2, rel=1e-3)
+
+
 def test_a_kind_that_nobody_writes_is_an_error_with_the_nearest():
     with pytest.raises(AnalysisError, match="did you mean 'stresses'"):
         write_kind("stress", ".")

@@ -41,6 +41,13 @@ _SPELLINGS = {
     "mPa s": "mPa*s",
     "mPa.s": "mPa*s",
 }
+# torques: pint takes Nm for a count of yarn
+_SPELLINGS |= {
+    f"{prefix}N{sign}{length}": f"{prefix}N*{length}"
+    for prefix in ("", "u", "m", "c", "k")
+    for sign in ("", "-")
+    for length in ("m", "cm", "mm")
+}
 
 
 _PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3}

@@ -149,7 +149,13 @@ def _results_lines(path: Path) -> list[str]:
 
 def _attribute_lines(attrs: Mapping[str, Any]) -> list[str]:
     told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
-    return [f"  {key}: {shown(str(value), _LONGEST)}" for key, value in told.items()]
+    return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
+
+
+def _said(value: object) -> str:
+    if isinstance(value, Mapping):
+        return "; ".join(f"{name} = {text}" for name, text in value.items())
+    return str(value)
 
 
 def _titled(name: str, instrument: str | Path | None) -> str:

@@ -288,7 +288,8 @@ SLIDING_CHECKS = (
         28,
         "Does the run slide at constant speed anywhere, and could anything be examined?",
         "Record position or speed, slide longer at one speed, or state `sliding_speed` in the "
-        "campaign file; see `drift` and `min_samples` under [segments].",
+        "campaign file; of what a crank drives, take the middle of each stroke "
+        "(`stroke_middle`); see `drift` and `min_samples` under [segments].",
         {},
         _segments,
     ),

@@ -1,6 +1,6 @@
 """The files that instruments of other labs would have written of a run whose truth is known."""
 
-from tribolab.rig.layouts import clocks_and_text, where_speed  # noqa: F401 - each adds its kinds
+from tribolab.rig.layouts import clocks_and_text, formats, where_speed  # noqa: F401 - they add kinds
 from tribolab.rig.layouts.kinds import KINDS, Kind, WrittenRun, write_kind
 
 __all__ = ["KINDS", "Kind", "WrittenRun", "write_kind"]

@@ -1,0 +1,135 @@
+"""Files that hold columns by name: workbooks, TDMS, HDF5, Parquet, Feather, records of bytes."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.rig.layouts.kinds import Kind, add_kind, there_and_back
+from tribolab.rig.layouts.record import Record
+from tribolab.rig.layouts.tables import Cells, friction_of, normal_of, position_of, time_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_RECORD = ("<f8", "<f4", "<f4", "<f4")
+_HEAD = b"RIG 7\0".ljust(128, b"\0")
+
+
+def _columns(record: Record) -> list[Cells]:
+    return [time_of(record), friction_of(record), normal_of(record), position_of(record)]
+
+
+def _frame(record: Record) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.DataFrame({f"{c.name} [{c.unit}]": c.values for c in _columns(record)})
+
+
+def _parquet(record: Record, folder: Path) -> Path:
+    _frame(record).to_parquet(folder / "run.parquet")
+    return folder / "run.parquet"
+
+
+def _feather(record: Record, folder: Path) -> Path:
+    _frame(record).to_feather(folder / "run.feather")
+    return folder / "run.feather"
+
+
+def _zipped(record: Record, folder: Path) -> Path:
+    file, packed = _parquet(record, folder), folder / "run.zip"
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(file, file.name)
+    file.unlink()
+    return packed
+
+
+def _workbook(record: Record, folder: Path) -> Path:
+    import pandas as pd
+
+    path = folder / "run.xlsx"
+    with pd.ExcelWriter(path) as book:
+        about = {"Operator": ["A. Person"], "Test": ["friction"]}
+        pd.DataFrame(about).to_excel(book, sheet_name="About", index=False)
+        _frame(record).to_excel(book, sheet_name="Data", index=False)
+    return path
+
+
+def _hdf5(record: Record, folder: Path) -> Path:
+    import h5py
+
+    path = folder / "run.h5"
+    with h5py.File(path, "w") as file:
+        for column in _columns(record):
+            made = file.create_dataset(f"log/{column.name}", data=column.values)
+            made.attrs["units"] = column.unit
+    return path
+
+
+def _tdms(record: Record, folder: Path) -> Path:
+    from nptdms import ChannelObject, TdmsWriter
+
+    path = folder / "run.tdms"
+    with TdmsWriter(path) as file:
+        file.write_segment(
+            [ChannelObject("Log", f"{c.name} ({c.unit})", c.values) for c in _columns(record)]
+        )
+    return path
+
+
+def _records(record: Record, folder: Path) -> Path:
+    columns = _columns(record)
+    kinds = list(zip((c.name.replace(" ", "_") for c in columns), _RECORD, strict=True))
+    rows = np.zeros(record.motion.time.size, dtype=kinds)
+    for (name, _), column in zip(kinds, columns, strict=True):
+        rows[name] = column.values
+    path = folder / "run.dat"
+    path.write_bytes(_HEAD + rows.tobytes())
+    return path
+
+
+def _dialect(
+    form: str, more: str = "", name: Callable[[str], str] = str, units: bool = False
+) -> str:
+    """Return what a person writes who knows the columns' names."""
+    columns = {
+        "time": ("Time", "s"),
+        "friction_force": ("Friction force", "N"),
+        "normal_force": ("Normal force", "N"),
+        "position": ("Position", "mm"),
+    }
+    text = f'name = "rig"\ntitle = "rig"\nformat = "{form}"\n[speed]\nsource = "position"\n{more}'
+    for key, (label, unit) in columns.items():
+        text += f'[[column]]\nquantity = "{key}"\nname = "{name(label)}"\n'
+        text += f'unit = "{unit}"\n' if units else ""
+        text += 'group = "Log"\n' if form == "tdms" else ""
+    return text
+
+
+_FIELDS = ", ".join(
+    f'"{name} {kind}"'
+    for name, kind in zip(
+        ("Time", "Friction_force", "Normal_force", "Position"), _RECORD, strict=True
+    )
+)
+_BINARY = _dialect(
+    "binary",
+    f"[binary]\noffset = {len(_HEAD)}\nfields = [{_FIELDS}]\n",
+    lambda label: label.replace(" ", "_"),
+    units=True,
+)
+_SHEET = _dialect("excel", '[header]\nline = 1\nsheet = "Data"\n')
+for _name, _about, _write, _known in (
+    ("workbook", "Excel, the second sheet", _workbook, _SHEET),
+    ("tdms", "TDMS, channels of a group", _tdms, _dialect("tdms")),
+    ("hdf5", "HDF5, paths, units as attributes", _hdf5, _dialect("hdf5", name="log/{}".format)),
+    ("parquet", "Parquet", _parquet, _dialect("parquet")),
+    ("feather", "Feather", _feather, _dialect("feather")),
+    ("zipped", "Parquet in a zip", _zipped, _dialect("parquet")),
+    ("records", "records of bytes behind a header", _records, _BINARY),
+):
+    add_kind(Kind(_name, _about, there_and_back, _write, dialect=_known))
