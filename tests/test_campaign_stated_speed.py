@@ -2,26 +2,13 @@
 
 import numpy as np
 import pytest
+from dialects import dialect_of
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
 
-DIALECT = """
-name = "plain"
-title = "Force over time"
-[header]
-line = 1
-[[column]]
-quantity = "time"
-name = "t"
-[[column]]
-quantity = "friction_force"
-name = "F"
-[[column]]
-quantity = "normal_force"
-name = "N"
-"""
+DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N")
 CAMPAIGN = """
 [campaign]
 name = "Rock"

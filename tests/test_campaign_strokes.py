@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dialects import dialect_of
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
 
-DIALECT = """
-name = "crank"
-title = "A crank"
-[header]
-line = 1
-[[column]]
-quantity = "time"
-name = "t"
-[[column]]
-quantity = "position"
-name = "x"
-[[column]]
-quantity = "friction_force"
-name = "F"
-[[column]]
-quantity = "normal_force"
-name = "N"
-"""
+DIALECT = dialect_of("crank", time="t", position="x", friction_force="F", normal_force="N")
 MU, LOAD, OFFSET = 0.25, 10.0, 0.8
 
 

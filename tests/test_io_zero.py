@@ -4,28 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dialects import dialect_of
 
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError, UnitError
 
-DIALECT = """
-name = "cell"
-title = "A force cell"
-[header]
-line = 1
-[[column]]
-quantity = "time"
-name = "t"
-[[column]]
-quantity = "sliding_velocity"
-name = "v"
-[[column]]
-quantity = "friction_force"
-name = "F"
-[[column]]
-quantity = "normal_force"
-name = "L"
-"""
+DIALECT = dialect_of("cell", time="t", sliding_velocity="v", friction_force="F", normal_force="L")
 MU, LOAD, ZERO = 0.3, 10.0, 1.7
 
 

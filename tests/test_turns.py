@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from dialects import dialect_of
 
 import tribolab as tl
 from tribolab.draft.header import is_unit
@@ -90,24 +91,8 @@ def test_an_angle_is_no_pure_number_and_a_rare_unit_is_still_read():
     assert to_si("2 kHz", "Hz") == 2000.0 and is_unit("rpm") and is_unit("U/min")
 
 
-DIALECT = """
-name = "disc"
-title = "Disc"
-[header]
-line = 1
-[speed]
-source = "rotation"
-radius = "21.5 mm"
-[[column]]
-quantity = "time"
-name = "t"
-[[column]]
-quantity = "rotation_speed"
-name = "n"
-[[column]]
-quantity = "friction_force"
-name = "F"
-"""
+ROTATION = '[speed]\nsource = "rotation"\nradius = "21.5 mm"\n'
+DIALECT = dialect_of("disc", more=ROTATION, time="t", rotation_speed="n", friction_force="F")
 
 
 @pytest.mark.parametrize("unit", ["1/min", "min-1", "rev/min", "U/min", "rpm"])

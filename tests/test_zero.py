@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from dialects import dialect_of
 from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 
@@ -438,24 +439,9 @@ def test_turns_within_a_sample_do_not_prove_a_sign(lost, kind):
 
 # a campaign
 
-DIALECT = """
-name = "one_rig"
-title = "one rig"
-[header]
-line = 1
-[[column]]
-quantity = "time"
-name = "t"
-[[column]]
-quantity = "sliding_velocity"
-name = "v"
-[[column]]
-quantity = "friction_force"
-name = "F"
-[[column]]
-quantity = "normal_force"
-name = "N"
-"""
+DIALECT = dialect_of(
+    "one_rig", time="t", sliding_velocity="v", friction_force="F", normal_force="N"
+)
 
 
 def write_campaign(folder, runs, entry=""):
