@@ -1,10 +1,12 @@
 """The notebooks run from top to bottom, without a warning, and are kept without outputs."""
 
 import ast
+import asyncio
 import os
 import re
 from pathlib import Path
 
+import jupyter_client
 import nbclient
 import nbconvert
 import nbformat
@@ -19,6 +21,8 @@ STRICT = (
     "    where = '__main__' if kind is DeprecationWarning else ''\n"
     "    warnings.filterwarnings('error', category=kind, module=where)\n"
 )
+# of the notebook before, only what was imported is left
+BARE = "%reset -f\nassert not {{'tl', 'plot', 'np'}} & set(globals())\n%cd -q {place}\n"
 
 named = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
@@ -40,28 +44,40 @@ def pictures(cell):
     return [o for o in cell.get("outputs", ()) if "image/png" in o.get("data", ())]
 
 
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory):
+    """One kernel for all: its start and its imports take as long as half of a notebook."""
+    folder = tmp_path_factory.mktemp("kernel")
+    before = os.environ.get("PYTHONPATH")
+    own = {
+        "PYTHONPATH": os.pathsep.join(filter(None, [str(PROJECT), before])),
+        "OPENBLAS_NUM_THREADS": "1",
+        "IPYTHONDIR": str(folder / "ipython"),
+        "TMPDIR": str(folder),  # what a notebook writes goes with the test
+    }
+    environment = os.environ | own
+    environment.pop("MPLBACKEND", None)  # pyplot shows its figures in the notebook
+    manager = jupyter_client.AsyncKernelManager(kernel_name="python3")
+    asyncio.run(manager.start_kernel(env=environment, cwd=str(folder)))
+    yield manager
+    asyncio.run(manager.shutdown_kernel(now=True))
+
+
+@pytest.fixture(scope="module")
+def exporter():
+    return nbconvert.HTMLExporter()
+
+
 @pytest.mark.slow
 @named
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")  # of jupyter
-def test_a_notebook_runs_without_error_or_warning(path, tmp_path, monkeypatch):
-    before = os.environ.get("PYTHONPATH")
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(PROJECT), before])))
-    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
-    monkeypatch.delenv("MPLBACKEND", raising=False)  # pyplot shows its figures in the notebook
-    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))  # what a notebook writes goes with the test
-    place = tmp_path / "work"
-    place.mkdir()
+def test_a_notebook_runs_without_error_or_warning(path, kernel, exporter, tmp_path):
     notebook = nbformat.read(path, as_version=4)
     with_answers(notebook)
-    notebook.cells.insert(0, nbformat.v4.new_code_cell(STRICT))
-    client = nbclient.NotebookClient(
-        notebook,
-        timeout=300,
-        kernel_name="python3",
-        resources={"metadata": {"path": str(place)}},
-    )
+    notebook.cells.insert(0, nbformat.v4.new_code_cell(BARE.format(place=str(tmp_path)) + STRICT))
+    client = nbclient.NotebookClient(notebook, km=kernel, timeout=300)
     client.execute()
+    client.kc.stop_channels()
     shown = [o for cell in notebook.cells for o in cell.get("outputs", ())]
     said = [o.get("text", o.get("evalue")) for o in shown if o.output_type == "error"]
     said += [o.text for o in shown if o.output_type == "stream" and o.name == "stderr"]
@@ -70,7 +86,7 @@ def test_a_notebook_runs_without_error_or_warning(path, tmp_path, monkeypatch):
     turned = [cell for cell in notebook.cells if "@plot.knobs" in cell.source]
     assert all(len(pictures(cell)) == 1 for cell in turned)
     notebook.metadata.pop("widgets", None)  # what a page without their state shows
-    page, _ = nbconvert.HTMLExporter().from_notebook_node(notebook)
+    page, _ = exporter.from_notebook_node(notebook)
     assert (
         page.count('src="data:image/png') == sum(len(pictures(cell)) for cell in notebook.cells) > 0
     )
