@@ -35,6 +35,14 @@ def simulated(
     return file
 
 
+def surfaces_alone(campaign: Path, normal_forces: tuple[str, ...] = ("31 N",)) -> Path:
+    """Take the runs out of a campaign file, and state the loads that they told."""
+    head, _, _ = campaign.read_text("utf-8").partition("[[run]]")
+    loads = f"[contact]\nnormal_forces = {list(normal_forces)}\n"
+    campaign.write_text(head.replace("[contact]\n", loads), "utf-8")
+    return campaign
+
+
 def made_and_taken_over(folder: Path, surface, change=None):
     """Process a surface, and look for it in its catalogue: both records, None if it is not known.
 

@@ -52,9 +52,13 @@ def chromium(profile):
 
 
 class Browser:
-    """One browser; `page` opens an address in a tab of its own."""
+    """One browser; `page` opens an address in a tab of its own.
 
-    def __init__(self, profile):
+    `context` is the name of what its pages remember together; not given, all of the process.
+    """
+
+    def __init__(self, profile, context=None):
+        self._profile, self._context = profile, context
         self._port = _port(profile / "DevToolsActivePort")
         self._devtools = _Devtools(f"ws://127.0.0.1:{self._port[0]}{self._port[1]}")
 
@@ -63,9 +67,21 @@ class Browser:
         self._devtools.close()
 
     @contextlib.contextmanager
+    def apart(self):
+        """A browser in the same process that knows nothing of what others opened and kept."""
+        context = self._devtools.call("Target.createBrowserContext")["browserContextId"]
+        browser = Browser(self._profile, context)
+        try:
+            yield browser
+        finally:
+            browser.close()
+            self._devtools.call("Target.disposeBrowserContext", browserContextId=context)
+
+    @contextlib.contextmanager
     def page(self, address, width=1400, height=900, dark=False, before="", touch=False):
         """Open an address, a script run before any of its own; afterwards the tab is closed."""
-        target = self._devtools.call("Target.createTarget", url="about:blank")["targetId"]
+        where = {"browserContextId": self._context} if self._context else {}
+        target = self._devtools.call("Target.createTarget", url="about:blank", **where)["targetId"]
         tab = _Devtools(f"ws://127.0.0.1:{self._port[0]}/devtools/page/{target}")
         try:
             page = Page(tab, width, height, dark, touch)

@@ -1,9 +1,13 @@
-"""Fixtures that every test file shares."""
+"""Fixtures that every test file shares, and in which order the files are worked through."""
 
+import gc
 import os
+import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
+from chromium import BROWSER, chromium
 from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "Agg")
@@ -15,6 +19,23 @@ settings.register_profile("seeded", derandomize=True, deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "seeded"))
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+def pytest_collection(session):
+    gc.disable()  # what is collected stays
+
+
+def pytest_collection_finish(session):
+    # libraries and tests, a million objects, are not gone through again at every look for garbage
+    gc.freeze()
+    gc.enable()
+
+
+@pytest.hookimpl(trylast=True)  # once the marks have chosen
+def pytest_collection_modifyitems(items):
+    """Put the files with the most slow tests first: so no worker is left alone with one."""
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: -slow[item.path])
 
 
 @pytest.fixture(scope="session")
@@ -29,6 +50,45 @@ def shared() -> Path:
 def shared_data(shared: Path) -> Path:
     """Real measured files."""
     return shared / "data"
+
+
+@pytest.fixture(scope="session")
+def one_browser(tmp_path_factory):
+    """One process for all pages that are opened."""
+    if not BROWSER:
+        message = "no page could be opened: no chromium was found"
+        (pytest.fail if os.environ.get("TRIBOLAB_REQUIRE_BROWSER") else pytest.skip)(message)
+    with chromium(tmp_path_factory.mktemp("profile")) as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def browser(one_browser):
+    """A browser that knows nothing of what other files' tests did in it."""
+    with one_browser.apart() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module", params=["among the results", "sent alone"])
+def results(request, whole, tmp_path_factory):
+    """The page of a file's own `whole` among its results, and as it is sent: alone in a folder."""
+    from report_pages import sent
+
+    return whole if request.param == "among the results" else sent(whole, tmp_path_factory)
+
+
+@pytest.fixture(scope="session")
+def two_runs(tmp_path_factory):
+    """A campaign of two runs with results, recorded some time ago; tests copy it."""
+    from campaigns import simulated
+
+    from tribolab.app.run import run_campaign
+
+    file = simulated(tmp_path_factory.mktemp("two_runs"), repeats=1)
+    for path in (file.parent / "raw").rglob("*.csv"):
+        os.utime(path, (time.time() - 60,) * 2)
+    run_campaign(file, jobs=1, figures="none")
+    return file
 
 
 @pytest.fixture(scope="session")

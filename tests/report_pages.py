@@ -101,6 +101,25 @@ def page_of(folder):
     return (folder / "report.html").read_text(encoding="utf-8")
 
 
+SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
+SHOWN = (
+    "document.querySelector('#{} .plot')._fullData.filter(one => one.visible === true)"
+    ".map(one => one.name)"
+)
+
+
+def drawn(page, figure="card-1"):
+    """Bring a figure near, wait until it is drawn, and return the names of what it shows."""
+    page.run(f"document.getElementById('{figure}').scrollIntoView({{behavior: 'instant'}})")
+    page.wait(f"document.querySelector('#{figure} .js-plotly-plot')?._fullData !== undefined")
+    return names(page, figure)
+
+
+def names(page, figure):
+    """Return the names of what a figure shows."""
+    return page.run(SHOWN.format(figure))
+
+
 # For a browser: all that is folded away is opened, and all figures are drawn; returns how many.
 OPEN_ALL = (
     "Promise.all(Array.from(document.querySelectorAll('details'),"

@@ -9,7 +9,7 @@ from pathlib import Path
 import jsonschema
 import pandas as pd
 import pytest
-from campaigns import RUNS, copied, simulated
+from campaigns import RUNS, copied, simulated, surfaces_alone
 from typer.testing import CliRunner
 
 import tribolab
@@ -30,17 +30,9 @@ RUNS = (RUNS[0], RUNS[2])  # of a campaign without repeats
 ROWS = ModelRows(None, ({"sliding_speed_m_s": 1e-3, "friction_coefficient": 0.5},))
 
 
-@pytest.fixture(scope="module")
-def original(tmp_path_factory):
-    """A campaign with its results; not to be changed."""
-    file = simulated(tmp_path_factory.mktemp("kept"), repeats=1)
-    run_campaign(file, jobs=1)
-    return file
-
-
 @pytest.fixture
-def campaign(original, tmp_path):
-    return copied(original, tmp_path)
+def campaign(two_runs, tmp_path):
+    return copied(two_runs, tmp_path)
 
 
 def table(campaign, name="friction"):
@@ -114,7 +106,7 @@ def test_a_raw_file_that_was_renamed_is_not_counted_twice(campaign):
 
 @pytest.mark.slow
 def test_the_spectrum_of_all_scans_is_kept_when_one_cannot_be_read(tmp_path):
-    campaign = simulated(tmp_path, repeats=1, scans=True)
+    campaign = surfaces_alone(simulated(tmp_path, repeats=1, scans=True))
     [scan] = (campaign.parent / "raw/profiles").iterdir()
     second = scan.with_name("sb-r_second.csv")
     second.write_bytes(scan.read_bytes() + b"\n")  # of other content, like every scan
@@ -133,7 +125,7 @@ def test_the_spectrum_of_all_scans_is_kept_when_one_cannot_be_read(tmp_path):
 
 @pytest.mark.slow
 def test_rubber_friction_is_kept_when_its_modulus_cannot_be_read(tmp_path):
-    campaign = simulated(tmp_path, repeats=1, scans=True)
+    campaign = surfaces_alone(simulated(tmp_path, repeats=1, scans=True))
     modulus = campaign.parent / "raw/dma.csv"
     modulus.write_text("f,E_stor,E_loss\nHz,MPa,MPa\n0.001,1.5,0.1\n1e3,1.8,0.3\n1e9,90,30\n")
     text = campaign.read_text("utf-8")

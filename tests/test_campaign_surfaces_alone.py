@@ -6,6 +6,7 @@ import json
 
 import pandas as pd
 import pytest
+from campaigns import surfaces_alone
 from report_pages import page_of
 from typer.testing import CliRunner
 
@@ -15,18 +16,10 @@ from tribolab.cli import app
 from tribolab.errors import ConfigError
 
 
-def campaign_of(folder, more=""):
-    text = (folder / "campaign.toml").read_text("utf-8")
-    head = text[: text.index("[[run]]")]
-    head = head.replace("[contact]\n", '[contact]\nnormal_forces = ["31 N", "91 N"]\n')
-    (folder / "campaign.toml").write_text(head + more, "utf-8")
-    return folder / "campaign.toml"
-
-
 @pytest.mark.slow
 def test_surfaces_without_runs_have_their_report(tmp_path):
-    rig.simulate_campaign(tmp_path / "c", seed=3, small=True)
-    campaign = campaign_of(tmp_path / "c")
+    made = rig.simulate_campaign(tmp_path / "c", seed=3, small=True)
+    campaign = surfaces_alone(made, ("31 N", "91 N"))
     done = CliRunner().invoke(app, ["run", str(campaign), "-j", "1", "-q"])
     assert done.exit_code == 0, done.output
     assert done.output.startswith("2 of 2 surfaces: spectrum, contact, adhesion")

@@ -1,4 +1,4 @@
-"""The command line as a person and a scheduled job meet it: real processes, real exit codes."""
+"""The command line as a person and a scheduled job meet it: what it says, its exit codes."""
 
 import contextlib
 import json
@@ -10,11 +10,13 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 import pandas as pd
 import pytest
 from campaigns import copied, fingerprint, simulated
 from reporting import made_outcome
+from typer.testing import CliRunner
 
 import tribolab
 from tribolab import cli
@@ -31,6 +33,20 @@ def tribolab_command(*words, **options):
     return subprocess.run(command, **options)
 
 
+class Said(NamedTuple):
+    """What a command said, and its exit code."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def told(*words):
+    """Run a command in this process, where it is not the process that is looked at."""
+    done = CliRunner().invoke(cli.app, [str(word) for word in words], env=ENVIRONMENT)
+    return Said(done.exit_code, done.stdout, done.stderr)
+
+
 @pytest.fixture(scope="module")
 def original(tmp_path_factory):
     return simulated(tmp_path_factory.mktemp("simulated"), repeats=1)
@@ -39,7 +55,7 @@ def original(tmp_path_factory):
 @pytest.fixture(scope="module")
 def analysed(original):
     """The campaign with results, and what `tribolab run` said."""
-    done = tribolab_command("run", original, "--jobs", 2)
+    done = tribolab_command("run", original, "--jobs", 1)
     return original, done
 
 
@@ -86,7 +102,7 @@ def test_a_run_says_in_few_lines_what_came_out(analysed):
 @pytest.mark.slow
 def test_a_second_run_leaves_everything_as_it_is(campaign):
     before = fingerprint(campaign.parent)
-    done = tribolab_command("run", campaign.parent, "--jobs", 1)
+    done = told("run", campaign.parent, "--jobs", 1)
     assert done.returncode == 0
     assert "2 unchanged since the last time" in done.stdout
     assert fingerprint(campaign.parent) == before
@@ -96,7 +112,7 @@ def test_a_second_run_leaves_everything_as_it_is(campaign):
 def test_another_title_makes_another_report_of_the_same_data(campaign):
     text = campaign.read_text(encoding="utf-8")
     campaign.write_text(text.replace('name = "PMMA', 'name = "Plexiglas', 1), encoding="utf-8")
-    done = tribolab_command("run", campaign, "--jobs", 1)
+    done = told("run", campaign, "--jobs", 1)
     assert "2 unchanged since the last time" in done.stdout
     assert "Plexiglas" in (campaign.parent / "results/report.html").read_text(encoding="utf-8")
     assert sorted(path.name for path in campaign.parent.iterdir()) == [
@@ -136,7 +152,7 @@ def test_what_goes_wrong_gives_its_exit_code_and_the_cure(analysed, words, code,
     campaign = analysed[0]
     words = [word.format(campaign=campaign, folder=campaign.parent) for word in words]
     before = fingerprint(campaign.parent)
-    done = tribolab_command(*words)
+    done = told(*words)
     assert done.returncode == code
     assert said in done.stderr
     assert "Traceback" not in done.stderr
@@ -179,7 +195,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
     text = campaign.read_text(encoding="utf-8")
     text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
     campaign.write_text(text, encoding="utf-8")
-    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1)
+    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1)
     assert done.returncode == 3
     assert "no segment of constant speed was found" in done.stderr
 
@@ -188,7 +204,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
 def test_info_shows_how_files_are_understood_and_goes_on_after_a_bad_one(analysed):
     campaign = analysed[0]
     good = campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv"
-    done = tribolab_command("info", campaign, good)
+    done = told("info", campaign, good)
     assert done.returncode == 3
     assert "campaign.toml" in done.stderr
     assert re.search(r"linear_slider \(.*force log\)", done.stdout)
@@ -262,7 +278,7 @@ def test_a_run_that_is_killed_leaves_the_old_results_and_the_next_completes(camp
     assert process.returncode == -signal.SIGKILL
     assert fingerprint(results) == before
     assert list(campaign.parent.glob(".results.tribolab-*"))
-    done = tribolab_command("run", campaign, "--jobs", 1)
+    done = told("run", campaign, "--jobs", 1)
     assert done.returncode == 0
     assert "unchanged" not in done.stdout
     assert list(campaign.parent.glob(".results.tribolab-*")) == []

@@ -297,6 +297,7 @@ def test_model_is_a_line_and_measurement_then_is_points():
     assert {line.get_linestyle() for name, line in shown.items() if name != "model"} == {"None"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["$", "a$b$c", r"\frac{", "运行", "a\nb\x00c", "<script>", "x" * 300]
 )

@@ -3,23 +3,24 @@
 import base64
 import io
 import json
-import os
 import re
 import zipfile
 
 import numpy as np
 import openpyxl
 import pytest
-from chromium import BROWSER, chromium
 from report_pages import (
     DRAW_ALL,
     FLAGGED,
     LONG,
     OPEN_ALL,
     RUNS,
+    SAVING,
+    drawn,
     figures_of,
     live_of,
     made,
+    names,
     page_of,
     sent,
 )
@@ -30,7 +31,6 @@ from tribolab.report import page as page_module
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain
 from tribolab.report.live.still import first_view
 
-FAILED = "the page could not be opened: no chromium was found"
 PANEL = (
     "(() => { const e = document.querySelector('#run-1 .nsewdrag');"
     "e.scrollIntoView({block: 'center', behavior: 'instant'});"
@@ -38,17 +38,6 @@ PANEL = (
 )
 SYSTEMS = ["Sb-R, glycerol", "Sb-S, dry", "Sb-S, glycerol"]
 HALF = "half of it"  # the line to read it at
-SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    if not BROWSER:
-        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
-            pytest.fail(FAILED)
-        pytest.skip(FAILED)
-    with chromium(tmp_path_factory.mktemp("profile")) as started:
-        yield started
 
 
 @pytest.fixture(scope="module")
@@ -57,31 +46,10 @@ def whole(tmp_path_factory):
     return made(tmp_path_factory.mktemp("live"))
 
 
-@pytest.fixture(scope="module", params=["among the results", "sent alone"])
-def results(request, whole, tmp_path_factory):
-    """The page as it lies among the results, and as it is sent: one file in an empty folder."""
-    return whole if request.param == "among the results" else sent(whole, tmp_path_factory)
-
-
 @pytest.fixture(scope="module")
 def alone(whole, tmp_path_factory):
     """The page as it is sent."""
     return sent(whole, tmp_path_factory) / "report.html"
-
-
-def drawn(page, figure):
-    """Bring a figure near, wait until it is drawn, and return the names of what it shows."""
-    page.run(f"document.getElementById({json.dumps(figure)}).scrollIntoView()")
-    page.wait(f"document.querySelector('#{figure} .js-plotly-plot')?._fullData !== undefined")
-    return names(page, figure)
-
-
-def names(page, figure):
-    """Return the names of what a figure shows."""
-    return page.run(
-        f"document.querySelector('#{figure} .plot')._fullData"
-        ".filter(one => one.visible === true).map(one => one.name)"
-    )
 
 
 def rows(page):

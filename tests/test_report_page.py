@@ -1,7 +1,6 @@
 """The page in a real browser: it opens offline, nothing in a name runs, everybody can read it."""
 
 import json
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from chromium import BROWSER, chromium
 from report_pages import (
     DRAW_ALL,
     OPEN_ALL,
@@ -34,17 +32,6 @@ HOSTILE = [
     "'+alert(1)+' javascript:alert(1) {{ 7*7 }} {% raw %}",
     "</style></script><svg onload=\"document.title='broken into'\">",
 ]
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    if not BROWSER:
-        message = "no chromium was found to open the report with"
-        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
-            pytest.fail(message)
-        pytest.skip(message)
-    with chromium(tmp_path_factory.mktemp("profile")) as started:
-        yield started
 
 
 @pytest.fixture(scope="module")

@@ -1,36 +1,18 @@
 """The page as a person reads it: by mouse, by keyboard alone, by finger, and on paper."""
 
-import os
-
 import pytest
-from chromium import BROWSER, chromium
 from printed import printed
-from report_pages import figures_of, made_with_repeats, page_of, sent
+from report_pages import SAVING, SHOWN, drawn, figures_of, made_with_repeats, names, page_of
 from reporting import made_outcome
 
 from tribolab.report.results import write_report
 
-FAILED = "the page could not be opened: no chromium was found"
 LOADS = ["31 N", "91 N"]
 SYSTEMS = ["Sb-R, glycerol", "Sb-S, dry"]
 ADDRESS = "decodeURIComponent(location.hash)"
 ROWS = "Array.from(document.querySelectorAll('#runs-table tr[data-run]'), row => row.dataset.run)"
 CHIP = "Array.from(document.querySelectorAll('#{} .loads [aria-pressed=true]'), b => b.textContent)"
 SPAN = "document.querySelector('#card-1 .plot')._fullLayout.xaxis.range.map(Number)"
-SHOWN = (
-    "document.querySelector('#{} .plot')._fullData.filter(one => one.visible === true)"
-    ".map(one => one.name)"
-)
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    if not BROWSER:
-        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
-            pytest.fail(FAILED)
-        pytest.skip(FAILED)
-    with chromium(tmp_path_factory.mktemp("profile")) as started:
-        yield started
 
 
 @pytest.fixture(scope="module")
@@ -39,27 +21,16 @@ def whole(tmp_path_factory):
     return made_with_repeats(tmp_path_factory.mktemp("reading"))
 
 
-@pytest.fixture(scope="module", params=["among the results", "sent alone"])
-def results(request, whole, tmp_path_factory):
-    """The page as it lies among the results, and as it is sent: one file in an empty folder."""
-    return whole if request.param == "among the results" else sent(whole, tmp_path_factory)
-
-
 @pytest.fixture
 def page(browser, results):
     """The page, asked afterwards whether it complained or wanted anything."""
     with browser.page(results / "report.html") as opened:
-        opened.run("window.saved = []; report.save = (...file) => saved.push(file); 0")
+        opened.run(SAVING)
         yield opened
         assert opened.console == opened.stopped == []
         assert [url.split("#")[0] for url in opened.requests] == [
             (results / "report.html").as_uri()
         ]
-
-
-def drawn(page, figure="card-1"):
-    page.run(f"document.getElementById('{figure}').scrollIntoView({{behavior: 'instant'}})")
-    page.wait(f"document.querySelector('#{figure} .plot')._fullData !== undefined")
 
 
 def by_mouse(page, selector, shift=False):
@@ -119,10 +90,10 @@ def test_a_figure_fills_the_screen_and_comes_back(page, act):
 @pytest.mark.slow
 def test_the_legend_switches_and_isolates_what_a_figure_shows(page):
     drawn(page, "curves-runs")
-    assert page.run(SHOWN.format("curves-runs")) == [SYSTEMS[0]] * 2 + [SYSTEMS[1]] * 2
+    assert names(page, "curves-runs") == [SYSTEMS[0]] * 2 + [SYSTEMS[1]] * 2
     page.click("#curves-runs .legendtoggle")
     page.wait(f"{SHOWN.format('curves-runs')}.length === 2")
-    assert page.run(SHOWN.format("curves-runs")) == [SYSTEMS[1]] * 2
+    assert names(page, "curves-runs") == [SYSTEMS[1]] * 2
 
 
 @pytest.mark.slow
@@ -187,7 +158,7 @@ def test_what_is_looked_at_is_chosen_by_keyboard_alone_and_stands_in_the_address
     page.press("#answer [data-view=surface]", "ArrowDown")
     page.wait(f"{ADDRESS} === '#surface=Sb-R'")
     assert page.run(ROWS) == ["a1", "a2", "b1"]
-    assert set(page.run(SHOWN.format("curves-runs"))) == {SYSTEMS[0]}
+    assert set(names(page, "curves-runs")) == {SYSTEMS[0]}
     page.tab_to("#answer [data-view=mark]")
     page.type("a2")
     page.press("#runs-table tr[data-run=a1] input[data-hide]", " ")

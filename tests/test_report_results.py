@@ -368,6 +368,7 @@ def test_drifting_and_backward_friction_is_said(tmp_path):
     assert segments.count("%, significant</td>") == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("note", ["Simulated <by> a rig.", None])
 def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
     made = made_outcome(tmp_path, [("one", "Sb-R", "dry", 31.0, 0.8)], samples=60)
@@ -381,6 +382,7 @@ def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
     assert ("campaign" in table(made, "findings")["where"].tolist()) == bool(note)
 
 
+@pytest.mark.slow
 def test_evidence_leads_to_traces_and_what_is_the_same_is_said_once(tmp_path):
     runs = [("a", "Sand S", "dry", 31.0, 0.8), ("b", "sand/s", "dry", 31.0, 0.6)]
     write_report(made := made_outcome(tmp_path, runs, speeds=[1e-5, 1e-3]))

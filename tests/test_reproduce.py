@@ -1,7 +1,6 @@
 """The paper reproduced: every number has a status, every figure its words, the page opens."""
 
 import json
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from chromium import BROWSER, chromium
 from report_pages import Reader
 from typer.testing import CliRunner
 
@@ -171,35 +169,31 @@ def test_page_asks_nothing_of_the_network_and_its_links_lead_somewhere(made, pag
 
 
 @pytest.mark.slow
-def test_page_opens_in_a_browser_without_a_word_or_a_fault(made, tmp_path):
-    if not BROWSER:
-        message = "no chromium was found to open the page with"
-        (pytest.fail if os.environ.get("TRIBOLAB_REQUIRE_BROWSER") else pytest.skip)(message)
+def test_page_opens_in_a_browser_without_a_word_or_a_fault(made, browser):
     address = (made.folder / "paper.html").as_uri()
-    with chromium(tmp_path / "profile") as browser:
-        for width, dark in ((1400, False), (400, True)):
-            with browser.page(address, width, 900, dark) as page:
-                sizes = page.run(
-                    "Promise.all(Array.from(document.images, i => { i.loading = 'eager';"
-                    "return i.decode().then(() => i.naturalWidth) }))"
-                )
-                assert len(sizes) == len(FIGURES) and min(sizes) > 200
-                assert page.run("document.documentElement.scrollWidth") <= width
-                page.run(f"{AXE};0")
-                faults = page.run(
-                    "axe.run(document, {resultTypes: ['violations']}).then(found => found"
-                    ".violations.filter(v => ['serious', 'critical'].includes(v.impact))"
-                    ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
-                )
-                assert faults == []
-                page.click("#numbers-table th:nth-child(6) button")
-                status = page.run(
-                    "Array.from(document.querySelectorAll('#numbers-table tbody tr'),"
-                    "row => Number(row.cells[5].dataset.sort || 'NaN')).filter(x => x === x)"
-                )
-                assert status == sorted(status) and len(status) > 40
-                assert page.console == []
-                assert page.requests == [address]
+    for width, dark in ((1400, False), (400, True)):
+        with browser.page(address, width, 900, dark) as page:
+            sizes = page.run(
+                "Promise.all(Array.from(document.images, i => { i.loading = 'eager';"
+                "return i.decode().then(() => i.naturalWidth) }))"
+            )
+            assert len(sizes) == len(FIGURES) and min(sizes) > 200
+            assert page.run("document.documentElement.scrollWidth") <= width
+            page.run(f"{AXE};0")
+            faults = page.run(
+                "axe.run(document, {resultTypes: ['violations']}).then(found => found"
+                ".violations.filter(v => ['serious', 'critical'].includes(v.impact))"
+                ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
+            )
+            assert faults == []
+            page.click("#numbers-table th:nth-child(6) button")
+            status = page.run(
+                "Array.from(document.querySelectorAll('#numbers-table tbody tr'),"
+                "row => Number(row.cells[5].dataset.sort || 'NaN')).filter(x => x === x)"
+            )
+            assert status == sorted(status) and len(status) > 40
+            assert page.console == []
+            assert page.requests == [address]
 
 
 def test_a_folder_with_something_else_is_refused_before_any_work(tmp_path):

@@ -1,7 +1,6 @@
 """Reviewing on the report page: what is clicked or typed there is what the campaign computes."""
 
 import datetime as dt
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import copied
-from chromium import BROWSER, chromium
 from report_pages import Reader
 from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, rows_of
 
@@ -28,17 +26,6 @@ UNKNOWN = "report.book.author = ''"  # a reader whom this browser does not know 
 AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
 TODAY = dt.date.today()  # a reader's day
 BAR = "document.getElementById('review-bar').textContent"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    if not BROWSER:
-        message = "no chromium was found to review with"
-        if os.environ.get("TRIBOLAB_REQUIRE_BROWSER"):
-            pytest.fail(message)
-        pytest.skip(message)
-    with chromium(tmp_path_factory.mktemp("profile")) as started:
-        yield started
 
 
 def page_of(browser, campaign, run, **how):

@@ -65,6 +65,7 @@ def test_a_fault_is_found_by_its_check(tmp_path, name):
     assert found.count()["error"] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_a_load_of_the_wrong_sign_is_readable_whatever_zero_the_cell_drew(tmp_path, seed):
     """The cells of seeds 0, 3 and 4 read above zero even when no load is on."""
@@ -79,6 +80,7 @@ def test_a_load_of_the_wrong_sign_is_readable_whatever_zero_the_cell_drew(tmp_pa
     assert struck.facts["faults"][0]["severity"] == "fail"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_drawn_from_its_seed_and_leaves_the_run_beneath_alone(name):
     where = condition(FAULTS[name])
