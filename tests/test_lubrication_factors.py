@@ -1,5 +1,7 @@
 """Flow and friction factors: expansions, reciprocity, percolation, tables, the paper."""
 
+import functools
+
 import numpy as np
 import pytest
 from contact_cases import SURFACES, properties, reference_psd, self_affine, target
@@ -11,11 +13,14 @@ from scipy.special import erfinv
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import mean_separation
 from tribolab.errors import AnalysisError, UnitError
-from tribolab.lubrication.factors import FACTORS, flow_factors, smooth_factors
+from tribolab.lubrication.factors import FACTORS, FlowFactors, flow_factors, smooth_factors
 from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.surface.moments import rms_roughness, rms_slope
 
-FACTORS_OF = {name: flow_factors(reference_psd(name)) for name in SURFACES}
+
+@functools.cache
+def factors_of(name: str) -> FlowFactors:
+    return flow_factors(reference_psd(name))
 
 
 @pytest.mark.parametrize("percolation", [0.42, 0.5])
@@ -48,7 +53,7 @@ def test_what_shear_entrains_is_what_pressure_drags(name):
 
     The flux is <u - s (u - u_e)/D>, the drag d s_e <u/D>: two different sums over P(u).
     """
-    factors, d = FACTORS_OF[name], 1 / 0.58
+    factors, d = factors_of(name), 1 / 0.58
     h = factors.rms_roughness
     gaps = gap_distribution(np.geomspace(1e-4, 0.03, 5), reference_psd(name), 1.0)
     gap = gaps.gap.values
@@ -73,7 +78,7 @@ def test_what_shear_entrains_is_what_pressure_drags(name):
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_flow_stops_where_the_contact_percolates(name):
-    factors, psd = FACTORS_OF[name], reference_psd(name)
+    factors, psd = factors_of(name), reference_psd(name)
     pressure = np.sqrt(np.pi * rms_slope(psd) ** 2 / (2 * np.pi)) * erfinv(0.42)
     closing = mean_separation(float(pressure), psd, 1.0)
     assert factors.percolation_separation == pytest.approx(closing, rel=1e-5)
@@ -89,7 +94,7 @@ def test_flow_stops_where_the_contact_percolates(name):
 @pytest.mark.parametrize("name", SURFACES)
 def test_pressure_flow_is_gone_at_the_papers_separation(shared, name):
     published = target(shared, "percolation_separation", "all")
-    factors = FACTORS_OF[name]
+    factors = factors_of(name)
     h = factors.rms_roughness
     assert factors.at(np.array([published * h])).phi_p[0] < 1e-4
     assert factors.at(np.array([0.25 * h])).phi_p[0] < 1e-3
@@ -98,7 +103,7 @@ def test_pressure_flow_is_gone_at_the_papers_separation(shared, name):
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_the_table_is_monotone_and_its_slopes_are_its_own(name):
-    factors = FACTORS_OF[name]
+    factors = factors_of(name)
     h, closing = factors.rms_roughness, factors.percolation_separation
     u = closing + h * np.geomspace(1e-7, 300, 4000)
     phi_p, slope, entrained, rate = factors.transport(u)
@@ -112,7 +117,7 @@ def test_the_table_is_monotone_and_its_slopes_are_its_own(name):
 
 
 def test_shear_flow_changes_sign_with_the_body_that_is_rough():
-    rest = FACTORS_OF["Sb-S"]
+    rest = factors_of("Sb-S")
     moving = flow_factors(reference_psd("Sb-S"), rough_body="moving")
     u = rest.rms_roughness * np.array([0.1, 0.5, 1.0, 5.0, 50.0])
     np.testing.assert_array_equal(moving.at(u).phi_s, -rest.at(u).phi_s)
@@ -181,7 +186,7 @@ def test_patir_and_cheng_conduct_what_their_nominal_film_conducts(nominal):
 @pytest.mark.parametrize("name", SURFACES)
 def test_patir_and_cheng_have_the_same_general_shape(name):
     """The paper: 'similar to those obtained by Patir and Cheng'."""
-    ours = FACTORS_OF[name]
+    ours = factors_of(name)
     h = ours.rms_roughness
     u = h * np.geomspace(1.0, 10, 20)
     theirs = patir_cheng(h).at(u)
@@ -190,7 +195,7 @@ def test_patir_and_cheng_have_the_same_general_shape(name):
 
 
 def test_the_table_by_name_carries_units_and_what_it_was_made_with():
-    table = FACTORS_OF["Sb-S"].dataset([1e-6, 5e-6])
+    table = factors_of("Sb-S").dataset([1e-6, 5e-6])
     assert list(table.data_vars) == list(FACTORS)
     assert table.separation.attrs["units"] == "m"
     assert {table[name].attrs["units"] for name in FACTORS} == {"1"}
@@ -214,7 +219,7 @@ def test_the_table_by_name_carries_units_and_what_it_was_made_with():
         ),
         (lambda: flow_factors(reference_psd("Sb-S"), cutoff="1 N"), UnitError, "cutoff"),
         (lambda: patir_cheng("1 Pa"), UnitError, "rms_roughness"),
-        (lambda: FACTORS_OF["Sb-S"].dataset([0.0, 1e-6]), AnalysisError, "above zero"),
+        (lambda: factors_of("Sb-S").dataset([0.0, 1e-6]), AnalysisError, "above zero"),
     ],
 )
 def test_what_has_no_factors_is_refused(call, error, words):
