@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 from file_kinds import AT_ONCE, DESCRIBED, DRAFTED, judge, read_in_some_way
 from typer.testing import CliRunner
@@ -22,6 +23,10 @@ WAYS = {
     "stresses": AT_ONCE,
     "compressed": AT_ONCE,
     "intervals": AT_ONCE,
+    "workbook": AT_ONCE,
+    "tdms": AT_ONCE,
+    "hdf5": AT_ONCE,
+    "zipped": AT_ONCE,
     "sled": DRAFTED,
     "radius_unsaid": DRAFTED,
     "bridges": DESCRIBED,
@@ -36,6 +41,43 @@ def test_a_file_of_this_kind_is_read_in_its_way_and_right(name, tmp_path):
     judged = judge(written, read.run)
     assert not judged.faults
     assert (judged.sem < 0.03 * judged.truth).all()
+
+
+@pytest.mark.parametrize("name", ["workbook", "tdms", "hdf5", "feather"])
+def test_what_is_drafted_from_columns_is_written_down_and_reads_the_file(name, tmp_path):
+    path = write_kind(name, tmp_path).path
+    at_once = tl.read(path)
+    assert at_once.attrs["instrument"] == "drafted from the file"
+    toml = tl.draft_dialect(path).toml
+    (tmp_path / "kept.toml").write_text(toml)
+    assert tl.read(path, tmp_path / "kept.toml").drop_attrs().identical(at_once.drop_attrs())
+    told = CliRunner().invoke(cli.app, ["dialect", str(path), "-o", str(tmp_path / "new.toml")])
+    assert told.exit_code == 0 and (tmp_path / "new.toml").read_text() == toml
+
+
+def test_a_sheet_with_units_below_its_names_is_told_from_one_of_words(tmp_path):
+    book = pd.ExcelWriter(tmp_path / "run.xlsx")
+    words = pd.DataFrame([["Operator", "A. Person"], ["Load", "20 N"]])
+    rows = [["Rig 7", "", ""], ["Zeit", "Reibkraft", "Normalkraft"], ["s", "N", "N"]]
+    rows += [[0.1 * n, 3.0, 10.0] for n in range(200)]
+    with book:
+        words.to_excel(book, sheet_name="About", index=False, header=False)
+        pd.DataFrame(rows).to_excel(book, sheet_name="Lauf", index=False, header=False)
+    dialect = tl.draft_dialect(tmp_path / "run.xlsx").dialect
+    assert (dialect.header.sheet, dialect.header.line, dialect.header.units) == ("Lauf", 2, "row")
+    run = tl.read(tmp_path / "run.xlsx")
+    assert run.sizes["time"] == 200 and run["friction_force"].values[7] == 3.0
+
+
+def test_columns_without_numbers_are_no_run(tmp_path):
+    pd.DataFrame({"a": ["x", "y"], "b": ["1", "2"]}).to_parquet(tmp_path / "words.parquet")
+    with pytest.raises(ReadError, match="no known instrument writes such a file"):
+        tl.read(tmp_path / "words.parquet")
+    with pytest.raises(ReadError, match="no columns of numbers"):
+        tl.draft_dialect(tmp_path / "words.parquet")
+    (tmp_path / "bad.parquet").write_bytes(b"PAR1 and no more")
+    with pytest.raises(ReadError, match="this parquet file cannot be read"):
+        tl.draft_dialect(tmp_path / "bad.parquet")
 
 
 @pytest.mark.parametrize("unit", ["Nm", "N m", "mNm", "Nmm", "Ncm", "N-m", "µNm"])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tribolab.draft.columns import first_cells_of, understand
 from tribolab.draft.drafted import SHOWN, Drafted
-from tribolab.draft.layout import find_layout
+from tribolab.draft.layout import Layout, find_layout
 from tribolab.draft.model import Understood
 from tribolab.draft.show import draft_html
 from tribolab.draft.toml import dialect_toml
@@ -30,12 +30,12 @@ class Draft(Drafted):
 
 
 def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
-    r"""Draft a dialect from a raw text file of an unknown instrument.
+    r"""Draft a dialect from a raw file of an unknown instrument.
 
     Parameters
     ----------
     path
-        The file.
+        The file: text, or columns with names (Excel, Parquet, Feather, HDF5, TDMS).
     name
         Name of the dialect; made from the file's name if not given.
 
@@ -67,16 +67,10 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     {27: 'the unit of \'Weg\' (position), e.g. "m"'}
     """
     file = peek(path)
-    if file.format != "text":
-        raise ReadError(
-            f"{file.path}: this is {file.format}; a dialect can be drafted from text only, for "
-            "other formats follow an example in raw_data_schema/instruments"
-        )
     name = dialect_name(file.path if name is None else name)
     if is_results(file.head):
         return _results(file, name)
-    layout = find_layout(file)
-    understood = understand(layout)
+    layout, understood = _understood(file)
     toml = dialect_toml(name, layout, understood) if understood.kind != "table" else ""
     draft = Draft(
         path=file.path,
@@ -92,6 +86,22 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     if toml:
         _validate(draft)
     return draft
+
+
+def _understood(file: File) -> tuple[Layout, Understood]:
+    if file.format == "text":
+        layout = find_layout(file)
+        return layout, understand(layout)
+    from tribolab.draft.held import READERS, as_held, layout_of_columns
+
+    if file.format not in READERS:
+        raise ReadError(
+            f"this is {file.format}; a dialect can be drafted from text and from columns with "
+            "names only, for other formats follow an example in raw_data_schema/instruments",
+            where=file.path,
+        )
+    layout, columns = layout_of_columns(file)
+    return layout, as_held(understand(layout), columns)
 
 
 def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:

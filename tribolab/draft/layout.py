@@ -22,6 +22,15 @@ _TRIED = 20  # patterns of a step's number
 _MOST_COLUMNS = 20_000
 
 
+class Held(NamedTuple):
+    """Where columns are in a file that names them: its format, and of a workbook the sheet."""
+
+    form: str
+    sheet: str = ""
+    line: int = 1
+    units_below: bool = False
+
+
 class Layout(NamedTuple):
     """How a file is written, and the lines of its main table (or of its repeated tables)."""
 
@@ -45,6 +54,7 @@ class Layout(NamedTuple):
     whole: bool
     notes: tuple[str, ...]
     guesses: tuple[str, ...]
+    held: Held | None = None
 
     @property
     def delimiter_name(self) -> str:

@@ -16,6 +16,7 @@ class DraftColumn(NamedTuple):
 
     `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
+    `group` is that of a TDMS channel.
     `options` is what it may be instead, where something is guessed; `form` that of its dates.
     """
 
@@ -34,6 +35,7 @@ class DraftColumn(NamedTuple):
     note: str = ""
     fill_in: str = ""
     form: str = ""
+    group: str = ""
 
     @property
     def read_unit(self) -> str | None:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Unpack
 from tribolab.errors import ReadError
 from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
-from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ def read_run(
     instrument: Instrument | None = None,
     **said: Unpack[runs.Reading],
 ) -> xr.Dataset:
-    """Read one run; a text file that no dialect knows is read by one that is drafted from it.
+    """Read one run; a file that no dialect knows is read by one that is drafted from it.
 
     Parameters
     ----------
@@ -81,7 +80,7 @@ def describe(path: PathLike, instrument: Instrument | None = None) -> runs.FileF
 
 
 def holds_run(path: Path, *, by_name: bool = True) -> bool:
-    """Whether a text file that no dialect knows holds a run, by names in its header or at all."""
+    """Whether a file that no dialect knows holds a run, by names in its header or at all."""
     draft = _draft(path)
     return draft is not None and draft.kind == "run" and (draft.named or not by_name)
 
@@ -95,21 +94,21 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise error
     if asked := questions(draft):
         raise GuessedError(path, asked) from error
+    if draft.kind == "scan" and draft.layout and draft.layout.held:
+        raise error
     if draft.kind == "scan":
-        what = "no known instrument writes such a file (text); it looks like a profile or map"
+        what = "no known instrument writes such a file; it looks like a profile or map"
         raise ReadError(what, where=path, cure=cures.PROFILE) from error
     assert draft.dialect is not None  # only tables have none
     return draft.dialect
 
 
 def _draft(path: Path) -> Draft | None:
-    """Draft a dialect; None of what is no text, or holds no table."""
+    """Draft a dialect; None of what it cannot be drafted from, or holds no table."""
     try:
-        if peek(path).format != "text":
-            return None
         status = path.stat()
         return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
-    except (ReadError, OSError):
+    except (ReadError, OSError, ImportError):
         return None
 
 

@@ -90,7 +90,7 @@ class GuessedError(ReadError):
     """
 
     def __init__(self, path: Path, asked: Sequence[Question]) -> None:
-        what = "no known instrument writes such a file (text), and it does not say all itself"
+        what = "no known instrument writes such a file, and it does not say all itself"
         super().__init__(what, where=path, cure=cures.unknown_instrument(path, cures.RUN))
         self.args = (path, tuple(asked))
         self.asked = tuple(asked)

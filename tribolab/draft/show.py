@@ -93,6 +93,9 @@ def _written(draft: Drafted) -> list[str]:
     if layout is None:
         return []
     rows = sum(len(block.rows) for block in layout.blocks)
+    if layout.held is not None:
+        sheet = f", sheet '{layout.held.sheet}'" if layout.held.sheet else ""
+        return [f"the first {rows} rows of {layout.width} columns ({layout.held.form}{sheet})"]
     more = "" if layout.whole else ", and more: only the first megabyte was looked at"
     tables = f" in {len(layout.blocks)} tables" if len(layout.blocks) > 1 else ""
     if layout.others:

@@ -32,7 +32,7 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     used = [column for column in columns if column.used]
     parts = [_head(name, layout, understood)]
     names = dict.fromkeys(c.name for c in used if c.name and not c.optional)
-    if layout.heading and names:
+    if layout.heading and names and not (layout.held and layout.held.form == "tdms"):
         parts.append("[recognise]\nheader = [" + ", ".join(map(_text, names)) + "]\n")
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
@@ -60,6 +60,8 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
         f"name = {_text(name)}",
         f"title = {_text('files like ' + file)}",
     ]
+    if layout.held is not None:
+        lines.append(f'format = "{layout.held.form}"')
     lines += [
         f"# guessed: {_comment(guess)}"
         for guess in (*layout.notes, *layout.guesses, *understood.guesses)
@@ -70,6 +72,8 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
 
 
 def _text_table(layout: Layout, understood: Understood) -> str:
+    if layout.held is not None:
+        return ""
     lines = ["[text]"]
     if layout.delimiter != ",":
         lines.append(f"delimiter = {_text(layout.delimiter)}")
@@ -87,6 +91,11 @@ def _text_table(layout: Layout, understood: Understood) -> str:
 
 
 def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
+    held = layout.held
+    if held is not None:
+        below = 'units = "row"\n' if held.units_below else ""
+        sheet = f"[header]\nline = {held.line}\n{below}sheet = {_text(held.sheet)}\n"
+        return sheet if held.sheet else ""
     lines = ["[header]"]
     if layout.heading:
         if layout.header_pattern:
@@ -195,6 +204,8 @@ def _column(column: DraftColumn, values: np.ndarray) -> str:
         lines.append(f"name = {_text(column.name)}")
         if column.occurrence > 1:
             lines.append(f"occurrence = {column.occurrence}")
+    if column.group:
+        lines.append(f"group = {_text(column.group)}")
     if column.unit is not None:
         lines.append(f"unit = {_text(column.unit)}")
     elif column.file_unit is None and not column.used and not _has_no_unit(column):

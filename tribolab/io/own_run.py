@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError
+from tribolab.io.dialects.find import UnknownFileError
 from tribolab.quantities import QUANTITIES
 from tribolab.untyped import Json
 
@@ -43,7 +44,8 @@ def read_own_run(path: Path) -> xr.Dataset:
 
     run = read_netcdf(path, group="run?")
     if "time" not in run.coords or run.sizes.get("time", 0) == 0:
-        raise ReadError(f"{path}: this netCDF file holds no run: it has no coordinate 'time'")
+        what = "this netCDF file holds no run: it has no coordinate 'time'"
+        raise UnknownFileError(what, where=path)
     strange = [str(name) for name in run.variables if not _along_time(run[name])]
     for name in strange:
         if name == "time" or name in QUANTITIES:
