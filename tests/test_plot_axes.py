@@ -91,7 +91,13 @@ def drawings():
     beside = pd.DataFrame(pair | {"quantity": ["rms_slope"] * 2, "of": ["Sb-S", "Sb-R"]})
     pair |= {"mean": [0.5, 0.4], "repeatability_std": [0.01, 0.02], "between_day_std": 0.01}
     spreads = pd.DataFrame(pair)
+    dates = {"when": ["2026-01-01T00:00:00"] * 2, "quantity": "zero", "unit": "N", "signal": ""}
+    dates |= dict.fromkeys(("low", "high", "smoothed", "smoothed_low", "smoothed_high"), 0.0)
+    chart = pd.DataFrame(dates | {"value": [0.1, 0.2], "baseline": [True, False]})
+    wanted = beside.assign(runs=[3.0, 5.0], cheapest_runs=[2.0, 4.0])
     return {
+        "runs_needed": (lambda **k: plot.runs_needed(wanted, **k), 1, "dry"),
+        "control": (lambda **k: plot.control(chart, **k), 1, "weighted mean"),
         "precision": (lambda **k: plot.precision(spreads, **k), 1, "between day"),
         "differences": (lambda **k: plot.differences(beside, **k), 1, "dry"),
         "forest": (lambda **k: plot.forest(beside, **k), 1, "90 %"),

@@ -86,6 +86,8 @@ _PUBLIC = {
     "run_campaign": "tribolab.app.run",
     "compare": "tribolab.across.compare",
     "repeatability": "tribolab.across.repeatability",
+    "history": "tribolab.across.history",
+    "measuring_plan": "tribolab.across.planning",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -159,6 +161,8 @@ __all__ = [
     "run_campaign",
     "compare",
     "repeatability",
+    "history",
+    "measuring_plan",
     "TribolabError",
     "plot",
     "rig",
@@ -168,6 +172,8 @@ __all__ = [
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
     from tribolab.across.compare import compare
+    from tribolab.across.history import history
+    from tribolab.across.planning import measuring_plan
     from tribolab.across.repeatability import repeatability
     from tribolab.app.run import run_campaign
     from tribolab.campaign.settings.load import load_campaign

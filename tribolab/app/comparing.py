@@ -104,3 +104,109 @@ def repeatability(
         page = write_repeatability(told, f"Repeatability of {name}", output)
         say(verdict_text(told))
         say(f"page: {page}")
+
+
+def history(
+    folders: Annotated[
+        list[Path],
+        typer.Argument(help="Results folders, or folders below which they lie, in any order."),
+    ],
+    rule: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Rule by which points signal, may be given again: '3 sigma', EWMA, CUSUM, "
+            "'Western Electric'.",
+            show_default="3 sigma and EWMA",
+        ),
+    ] = None,
+    baseline: Annotated[
+        int | None,
+        typer.Option(
+            min=5,
+            help="How many of the first campaigns are what is usual.",
+            show_default="20, or half of them",
+        ),
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
+    ] = Path("history"),
+    debug: Debug = False,
+) -> None:
+    """Follow instruments over months: control charts of zeros, noise, tilt, set points, reference.
+
+    Exits with 1 where a point signals. `[reference]` in the campaign files names runs on a
+    reference sample, `[calibration]` when the instrument was calibrated.
+
+        tribolab history campaigns/*/results
+
+        tribolab history archive --rule EWMA --baseline 30
+    """
+    with reported(debug):
+        from tribolab.across.history import history as followed
+        from tribolab.across.history_page import verdict_text, write_history
+        from tribolab.across.watched import results_below
+        from tribolab.metrology.control_charts import DEFAULT_RULES
+
+        told = followed(
+            results_below(folders), rules=tuple(rule or DEFAULT_RULES), baseline=baseline
+        )
+        page = write_history(told, output)
+        for name, due in told.due.items():
+            date = due.date.isoformat() if due.date else "unknown"
+            say(f"{name}: calibration due {date} ({due.reason})")
+        for text in told.unread:
+            say(f"tribolab: {text}", to_stderr=True)
+        say(verdict_text(told))
+        say(f"page: {page}")
+    raise typer.Exit(1 if told.signalling else 0)
+
+
+def plan(
+    results: Annotated[Path, typer.Argument(help="Results folder of a pilot.")],
+    standard_error: Annotated[
+        float | None,
+        typer.Option(min=0, help="Of the mean coefficient, e.g. 0.001.", show_default=False),
+    ] = None,
+    half_interval: Annotated[
+        float | None,
+        typer.Option(min=0, help="Instead: half the 95 % interval.", show_default=False),
+    ] = None,
+    assurance: Annotated[
+        float | None,
+        typer.Option(
+            min=0.5, max=0.999, help="Chance to find it that small, e.g. 0.8.", show_default="none"
+        ),
+    ] = None,
+    setup_time: Annotated[str, typer.Option(help="What each run costs beside sliding.")] = "10 min",
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
+    ] = Path("plan"),
+    debug: Debug = False,
+) -> None:
+    """Tell how long to slide and how often to repeat, from what a pilot scatters.
+
+    Runs at each speed that reach a precision, at the pilot's sliding times and at those that cost
+    least in all.
+
+        tribolab plan results --standard-error 0.001
+
+        tribolab plan results --half-interval 0.005 --assurance 0.8 --setup-time "20 min"
+    """
+    with reported(debug):
+        from tribolab.across.planning import measuring_plan, plan_text
+        from tribolab.across.planning_page import write_plan
+        from tribolab.errors import ConfigError
+        from tribolab.units import to_si
+
+        if (standard_error is None) == (half_interval is None):
+            raise ConfigError("say one precision: --standard-error or --half-interval")
+        made = measuring_plan(
+            results,
+            standard_error=standard_error,
+            half_interval=half_interval,
+            assurance=assurance,
+            setup_time=to_si(setup_time, "s", name="setup time"),
+        )
+        page = write_plan(made, f"Plan after {results.resolve().parent.name}", output)
+        say(plan_text(made))
+        say(f"page: {page}")

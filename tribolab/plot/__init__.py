@@ -25,9 +25,11 @@ if TYPE_CHECKING:
         shear_stress,
         shear_stress_over_speed,
     )
+    from tribolab.plot.over_time import control
     from tribolab.plot.panels import strokes
-    from tribolab.plot.precision import precision
+    from tribolab.plot.planned import runs_needed
     from tribolab.plot.reduce import envelope
+    from tribolab.plot.repeats import precision
     from tribolab.plot.runs import trace
     from tribolab.plot.sensitivity import model_sensitivity
     from tribolab.plot.slip_spectra import slip_spectra
@@ -45,6 +47,7 @@ _HOMES = {
     "contact_area": "tribolab.plot.contact",
     "contact_separation": "tribolab.plot.contact",
     "effective_work": "tribolab.plot.contact",
+    "control": "tribolab.plot.over_time",
     "cycles": "tribolab.plot.starts",
     "differences": "tribolab.plot.compared",
     "envelope": "tribolab.plot.reduce",
@@ -63,7 +66,8 @@ _HOMES = {
     "model_sensitivity": "tribolab.plot.sensitivity",
     "modulus": "tribolab.plot.surfaces",
     "paper_style": "tribolab.plot.style",
-    "precision": "tribolab.plot.precision",
+    "precision": "tribolab.plot.repeats",
+    "runs_needed": "tribolab.plot.planned",
     "save": "tribolab.plot.style",
     "shear_stress": "tribolab.plot.mixed",
     "shear_stress_over_speed": "tribolab.plot.mixed",
@@ -87,6 +91,7 @@ __all__ = [
     "contact_area",
     "contact_separation",
     "effective_work",
+    "control",
     "cycles",
     "differences",
     "envelope",
@@ -106,6 +111,7 @@ __all__ = [
     "modulus",
     "paper_style",
     "precision",
+    "runs_needed",
     "save",
     "slip_events",
     "slip_spectra",

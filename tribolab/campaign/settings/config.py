@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -220,6 +221,30 @@ class RunEntry(Table):
     """Overrides of [segments] for these runs."""
 
 
+class Reference(Table):
+    """Runs on a reference sample, by which `tribolab history` tells whether the rig changed."""
+
+    files: Patterns | None = None
+    """Their raw files, as in [[run]]."""
+    dead_weight: Annotated[float, PositiveSi("N", "19.62 N")] | None = None
+    """The weight that loads them, where it is a dead weight: it tells the gain of the force."""
+
+
+class Calibration(Table):
+    """The last calibration of the instrument, for `tribolab history` and `tribolab pack`."""
+
+    date: dt.date | None = None
+    """When it was, e.g. 2026-03-02."""
+    interval: Annotated[float, PositiveSi("s", "1 year")] | None = None
+    """How long it holds at most."""
+    limit: Annotated[float, PositiveSi("1", "2 %")] | None = None
+    """How far gain or reference may drift until it wants to be done anew."""
+    serial: Text | None = None
+    """Serial number of the instrument."""
+    certificate: Text | None = None
+    """Number or place of the certificate."""
+
+
 class Model(Table):
     """How the model Stribeck curves beside the measured ones are computed."""
 
@@ -327,6 +352,8 @@ class Campaign(Table):
     surface: tuple[Surface, ...] = ()
     run: tuple[RunEntry, ...] = ()
     qc: Qc = Qc()
+    reference: Reference = Reference()
+    calibration: Calibration = Calibration()
     uncertainty: Uncertainty = Uncertainty()
 
     _file: Path = PrivateAttr(default=Path("campaign.toml"))

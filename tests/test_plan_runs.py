@@ -1,0 +1,114 @@
+"""Planning: formulas against their closed forms, plans followed by simulation."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+import tribolab as tl
+from tribolab import cli
+from tribolab.metrology.planning import (
+    Pilot,
+    cheapest_sliding_time,
+    run_variance,
+    runs_for_half_interval,
+    runs_for_standard_error,
+    upper_bound,
+)
+
+
+def test_a_run_that_slides_for_long_or_not_at_all():
+    pilot = Pilot(within=0.1, memory=0.5, between=0.02)
+    assert run_variance(pilot, 1e6) == pytest.approx(0.02**2 + 2 * 0.5 * 0.1**2 / 1e6, rel=1e-5)
+    assert run_variance(pilot, 1e-6) == pytest.approx(0.02**2 + 0.1**2, rel=1e-5)
+
+
+def test_the_variance_of_a_mean_is_that_of_simulated_signals():
+    rng = np.random.default_rng(1)
+    tau, step, samples = 0.4, 0.02, 100  # T = 2 s: no more than five memories
+    phi = math.exp(-step / tau)
+    x = np.empty((20_000, samples))
+    x[:, 0] = rng.normal(size=len(x))
+    for k in range(1, samples):
+        x[:, k] = phi * x[:, k - 1] + math.sqrt(1 - phi**2) * rng.normal(size=len(x))
+    assert x.mean(axis=1).var() == pytest.approx(run_variance(Pilot(1.0, tau, 0.0), 2.0), rel=0.04)
+
+
+def test_half_an_interval_is_students():
+    # n from the tables of Student's t: 0.975 quantile of 6 degrees of freedom is 2.447
+    assert runs_for_half_interval(1.0, 2.447 / math.sqrt(7) + 1e-4) == 7
+    assert runs_for_half_interval(1.0, 2.447 / math.sqrt(7) - 1e-3) == 8
+    assert runs_for_standard_error(1.0, 1e-6) is None
+
+
+def test_assurance_takes_the_pilots_own_error_in():
+    from scipy import stats
+
+    rng = np.random.default_rng(9)
+    runs = runs_for_standard_error(1.0, 0.2, 0.8, 6)
+    pilots = rng.chisquare(5, 40_000) / 5  # variances that pilots of six tell of a true one
+    worst = stats.f.ppf(0.8, runs - 1, 5)
+    later = rng.chisquare(runs - 1, 40_000) / (runs - 1)
+    assert np.mean(later <= pilots * worst) == pytest.approx(0.8, abs=0.01)
+    assert runs > runs_for_standard_error(1.0, 0.2, 0.8) > runs_for_standard_error(1.0, 0.2)
+
+
+def test_a_pilot_of_three_runs_may_have_found_half():
+    assert upper_bound(1.0, 3) == pytest.approx(2.1, abs=0.02)
+
+
+def test_the_cheapest_time_is_that_of_the_closed_form():
+    pilot = Pilot(within=0.2, memory=0.3, between=0.01)
+    closed = math.sqrt(1200 * 2 * 0.3 * 0.2**2 / 0.01**2)
+    assert cheapest_sliding_time(pilot, 1200.0, 1e5) == pytest.approx(closed, rel=0.01)
+    assert cheapest_sliding_time(pilot, 1200.0, 60.0) == pytest.approx(60.0, rel=1e-3)
+
+
+def pilot_table(rng, runs, between, within=0.02, memory=0.5, time=100.0):
+    """A pilot as the analysis would tell of it: what is known along a run, means that scatter."""
+    means = 0.5 + rng.normal(0, math.sqrt(run_variance(Pilot(within, memory, between), time)), runs)
+    return pd.DataFrame(
+        {
+            "run": [f"r{k}" for k in range(runs)],
+            "sliding_speed_m_s": 1e-3,
+            "friction_coefficient": means,
+            "friction_coefficient_std": within,
+            "autocorrelation_time_s": memory,
+            "trimmed_start_s": 0.0,
+            "trimmed_stop_s": time,
+        }
+    )
+
+
+@pytest.mark.slow
+def test_a_plan_that_is_followed_reaches_its_precision():
+    rng = np.random.default_rng(2)
+    reached = []
+    for _ in range(150):
+        plan = tl.measuring_plan(pilot_table(rng, 40, 0.01), standard_error=0.002)
+        runs = int(plan.table.runs[0])
+        later = pilot_table(rng, runs, 0.01).friction_coefficient
+        reached.append(later.std(ddof=1) / math.sqrt(runs))
+    assert np.median(reached) == pytest.approx(0.002, rel=0.1)
+
+
+def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
+    table = pilot_table(np.random.default_rng(3), 4, 0.01)
+    with pytest.raises(tl.TribolabError, match="say one precision"):
+        tl.measuring_plan(table, standard_error=0.1, half_interval=0.1)
+    with pytest.raises(tl.TribolabError, match="no condition and speed has two runs"):
+        tl.measuring_plan(table.head(1), standard_error=0.1)
+    few = tl.measuring_plan(table, standard_error=0.002).table
+    assert few.between_runs_std[0] > table.friction_coefficient.std(), "four runs: upper bound"
+
+
+def test_the_command_plans_after_a_campaign(original, tmp_path):
+    words = ["plan", str(original.parent / "results"), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(cli.app, [*words, "--standard-error", "0.01"])
+    assert done.exit_code == 0, done.output
+    assert "standard error of 0.01 on average" in done.stdout
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"plan.html", "plan.csv"}
+    done = CliRunner().invoke(cli.app, words)
+    assert done.exit_code == 2 and "--standard-error or --half-interval" in done.stderr

@@ -1,0 +1,57 @@
+"""The page and the table of a plan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tribolab import plot
+from tribolab.across.page import Part, Picture, Sheet, cells, write_page
+from tribolab.across.planning import FEW, LONGEST, MeasuringPlan, plan_text
+from tribolab.report import tables
+from tribolab.words import duration, speed_text
+
+
+def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
+    """Write ``plan.html`` and ``plan.csv``, and return the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    tables.write_csv(plan.table, folder / "plan.csv")
+    drawn = Picture(
+        plot.runs_needed(plan.table, title=plan.goal),
+        "Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time.",
+        "Number of runs over sliding speed.",
+    )
+    heads = (
+        "Condition", "Speed", "Mean", "Within a run", "Memory (s)", "Between runs", "Pilot runs",
+        "Sliding time", "Runs", "Cheapest sliding time", "Runs then", "In all", "Cheapest in all",
+    )  # fmt: skip
+    names = ("mean", "within_std", "autocorrelation_time_s", "between_runs_std")
+    rows = [
+        cells(
+            (
+                row["condition"], speed_text(float(row["sliding_speed_m_s"])),
+                *(row[name] for name in names), row["pilot_runs"],
+                duration(row["sliding_time_s"]), row["runs"],
+                duration(row["cheapest_sliding_time_s"]), row["cheapest_runs"],
+                duration(row["time_s"]), duration(row["cheapest_time_s"]),
+            )
+        )
+        for row in plan.table.to_dict("records")
+    ]  # fmt: skip
+    part = Part(
+        "plan",
+        "How long, how often",
+        texts=(
+            f"For a {plan.goal}, at {duration(plan.setup_time)} of setting up each run.",
+            f"Without assurance, of fewer than {FEW} runs of the pilot the spread between runs is "
+            "taken at its 80 % upper bound. What runs have in common, such as a calibration, no "
+            "repeat takes out.",
+        ),
+        figures=(drawn,),
+        tables=(Sheet("Runs at each speed", "plan", heads, rows),),
+        notes=(f"The cheapest sliding time is at most {LONGEST} times the pilot's.",),
+    )
+    page = folder / "plan.html"
+    fine = not plan.table["cheapest_runs"].isna().any()
+    verdict = plan_text(plan)
+    write_page(page, kind="Plan", heading=heading, verdict=verdict, fine=bool(fine), parts=(part,))
+    return page

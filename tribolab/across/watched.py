@@ -1,0 +1,201 @@
+"""What a results folder says of its rig: zeros, noise, tilt, set points, clocks, a reference."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+from pyarrow import csv as arrow_csv
+
+from tribolab.across.folder import REPORT, Folder, open_folder
+from tribolab.across.run_values import speed_levels
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.named import is_named
+from tribolab.errors import ReadError, brief
+from tribolab.untyped import Json
+from tribolab.words import speed_text
+
+REFERENCE = "friction of the reference"
+TILT, GAIN = "tilt found", "gain of the normal force"
+
+_FRICTION = [
+    "run",
+    "sliding_speed_m_s",
+    "set_speed_m_s",
+    "friction_coefficient",
+    "normal_force_N",
+    "nominal_normal_force_N",
+    "friction_force_offset_N",
+    "normal_force_offset_N",
+    "tilt_found_rad",
+]
+_SLIP = ["run", "sample_noise", "mains_amplitude"]
+
+
+@dataclass(frozen=True)
+class Observation:
+    """One number of one campaign on one instrument.
+
+    Parameters
+    ----------
+    instrument, quantity, unit
+        What it is of.
+    when
+        When the campaign began.
+    folder
+        The results folder.
+    value
+        In that unit.
+    """
+
+    instrument: str
+    quantity: str
+    unit: str
+    when: dt.datetime
+    folder: str
+    value: float
+
+
+def results_below(folders: Iterable[str | Path]) -> list[Path]:
+    """Return results folders: those that are named, and of other folders those below them."""
+    places: list[Path] = []
+    for folder in map(Path, folders):
+        own = (
+            [folder] if any((at / REPORT).is_file() for at in (folder, folder / "results")) else []
+        )
+        below = sorted(file.parent for file in folder.rglob(REPORT)) if not own else []
+        places += own or below or [folder]
+    return list(dict.fromkeys(places))
+
+
+def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
+    """Return what a results folder says of its instruments, and the folder.
+
+    Raises
+    ------
+    ReadError
+        If it is none.
+    """
+    folder = open_folder(path)
+    friction = _table(folder, "friction", _FRICTION)
+    if friction is None:
+        return [], folder
+    slip = _table(folder, "stick_slip", _SLIP)
+    made: list[Observation] = []
+    for name in dict.fromkeys(str(run.get("instrument", "")) for run in folder.done):
+        runs = [run for run in folder.done if str(run.get("instrument", "")) == name]
+        names = [run["name"] for run in runs]
+        mine = friction[friction["run"].isin(names)]
+        noise = None if slip is None else slip[slip["run"].isin(names)]
+        when = _began(runs, folder.made_at)
+        for quantity, unit, value in _numbers(folder.campaign, runs, mine, noise):
+            if np.isfinite(value):
+                made.append(Observation(name, quantity, unit, when, str(folder.path), value))
+    return made, folder
+
+
+def _table(folder: Folder, name: str, columns: Sequence[str]) -> pd.DataFrame | None:
+    """Read some columns of a table, which is a tenth of the work for all of them."""
+    path = folder.path / "tables" / f"{name}.csv"
+    if not path.is_file():
+        return None
+    try:
+        options = arrow_csv.ConvertOptions(
+            include_columns=list(columns),
+            include_missing_columns=True,
+            column_types={c: pa.string() if c == "run" else pa.float64() for c in columns},
+        )
+        table: pd.DataFrame = arrow_csv.read_csv(path, convert_options=options).to_pandas()
+    except (OSError, pa.ArrowInvalid) as error:
+        raise ReadError(f"{path}: no table ({brief(error)})") from error
+    return table
+
+
+def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
+    """Return when the first run was recorded, without a time zone; else when results were made."""
+    known = []
+    for run in runs:
+        try:
+            known.append(dt.datetime.fromisoformat(run["recorded_at"]).replace(tzinfo=None))
+        except (KeyError, ValueError):
+            continue
+    return min(known, default=otherwise.replace(tzinfo=None))
+
+
+def _numbers(
+    campaign: Campaign | None,
+    runs: Sequence[Json],
+    friction: pd.DataFrame,
+    slip: pd.DataFrame | None,
+) -> Iterable[tuple[str, str, float]]:
+    """Yield quantity, unit and value."""
+    column = {name: friction[name].to_numpy(dtype=float) for name in _FRICTION[1:]}
+    yield "zero of the friction force", "N", _middle(column["friction_force_offset_N"])
+    yield "zero of the normal force", "N", _middle(column["normal_force_offset_N"])
+    tilt = _middle(column["tilt_found_rad"])
+    if not np.isfinite(tilt):
+        tilt = _tilt(column["friction_force_offset_N"], column["normal_force_N"])
+    yield TILT, "rad", tilt
+    for what, value, wanted in (
+        ("speed", "sliding_speed_m_s", "set_speed_m_s"),
+        ("load", "normal_force_N", "nominal_normal_force_N"),
+    ):
+        ratio = column[value] / np.where(column[wanted] > 0, column[wanted], np.nan)
+        yield f"set-point error of the {what}", "1", _middle(ratio) - 1
+    if slip is not None:
+        yield "noise of friction", "1", _middle(slip["sample_noise"].to_numpy(dtype=float))
+        yield "hum of the mains", "1", _middle(slip["mains_amplitude"].to_numpy(dtype=float))
+    shifts = [run.get("clock_shift_s") for run in runs]
+    yield "clock shift", "s", _middle(np.array([s for s in shifts if s is not None], dtype=float))
+    if campaign is not None:
+        yield from _of_reference(campaign, runs, friction)
+
+
+def _of_reference(
+    campaign: Campaign, runs: Sequence[Json], friction: pd.DataFrame
+) -> Iterable[tuple[str, str, float]]:
+    """Yield what runs on a reference sample say."""
+    reference = campaign.reference
+    if reference.files is None:
+        return
+    named = [
+        run["name"]
+        for run in runs
+        if any(is_named(campaign, reference.files, file) for file in run["files"])
+    ]
+    mine = friction[friction["run"].isin(named)]
+    if reference.dead_weight is not None:
+        force = mine["normal_force_N"].to_numpy(dtype=float)
+        yield GAIN, "1", _middle(force) / reference.dead_weight
+    value = mine["friction_coefficient"].to_numpy(dtype=float)
+    speed = mine["sliding_speed_m_s"].to_numpy(dtype=float)
+    known = np.isfinite(value) & (speed > 0)
+    if not known.any():
+        return
+    levels = speed_levels(speed[known])
+    for level in np.unique(levels):
+        # a digit or two, so that a campaign's own mean does not make another quantity of it
+        text = speed_text(float(f"{level:.1e}"))
+        yield f"{REFERENCE} at {text}", "1", _middle(value[known][levels == level])
+
+
+def _middle(values: np.ndarray) -> float:
+    """Return the mean of what is known; NaN of nothing."""
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if known.size else float("nan")
+
+
+def _tilt(offset: np.ndarray, load: np.ndarray) -> float:
+    """Angle between the axes of force cell and load: what the common offset grows by with load.
+
+    NaN where one load alone was measured: a zero and a tilt cannot be told apart then.
+    """
+    known = np.isfinite(offset) & np.isfinite(load)
+    if known.sum() < 3 or np.ptp(load[known]) < 0.2 * np.abs(load[known]).max():
+        return float("nan")
+    return float(np.arctan(np.polyfit(load[known], offset[known], 1)[0]))

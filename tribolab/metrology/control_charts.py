@@ -1,0 +1,267 @@
+"""Control charts: whether what is measured today is as it was when all was well."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+from tribolab.errors import AnalysisError
+
+Array = NDArray[np.float64]
+Marks = NDArray[np.bool_]
+
+SHEWHART, EWMA, CUSUM, WESTERN = "3 sigma", "EWMA", "CUSUM", "Western Electric"
+RULES = (SHEWHART, EWMA, CUSUM, WESTERN)
+DEFAULT_RULES = (SHEWHART, EWMA)
+
+LIMIT = 3.0
+EWMA_WEIGHT, EWMA_LIMIT = 0.2, 2.86
+CUSUM_SLACK, CUSUM_LIMIT = 0.5, 4.77
+FEWEST, MANY = 5, 30  # points of the baseline: least, and from which on moving ranges will do
+_RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)  # mean moving range of normal values in their deviations
+RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, of each point beyond the first
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """What was usual: centre, standard deviation and how well they are known.
+
+    Parameters
+    ----------
+    centre, sigma
+        Mean and standard deviation of the baseline.
+    points
+        How many it has; infinite where centre and deviation are known without error.
+    degrees_of_freedom
+        Of the standard deviation.
+    correlation
+        Of neighbouring points.
+    correlated
+        Whether that is beyond chance.
+    """
+
+    centre: float
+    sigma: float
+    points: float = math.inf
+    degrees_of_freedom: float = math.inf
+    correlation: float = 0.0
+    correlated: bool = False
+
+    def widened(self, limit: float) -> float:
+        """Return how many estimated deviations a new point exceeds as seldom as `limit` known ones.
+
+        Notes
+        -----
+        Student's t of the same chance; the error of the centre is added elsewhere.
+        """
+        if math.isinf(self.degrees_of_freedom):
+            return limit
+        return float(stats.t.isf(stats.norm.sf(limit), self.degrees_of_freedom))
+
+
+def baseline_of(values: ArrayLike) -> Baseline:
+    """Return centre and standard deviation of points at which all was well.
+
+    Parameters
+    ----------
+    values
+        (point), in order of time, five or more.
+
+    Raises
+    ------
+    AnalysisError
+        If there are fewer, or they do not vary.
+
+    Notes
+    -----
+    Of fewer than 30 points the deviation is that of all of them, which is known best; of more it is
+    the mean moving range over 1.128, which a slow drift hardly widens, unless neighbours are
+    correlated beyond chance, r_1 beyond 2/sqrt(n): moving ranges would be too small then.
+
+    Examples
+    --------
+    >>> usual = baseline_of([1.0, 1.2, 1.1, 0.9, 1.0])
+    >>> round(usual.centre, 3), round(usual.sigma, 3)
+    (1.04, 0.114)
+    """
+    y = np.asarray(values, dtype=float)
+    if y.size < FEWEST:
+        raise AnalysisError(f"a baseline wants {FEWEST} points or more; there are {y.size}")
+    overall = float(y.std(ddof=1))
+    if not overall > 1e-12 * abs(y.mean()):
+        raise AnalysisError("the points of the baseline are all the same: nothing tells the spread")
+    about = y - y.mean()
+    correlation = float((about[1:] * about[:-1]).sum() / (about**2).sum())
+    correlated = abs(correlation) > 2 / math.sqrt(y.size)
+    moving = mean_moving_range(y)
+    if correlated or moving == 0 or y.size < MANY:
+        sigma, freedom = overall, y.size - 1.0
+    else:
+        sigma, freedom = moving, RANGE_FREEDOM * (y.size - 1)
+    return Baseline(float(y.mean()), sigma, float(y.size), freedom, correlation, correlated)
+
+
+def mean_moving_range(values: Array) -> float:
+    """Return the standard deviation that moving ranges of two tell of a series."""
+    return float(np.abs(np.diff(values)).mean()) / _RANGE_TO_SIGMA
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The points of a control chart after its baseline, and which of them signal.
+
+    Parameters
+    ----------
+    low, high
+        Limits of a single point (3 sigma).
+    smoothed, smoothed_low, smoothed_high
+        The exponentially weighted mean and its limits (point).
+    signals
+        Which points signal, by rule (point).
+    """
+
+    low: float
+    high: float
+    smoothed: Array
+    smoothed_low: Array
+    smoothed_high: Array
+    signals: dict[str, Marks]
+
+    @property
+    def any_signal(self) -> Marks:
+        """Which points signal by any rule (point)."""
+        return np.any(list(self.signals.values()), axis=0)
+
+
+def control_chart(
+    values: ArrayLike, baseline: Baseline, rules: Sequence[str] = DEFAULT_RULES
+) -> Chart:
+    """Judge points that were measured after a baseline.
+
+    Parameters
+    ----------
+    values
+        (point), in order of time.
+    baseline
+        What is usual, from `baseline_of`, or known.
+    rules
+        Of ``"3 sigma"``, ``"EWMA"``, ``"CUSUM"``, ``"Western Electric"``. The more there are, the
+        more often they signal without a cause: `average_run_length` says how often.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no such rule.
+
+    Notes
+    -----
+    A single point signals beyond 3 sigma [1]_; of an estimated sigma it is the t of the same
+    chance, with the error of the centre, s t sqrt(1 + 1/m). The EWMA is
+    z_i = 0.2 x_i + 0.8 z_(i-1) with limits of 2.86 of its own deviations, which start narrow [2]_.
+    The two CUSUMs sum up what exceeds half a sigma and signal above 4.77. The Western Electric
+    rules: one point beyond 3 sigma, two of three beyond 2, four of five beyond 1, eight on one
+    side.
+
+    References
+    ----------
+    .. [1] Shewhart (1931), Economic control of quality of manufactured product.
+    .. [2] Lucas and Saccucci (1990), Technometrics 32, 1-12. doi:10.1080/00401706.1990.10484583
+
+    Examples
+    --------
+    >>> chart = control_chart([0.1, -0.5, 4.0], Baseline(0.0, 1.0))
+    >>> chart.any_signal.tolist()
+    [False, False, True]
+    """
+    y = np.asarray(values, dtype=float)
+    unknown = [rule for rule in rules if rule not in RULES]
+    if unknown:
+        raise AnalysisError(f"no rule is called '{unknown[0]}'; there are {', '.join(RULES)}")
+    standard = ((y - baseline.centre) / baseline.sigma)[None, :]
+    judged = signals_of(standard, baseline, rules)
+    centre_error = 1 / baseline.points
+    half = baseline.widened(LIMIT) * math.sqrt(1 + centre_error) * baseline.sigma
+    smoothed, deviation = _smoothed(standard, centre_error)
+    width = baseline.widened(EWMA_LIMIT) * deviation * baseline.sigma
+    return Chart(
+        baseline.centre - half,
+        baseline.centre + half,
+        baseline.centre + baseline.sigma * smoothed[0],
+        baseline.centre - width,
+        baseline.centre + width,
+        {rule: marks[0] for rule, marks in judged.items()},
+    )
+
+
+def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Marks]:
+    """Return which points signal by each rule.
+
+    Parameters
+    ----------
+    standard
+        Points less the centre, over sigma (series, point): many series at once.
+    baseline
+        How well centre and sigma are known.
+    rules
+        As for `control_chart`.
+    """
+    error = 1 / baseline.points
+    limit = baseline.widened(LIMIT) * math.sqrt(1 + error)
+    made: dict[str, Marks] = {}
+    if SHEWHART in rules:
+        made[SHEWHART] = np.abs(standard) > limit
+    if EWMA in rules:
+        smoothed, deviation = _smoothed(standard, error)
+        made[EWMA] = np.abs(smoothed) > baseline.widened(EWMA_LIMIT) * deviation
+    if CUSUM in rules:
+        made[CUSUM] = _cusum(standard, baseline)
+    if WESTERN in rules:
+        made[WESTERN] = _western(standard, limit)
+    return made
+
+
+def _smoothed(standard: Array, centre_error: float) -> tuple[Array, Array]:
+    """Exponentially weighted means (series, point), and their standard deviation (point)."""
+    z = np.empty_like(standard)
+    last = np.zeros(standard.shape[0])
+    for place in range(standard.shape[1]):
+        last = EWMA_WEIGHT * standard[:, place] + (1 - EWMA_WEIGHT) * last
+        z[:, place] = last
+    steps = np.arange(1, standard.shape[1] + 1)
+    decay = 1 - (1 - EWMA_WEIGHT) ** steps  # of the weights, how many there are yet
+    own = EWMA_WEIGHT / (2 - EWMA_WEIGHT) * (1 - (1 - EWMA_WEIGHT) ** (2 * steps))
+    return z, np.sqrt(own + centre_error * decay**2)
+
+
+def cusums(standard: Array, slack: float = CUSUM_SLACK) -> tuple[Array, Array]:
+    """Return the upper and the lower cumulative sum (series, point)."""
+    up, down = np.empty_like(standard), np.empty_like(standard)
+    high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
+    for place in range(standard.shape[1]):
+        high = np.maximum(0.0, high + standard[:, place] - slack)
+        low = np.maximum(0.0, low - standard[:, place] - slack)
+        up[:, place], down[:, place] = high, low
+    return up, down
+
+
+def _cusum(standard: Array, baseline: Baseline) -> Marks:
+    up, down = cusums(standard)
+    return np.maximum(up, down) > CUSUM_LIMIT * baseline.widened(LIMIT) / LIMIT
+
+
+def _western(standard: Array, limit: float) -> Marks:
+    marks = np.abs(standard) > limit
+    for side in (1.0, -1.0):
+        turned = side * standard
+        for size, wanted, beyond in ((3, 2, 2 / 3), (5, 4, 1 / 3), (8, 8, 0.0)):
+            there = (turned > beyond * limit).astype(int)
+            total = np.cumsum(there, axis=1)
+            total[:, size:] -= total[:, :-size].copy()
+            # a point that is itself on the side has completed the pattern
+            marks |= (total >= wanted) & (there == 1)
+    return marks

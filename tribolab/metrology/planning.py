@@ -1,0 +1,171 @@
+"""How long to slide and how often to repeat, for a friction coefficient that is known so well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize, stats
+
+from tribolab.errors import AnalysisError
+
+MOST_RUNS = 1000
+_RUNS = np.arange(2, MOST_RUNS + 1)
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """What a few runs at one speed tell of how friction scatters.
+
+    Parameters
+    ----------
+    within
+        Standard deviation of the coefficient along a run.
+    memory
+        Its integrated autocorrelation time [s].
+    between
+        Standard deviation between runs, beyond what that explains.
+    """
+
+    within: float
+    memory: float
+    between: float
+
+
+def run_variance(pilot: Pilot, sliding_time: float) -> float:
+    """Return the variance of the mean of one run that slides so long [s].
+
+    Notes
+    -----
+    s_b^2 + (2 tau s^2 / T) [1 - (tau/T)(1 - exp(-T/tau))], the variance of the mean of a signal
+    whose correlation falls exponentially.
+
+    Examples
+    --------
+    >>> run_variance(Pilot(0.1, 0.0, 0.02), 10.0)
+    0.0004
+    """
+    tau, share = pilot.memory, 1.0
+    if tau <= 0:
+        return pilot.between**2
+    ratio = tau / sliding_time
+    share = 2 * ratio * (1 - ratio * -math.expm1(-1 / ratio))
+    return pilot.between**2 + pilot.within**2 * share
+
+
+def runs_for_standard_error(
+    variance: float,
+    standard_error: float,
+    assurance: float | None = None,
+    pilot_runs: int | None = None,
+) -> int | None:
+    """Return how many runs a standard error of the mean takes.
+
+    Parameters
+    ----------
+    variance
+        Of the mean of one run, from `run_variance`.
+    standard_error
+        Wanted.
+    assurance
+        Chance that the one that is then estimated is no larger; without it, that is so on average.
+    pilot_runs
+        How many runs told the variance; None where it is known.
+
+    Returns
+    -------
+    int or None
+        Two or more; None if a thousand are too few.
+
+    Notes
+    -----
+    n = v/u^2; with assurance v times chi^2_q(n - 1)/(n - 1), the variance that will be found with
+    that chance, or times F_q(n - 1, m - 1) where m runs of a pilot told v.
+
+    Examples
+    --------
+    >>> runs_for_standard_error(0.01, 0.05), runs_for_standard_error(0.01, 0.05, 0.9)
+    (4, 8)
+    """
+    reached = np.sqrt(variance * _worst(assurance, pilot_runs) / _RUNS)
+    return _first(reached, standard_error)
+
+
+def runs_for_half_interval(
+    variance: float,
+    half_interval: float,
+    assurance: float | None = None,
+    pilot_runs: int | None = None,
+) -> int | None:
+    """Return how many runs the half of a 95 % interval takes; else as `runs_for_standard_error`.
+
+    Examples
+    --------
+    >>> runs_for_half_interval(0.01, 0.1)
+    7
+    """
+    student = stats.t.ppf(0.975, _RUNS - 1)
+    reached = student * np.sqrt(variance * _worst(assurance, pilot_runs) / _RUNS)
+    return _first(reached, half_interval)
+
+
+def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
+    """Variance that will be found, with the chance that is assured, over the one that is known."""
+    if assurance is None:
+        return np.ones(_RUNS.size)
+    if pilot_runs is None:
+        return np.asarray(stats.chi2.ppf(assurance, _RUNS - 1) / (_RUNS - 1))
+    return np.asarray(stats.f.ppf(assurance, _RUNS - 1, pilot_runs - 1))
+
+
+def _first(reached: NDArray[np.float64], wanted: float) -> int | None:
+    """Return the least number of runs that reaches what is wanted."""
+    enough = np.flatnonzero(reached <= wanted * (1 + 1e-12))
+    return int(_RUNS[enough[0]]) if enough.size else None
+
+
+def cheapest_sliding_time(pilot: Pilot, setup_time: float, longest: float) -> float:
+    """Return the sliding time of each run that costs least in all [s].
+
+    Parameters
+    ----------
+    pilot
+        What is known.
+    setup_time
+        What a run costs beside sliding [s].
+    longest
+        What the rig can do at most [s]; taken where runs do not differ.
+
+    Notes
+    -----
+    Least of (t_s + T) v(T); for T much longer than the memory that is sqrt(t_s 2 tau s^2 / s_b^2).
+
+    Examples
+    --------
+    >>> round(cheapest_sliding_time(Pilot(0.1, 1.0, 0.01), 600.0, 1e5), -1)
+    350.0
+    """
+    if setup_time <= 0:
+        raise AnalysisError(f"a setup time of {setup_time:g} s: it has to be above zero")
+    least = max(pilot.memory, 1e-6 * longest)
+    if pilot.within == 0 or pilot.memory <= 0 or least >= longest:
+        return min(least, longest)
+    made = optimize.minimize_scalar(
+        lambda log: math.log((setup_time + math.exp(log)) * run_variance(pilot, math.exp(log))),
+        bounds=(math.log(least), math.log(longest)),
+        method="bounded",
+    )
+    return float(math.exp(made.x))
+
+
+def upper_bound(deviation: float, runs: int, level: float = 0.8) -> float:
+    """Return the one-sided upper bound of a standard deviation that so many runs told.
+
+    Examples
+    --------
+    >>> round(upper_bound(1.0, 3), 2)
+    2.12
+    """
+    return deviation * math.sqrt((runs - 1) / float(stats.chi2.ppf(1 - level, runs - 1)))

@@ -1,0 +1,86 @@
+"""When an instrument wants to be calibrated anew: by its date, or by how fast it drifts."""
+
+from __future__ import annotations
+
+import datetime as dt
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+
+_FEWEST = 4  # points of a line with an error
+_FARTHEST = 3653  # days
+
+
+@dataclass(frozen=True)
+class Due:
+    """When a calibration is due, and why.
+
+    Parameters
+    ----------
+    date
+        The earlier of both; None if neither is known.
+    reason
+        In words.
+    drift
+        Per day, of what was watched; NaN if it is not known.
+    """
+
+    date: dt.date | None
+    reason: str
+    drift: float = float("nan")
+
+
+def recalibration_due(
+    calibrated: dt.date,
+    interval_days: float | None,
+    days: ArrayLike = (),
+    values: ArrayLike = (),
+    limit: float | None = None,
+) -> Due:
+    """Return when an instrument wants to be calibrated anew.
+
+    Parameters
+    ----------
+    calibrated
+        Date of the last calibration.
+    interval_days
+        How long it holds at most.
+    days, values
+        What was watched since, e.g. the gain relative to that of the calibration (point), and how
+        many days after it.
+    limit
+        How far that may be off, on either side.
+
+    Notes
+    -----
+    A line through the points; due where the one-sided 95 % prediction bound of a further point
+    reaches the limit, if that is before the interval ends.
+
+    Examples
+    --------
+    >>> import datetime as dt
+    >>> due = recalibration_due(dt.date(2026, 1, 1), 365, [0, 30, 60, 90], [0, 1, 2, 3.1], 5)
+    >>> due.date.isoformat(), due.reason
+    ('2026-05-22', 'drift')
+    """
+    by_interval = None if interval_days is None else calibrated + dt.timedelta(days=interval_days)
+    t, y = np.asarray(days, dtype=float), np.asarray(values, dtype=float)
+    if limit is None or t.size < _FEWEST or np.ptp(t) == 0:
+        return Due(by_interval, "interval" if by_interval else "no interval is stated")
+    fit = stats.linregress(t, y)
+    residual = y - fit.intercept - fit.slope * t
+    scatter = float(np.sqrt((residual**2).sum() / (t.size - 2)))
+    ahead = np.arange(0.0, _FARTHEST + 1)
+    spread = scatter * np.sqrt(
+        1 + 1 / t.size + (ahead - t.mean()) ** 2 / ((t - t.mean()) ** 2).sum()
+    )
+    bound = np.abs(fit.intercept + fit.slope * ahead) + stats.t.ppf(0.95, t.size - 2) * spread
+    beyond = np.flatnonzero((bound >= limit) & (ahead >= t.max()))
+    drift = float(fit.slope)
+    if beyond.size:
+        by_drift = calibrated + dt.timedelta(days=float(ahead[beyond[0]]))
+        if by_interval is None or by_drift < by_interval:
+            return Due(by_drift, "drift", drift)
+    return Due(by_interval, "interval" if by_interval else "no interval is stated", drift)

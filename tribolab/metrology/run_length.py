@@ -1,0 +1,114 @@
+"""How long a control chart runs until it signals: without a cause, and after one."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribolab.metrology.control_charts import (
+    DEFAULT_RULES,
+    FEWEST,
+    MANY,
+    RANGE_FREEDOM,
+    Baseline,
+    signals_of,
+)
+
+_SERIES, _BLOCK, _LONGEST = 4000, 250, 2000
+_SEED = 20260101
+
+
+def average_run_length(
+    rules: Sequence[str] = DEFAULT_RULES,
+    *,
+    shift: float = 0.0,
+    drift: float = 0.0,
+    baseline: int | None = None,
+) -> float:
+    """Return after how many points on average a chart with these rules signals.
+
+    Parameters
+    ----------
+    rules
+        As for `control_chart`.
+    shift, drift
+        What happens to the instrument when the chart begins, in standard deviations of a point: a
+        step, and a slope per point. Without them it is the ARL0, the points between false alarms.
+    baseline
+        Of how many points centre and deviation were estimated; None where they are known.
+
+    Notes
+    -----
+    Simulated, with an error of some 2 %. After an estimated baseline, which may be off, run lengths
+    scatter much more than of a known one, and the longest hide a chart that never signals: the
+    value is points over signals, with no series beyond 2000 points.
+
+    Examples
+    --------
+    >>> 350 < average_run_length(["3 sigma"]) < 390
+    True
+    """
+    lengths = _run_lengths(tuple(rules), shift, drift, baseline, _LONGEST)
+    signalled = int((lengths <= _LONGEST).sum())
+    return float(np.minimum(lengths, _LONGEST).sum() / max(1, signalled))
+
+
+def median_run_length(
+    rules: Sequence[str] = DEFAULT_RULES,
+    *,
+    shift: float = 0.0,
+    drift: float = 0.0,
+    baseline: int | None = None,
+) -> float:
+    """Return after how many points half of all charts have signalled; as `average_run_length`."""
+    return float(np.median(_run_lengths(tuple(rules), shift, drift, baseline, _LONGEST)))
+
+
+def signal_probability(
+    points: int,
+    rules: Sequence[str] = DEFAULT_RULES,
+    *,
+    shift: float = 0.0,
+    drift: float = 0.0,
+    baseline: int | None = None,
+) -> float:
+    """Return the chance of a signal within so many points; arguments as `average_run_length`."""
+    lengths = _run_lengths(tuple(rules), shift, drift, baseline, points)
+    return float((lengths <= points).mean())
+
+
+@functools.lru_cache(maxsize=64)
+def _run_lengths(
+    rules: tuple[str, ...], shift: float, drift: float, baseline: int | None, longest: int
+) -> NDArray[np.float64]:
+    """Points until the first signal of many simulated series."""
+    rng = np.random.default_rng(_SEED)
+    usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(_SERIES), np.ones(_SERIES)
+    if baseline is not None and baseline >= FEWEST:
+        before = rng.normal(size=(_SERIES, baseline))
+        centre = before.mean(axis=1)
+        sigma, freedom = before.std(axis=1, ddof=1), baseline - 1.0
+        if baseline >= MANY:
+            sigma = np.abs(np.diff(before, axis=1)).mean(axis=1) * math.sqrt(math.pi) / 2
+            freedom *= RANGE_FREEDOM
+        usual = Baseline(0.0, 1.0, baseline, freedom)
+    lengths = np.full(_SERIES, np.inf)
+    running = np.arange(_SERIES)
+    series = np.zeros((_SERIES, 0))
+    while running.size and series.shape[1] < longest:
+        # from the first point on: what the rules remember is not to be cut at a block
+        start = series.shape[1]
+        place = np.arange(start, start + min(_BLOCK, longest - start))
+        fresh = rng.normal(size=(running.size, place.size)) + shift + drift * (place + 1)
+        fresh = (fresh - centre[running, None]) / sigma[running, None]
+        series = np.concatenate([series, fresh], axis=1)
+        marks = np.any(list(signals_of(series, usual, rules).values()), axis=0)
+        first = np.where(marks.any(axis=1), marks.argmax(axis=1) + 1.0, np.inf)
+        done = np.isfinite(first)
+        lengths[running[done]] = first[done]
+        running, series = running[~done], series[~done]
+    return lengths
