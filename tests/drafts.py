@@ -2,8 +2,8 @@
 
 from tribolab.draft.draft import draft_dialect, save_draft
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.io.dialects.find import load_dialect
-from tribolab.io.scans.read import read_scans
 
 
 def drafted(path, tmp_path):

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 
 from tribolab import cli, rig
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.kinds import kind_of
-from tribolab.io.scans.read import read_scans
 from tribolab.qc import run_checks, scan_checks
 from tribolab.qc.register import Check
 from tribolab.rig.files import scan_file

@@ -9,8 +9,8 @@ from drafts import drafted
 
 from tribolab.draft.draft import draft_dialect, save_draft
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.errors import OutputError, ReadError
-from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 
 ACTUATOR = "actuator_friction_CC0"

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 from tribolab.cli import app
 from tribolab.draft.draft import draft_dialect
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
-from tribolab.io.scans.read import read_scans
 
 _QUICK = re.compile(
     r"units 6: (header|campaign)|patterns 7: \(a|large 8: dialect, (5000.*True, clock True)"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, UnitError
-from tribolab.io.scans.read import read_scans
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
 from tribolab.surface.roughness import roughness_parameters, spectral_roughness

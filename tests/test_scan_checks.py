@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab import rig
+from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, ConfigError, UnitError
-from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc import profiles
 from tribolab.qc.flags import SUSPECT

@@ -8,8 +8,8 @@ import zlib
 import numpy as np
 import pytest
 
+from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.scans.read import read_scans
 
 HEIGHTS = np.random.default_rng(5).normal(0, 1e-6, (7, 12))
 HOLES = np.zeros(HEIGHTS.shape, bool)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.grid import even
-from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 from tribolab.rig.files import scan_file
 

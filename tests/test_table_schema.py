@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.errors import ConfigError
-from tribolab.io.scans.read import read_scans
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.schema import load_schema, validate
 from tribolab.quantities import QUANTITIES

@@ -43,7 +43,7 @@ _PUBLIC = {
     "RUN_CHECKS": "tribolab.qc.run_checks",
     "check_scans": "tribolab.qc.scan_checks",
     "check_scan_set": "tribolab.qc.scan_sets",
-    "read_scans": "tribolab.io.scans.read",
+    "read_scans": "tribolab.draft.scans",
     "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
@@ -188,6 +188,7 @@ if TYPE_CHECKING:
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.draft.draft import draft_dialect
     from tribolab.draft.read import read
+    from tribolab.draft.scans import read_scans
     from tribolab.errors import TribolabError
     from tribolab.fit.joint.comparison import compare_shear_stress_models
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
@@ -208,7 +209,6 @@ if TYPE_CHECKING:
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
-    from tribolab.io.scans.read import read_scans
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.relative_factors import relative_flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress

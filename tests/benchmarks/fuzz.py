@@ -41,9 +41,9 @@ from mutations import MADE, mutate
 
 from tribolab.draft.draft import draft_dialect
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
 from tribolab.io.netcdf import read_netcdf
-from tribolab.io.scans.read import read_scans
 from tribolab.io.scans.results import read_tester_results
 
 SECONDS, MEMORY, LONGEST_MESSAGE = 5.0, 1 << 30, 1500

@@ -23,6 +23,7 @@ from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 SHARES = (0.01, 0.05, 0.2)
 WITHIN = 1.96
+FEW = 8  # rows: these are profiles, and each loses as much
 PARAMETERS = ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq")
 
 
@@ -37,7 +38,8 @@ def streaks(shape: tuple[int, ...], share: float, rng: np.random.Generator) -> n
     while missing.mean() < share:
         length = int(rng.integers(shape[1] // 20, shape[1] // 5))
         start = int(rng.integers(shape[1] - length))
-        missing[rng.integers(shape[0]), start : start + length] = True
+        row = int(np.argmin(missing.sum(axis=1))) if shape[0] < FEW else rng.integers(shape[0])
+        missing[row, start : start + length] = True
     return missing
 
 
@@ -45,15 +47,13 @@ def blobs(shape: tuple[int, ...], share: float, rng: np.random.Generator) -> np.
     """Round spots of 2 to 12 points radius; of a profile short stretches."""
     missing = np.zeros(shape, dtype=bool)
     y, x = np.ogrid[: shape[0], : shape[1]]
-    across = 4.0 if shape[0] < 8 else 1.0  # profiles lie far from one another
     while missing.mean() < share:
         radius = rng.uniform(2.0, 12.0)
         at = rng.uniform(0, shape[0]), rng.uniform(0, shape[1])
-        missing |= (
-            np.hypot(100.0 * (across > 1) * (y - round(at[0])), x - at[1]) < radius
-            if (across > 1)
-            else np.hypot(y - at[0], x - at[1]) < radius
-        )
+        if shape[0] < FEW:
+            missing[np.argmin(missing.sum(axis=1))] |= np.abs(x[0] - at[1]) < radius
+        else:
+            missing |= np.hypot(y - at[0], x - at[1]) < radius
     return missing
 
 

@@ -187,7 +187,7 @@ def _run_said(file: Path, dialect: Path) -> str:
 
 
 def _scan_said(file: Path, dialect: Path) -> str:
-    from tribolab.io.scans.read import read_scans
+    from tribolab.draft.scans import read_scans
 
     height = read_scans(file, dialect)["height"]
     span = float(height.max() - height.min())

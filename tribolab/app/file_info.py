@@ -91,7 +91,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
     """Read a scan; what turns out to be none is told about as a run would be."""
-    from tribolab.io.scans.read import read_scans
+    from tribolab.draft.scans import read_scans
 
     try:
         [scan] = read_scans([path], instrument, stack=False)

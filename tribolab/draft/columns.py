@@ -11,8 +11,8 @@ from tribolab.draft.assign import SIGNALS, Bare, assigned
 from tribolab.draft.header import is_unit
 from tribolab.draft.layout import Layout
 from tribolab.draft.lvm import units_above
-from tribolab.draft.model import DraftColumn, Kind, Understood
-from tribolab.draft.values import find_rate
+from tribolab.draft.model import DraftColumn, Kind, Understood, other_units
+from tribolab.draft.values import find_pitch, find_rate
 from tribolab.draft.words import matches, split_unit
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
@@ -30,9 +30,12 @@ def understand(layout: Layout) -> Understood:
     """
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)
+    pitch = find_pitch(layout)
     guesses: list[str] = []
     if _say_something(columns):
-        kind, columns = _by_name(columns, numbers)
+        kind, columns = _by_name(columns, numbers, placed=pitch is not None)
+    elif pitch is not None and layout.width == 1:
+        kind, columns = "scan", [_heights(columns[0])]
     else:
         from tribolab.draft.behaviour import by_behaviour
 
@@ -55,6 +58,19 @@ def understand(layout: Layout) -> Understood:
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
     words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
+    placed = any(c.used and c.quantity == "x" for c in columns)
+    if kind == "scan" and pitch is not None and not placed:
+        return Understood(
+            kind,
+            tuple(columns),
+            numbers,
+            tuple(words),
+            "",
+            False,
+            tuple(guesses),
+            pitch_pattern=pitch.pattern,
+            pitch_unit=pitch.unit or "m",
+        )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in
         kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
@@ -196,14 +212,29 @@ def _say_something(columns: list[DraftColumn]) -> bool:
     return any(unit is not None or matches(name, unit) for name, unit in bare)
 
 
-def _by_name(columns: list[DraftColumn], numbers: np.ndarray) -> tuple[Kind, list[DraftColumn]]:
+def _heights(column: DraftColumn) -> DraftColumn:
+    """Take a column without a known name for heights: what a pitch before it is of."""
+    unit = column.file_unit or column.unit
+    guess = "it is the height" + ("" if unit else " in um")
+    return column._replace(
+        quantity="height",
+        unit=column.unit if unit else "um",
+        used=True,
+        guessed=(guess,),
+        options=() if unit else other_units("m", "um"),
+    )
+
+
+def _by_name(
+    columns: list[DraftColumn], numbers: np.ndarray, *, placed: bool = False
+) -> tuple[Kind, list[DraftColumn]]:
     bare = [_bare(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
-        {"x", "height"} <= profile
+        {"x", "height"} <= profile or (placed and "height" in profile)
     ):
         return "scan", assigned(columns, bare, scan, numbers, "scan")
     kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"

@@ -14,8 +14,10 @@ from tribolab.draft.layout import Layout, find_layout
 from tribolab.draft.model import Understood
 from tribolab.draft.show import draft_html
 from tribolab.draft.toml import dialect_toml
+from tribolab.draft.words import matches
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.find import recognise
+from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, peek
 
@@ -172,6 +174,16 @@ def _validate(draft: Draft) -> None:
         raise ReadError(
             f"{draft.path}: the file was understood, but no dialect can say it: {error}"
         ) from error
+
+
+def holds_heights(draft: Drafted) -> bool:
+    """Whether a table is one column that is named as heights are, without positions."""
+    columns = draft.understood.columns if draft.understood else ()
+    if len(columns) != 1 or not columns[0].label:
+        return False
+    name, unit = split_name(columns[0].label)
+    options = matches(name, columns[0].file_unit or unit, scan=True)
+    return bool(options) and options[0].quantity == "height"
 
 
 def _answer(file: File, understood: Understood) -> str:

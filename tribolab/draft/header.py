@@ -133,7 +133,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     if grammar.delimiter == "whitespace" and len(cells) != width:
         return False
     if width == 1:
-        return len(filled) == 1 and len(line) < 60
+        return len(filled) == 1 and len(line) < 60 and not re.search(r"[:=]\s*\S", line)
     return len(filled) >= 2 and 0.5 * width <= len(cells) <= 1.5 * width + 2
 
 

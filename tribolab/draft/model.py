@@ -48,7 +48,8 @@ class Understood(NamedTuple):
 
     With `period` the column of time held intervals; its numbers are their sums by now.
     `radius` (with its unit) and `drive` are what a person said of a track and of what drives it.
-    Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there.
+    Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
+    where no column is a position, `pitch_pattern` the distance of a profile's points.
     """
 
     kind: Kind
@@ -63,6 +64,8 @@ class Understood(NamedTuple):
     rate_unit: str = ""
     radius: str = ""
     drive: str = ""
+    pitch_pattern: str = ""
+    pitch_unit: str = ""
 
 
 _UNITS = {

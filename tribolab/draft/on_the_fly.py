@@ -81,7 +81,7 @@ def describe(path: PathLike, instrument: Instrument | None = None) -> runs.FileF
 
 def holds_run(path: Path, *, by_name: bool = True) -> bool:
     """Whether a file that no dialect knows holds a run, by names in its header or at all."""
-    draft = _draft(path)
+    draft = draft_of(path)
     return draft is not None and draft.kind == "run" and (draft.named or not by_name)
 
 
@@ -89,7 +89,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     from tribolab.draft.questions import GuessedError, questions
 
-    draft = _draft(path)
+    draft = draft_of(path)
     if draft is None or draft.kind == "table":
         raise error
     if asked := questions(draft):
@@ -103,7 +103,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     return draft.dialect
 
 
-def _draft(path: Path) -> Draft | None:
+def draft_of(path: Path) -> Draft | None:
     """Draft a dialect; None of what it cannot be drafted from, or holds no table."""
     try:
         status = path.stat()

@@ -89,10 +89,10 @@ class GuessedError(ReadError):
     In a campaign they stand in one line, else in a table.
     """
 
-    def __init__(self, path: Path, asked: Sequence[Question]) -> None:
+    def __init__(self, path: Path, asked: Sequence[Question], table: str = cures.RUN) -> None:
         what = "no known instrument writes such a file, and it does not say all itself"
-        super().__init__(what, where=path, cure=cures.unknown_instrument(path, cures.RUN))
-        self.args = (path, tuple(asked))
+        super().__init__(what, where=path, cure=cures.unknown_instrument(path, table))
+        self.args = (path, tuple(asked), table)
         self.asked = tuple(asked)
 
     def told(self, audience: str) -> str:

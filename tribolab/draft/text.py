@@ -26,6 +26,10 @@ _NO_NUMBER = re.compile(
 )
 
 
+_HALVES = re.compile(r"([+-]?\d+),(\d+)")
+_ROWS = 16  # rows that tell
+
+
 class Grammar:
     """One way to read lines: a delimiter and a decimal mark."""
 
@@ -130,4 +134,16 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
             # in the order of DELIMITERS: a tab is also a blank, which joins a few lines more
             if top > (_BLANKS if delimiter == "whitespace" else 1.0) * highest:
                 best, highest = grammar, top
-    return best
+    return Grammar("\t", ",") if best and _one_column(best, voters) else best
+
+
+def _one_column(grammar: Grammar, voters: Sequence[str]) -> bool:
+    """Whether commas are decimal marks of one column, and do not part two of whole numbers."""
+    if grammar.delimiter != ",":
+        return False
+    parts = [told for told in (_HALVES.fullmatch(line.strip()) for line in voters) if told]
+    if len(parts) < _ROWS or 2 * len(parts) < len(voters):
+        return False
+    # no whole number is written 0312
+    leading = sum(told[2].startswith("0") and len(told[2]) > 1 for told in parts)
+    return 50 * leading >= len(parts)

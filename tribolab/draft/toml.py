@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.draft.follows import Follows, Formula, what_follows
 from tribolab.draft.layout import Layout
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Understood
-from tribolab.draft.values import DraftValue, find_values
+from tribolab.draft.values import DraftValue, find_pitch, find_values
 from tribolab.io.dialects.dates import has_day
 from tribolab.quantities import quantity
 
@@ -47,7 +47,11 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     taken = {column.place for _, column in follows.symbols}
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(_unused(rest, numbers))
-    parts.append(_values(find_values(layout), follows.values))
+    values, taken_over = find_values(layout), follows.values
+    if understood.pitch_pattern and (pitch := find_pitch(layout)) is not None:
+        values = [pitch, *(value for value in values if value.text != pitch.text)]
+        taken_over = (*taken_over, pitch)
+    parts.append(_values(values, taken_over))
     parts += [_formula(formula) for formula in follows.formulas]
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
@@ -66,6 +70,8 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
         f"# guessed: {_comment(guess)}"
         for guess in (*layout.notes, *layout.guesses, *understood.guesses)
     ]
+    if understood.pitch_pattern:
+        lines.append('pitch_value = "pitch"    # its heights have no positions')
     if layout.others:
         lines.append(f"# {layout.others} more tables stand in the file; they are not read")
     return "\n".join(lines) + "\n"

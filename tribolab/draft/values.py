@@ -25,6 +25,13 @@ _RATE = re.compile(
     r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
     r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
 )
+# the distance of a profile's points by its name
+_PITCH = re.compile(
+    r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|interval|xscale|schritt\w*|pas|paso|passo)$"
+    r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon)\w*"
+    r"(?:pitch|spacing|increment|step|interval|distance|abstand|schritt\w*|intervall)"
+    r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
+)
 _RADIUS = re.compile("radius|rayon|radio|raggio")
 _OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
@@ -42,18 +49,20 @@ class DraftValue(NamedTuple):
     own_unit: str | None = None
 
 
-def find_values(layout: Layout) -> list[DraftValue]:
+def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     """Find the single values that a file and its name state, a dozen at most of the former.
 
     Parameters
     ----------
     layout
         From `tribolab.draft.layout.find_layout`.
+    bare
+        Whether to look above a table without a header, too.
 
     Returns
     -------
     list of DraftValue
-        A dozen at most; none from a file without a header, of which no preamble is known.
+        A dozen at most.
     """
     values: dict[str, DraftValue] = {}
     in_name = _IN_NAME.search(layout.file.path.stem)
@@ -65,7 +74,8 @@ def find_values(layout: Layout) -> list[DraftValue]:
                 "set_normal_force", pattern, in_name["unit"], None, name, "file name"
             )
             values[value.name] = value
-    stop = layout.heading.names if layout.heading else 0
+    above = layout.blocks[0].start if bare and layout.blocks else 0
+    stop = layout.heading.names if layout.heading else above
     for line in layout.lines[:stop]:
         said = _SAYS.match(line.rstrip())
         # a digit before the colon: a time of day
@@ -116,6 +126,22 @@ def key_of(value: DraftValue) -> str:
     """
     said = _SAYS.match(value.text)
     return _BRACKETS.sub("", said["key"]).strip() if said else ""
+
+
+def find_pitch(layout: Layout) -> DraftValue | None:
+    """Return the distance of a profile's points that the text before the heights states, or None.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.layout.find_layout`.
+    """
+    for value in find_values(layout, bare=True):
+        key = _SAYS.match(value.text)
+        named = key is not None and _PITCH.search(squeezed(_BRACKETS.sub("", key["key"])))
+        if named and value.source == "preamble" and value.unit and converts(value.unit, "m"):
+            return value._replace(name="pitch", to="m")
+    return None
 
 
 def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:

@@ -31,7 +31,7 @@ def check_scans(
     Parameters
     ----------
     scans
-        ``height`` [m] (scan, x) from `tribolab.io.scans.read.read_scans`; a single profile or a map
+        ``height`` [m] (scan, x) from `tribolab.draft.scans.read_scans`; a single profile or a map
         (y, x) will do.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, TribolabError
-from tribolab.io.scans.read import read_scans, stacked
+from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan_sets import check_scan_set
 from tribolab.records.parts import Finding, Row

@@ -137,7 +137,9 @@ def is_scan(dialect: Dialect) -> bool:
     >>> is_scan(load_dialect("surftest_csv")), is_scan(load_dialect("linear_slider"))
     (True, False)
     """
-    return {"x", "height"} <= {column.key for column in dialect.column}
+    keys = {column.key for column in dialect.column}
+    placed = "x" in keys or dialect.pitch is not None or dialect.pitch_value is not None
+    return placed and "height" in keys
 
 
 def scan_dialects() -> list[Dialect]:

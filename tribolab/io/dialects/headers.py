@@ -189,7 +189,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
             stop = last.start()
         width = len(split_row(_line(file, content, body, dialect)[0], text.delimiter))
         before = _decode(content[origin : start if start > origin else body], file, dialect)
-        if header.line is None and header.pattern is None:
+        if header.line is None and header.pattern is None and not header.skip:
             before = ""
         line, counted = line + content[counted:body].count(b"\n"), body
         if body < stop:

@@ -15,6 +15,7 @@ from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Text
+from tribolab.io.dialects.pitch_rule import check_pitch
 from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
@@ -52,6 +53,10 @@ class Dialect(Strict):
         "taken out of the friction force",
     )
     speed: Speed = Speed()
+    pitch: str | None = Field(
+        None, description="distance of neighbouring heights of a profile without x, e.g. '0.25 um'"
+    )
+    pitch_value: str | None = Field(None, description="the [[value]] (in m) that holds the pitch")
     pair: Pair | None = None
     marks: Marks | None = None
     binary: Binary | None = None
@@ -86,6 +91,7 @@ class Dialect(Strict):
                         f"column '{column.key}': in a file without a header it needs "
                         "position and unit"
                     )
+        check_pitch(self.pitch, self.pitch_value, self.value, names)
         for key, value in self.speed.values_named.items():
             if value not in {v.name for v in self.value}:
                 raise ValueError(f"speed.{key}: there is no value '{shown(value)}'")

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal, overload
 
 import numpy as np
 import xarray as xr
 
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
-from tribolab.io.dialects.find import Dialect, every_dialect, is_scan, load_dialect, scan_dialects
+from tribolab.io.dialects.find import (
+    Dialect,
+    Instrument,
+    every_dialect,
+    is_scan,
+    load_dialect,
+    scan_dialects,
+)
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.extent import measured_part, refuse_impossible
@@ -20,6 +26,7 @@ from tribolab.io.scans.grid import even, gridded
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.stamping import stamp
+from tribolab.units import positive
 from tribolab.untyped import Json
 
 PathLike = str | Path
@@ -29,97 +36,50 @@ _JOINED = ("source", "source_sha256")
 _ONE_BY_ONE = Cure(notebook="read them with stack=False")
 
 
-@overload
-def read_scans(
-    paths: PathLike | Sequence[PathLike],
-    instrument: str | Path | None = None,
+def read_known_scans(
+    files: Sequence[Path],
+    instrument: Instrument | None = None,
     *,
     x_unit: str | None = None,
     height_unit: str | None = None,
-    stack: Literal[True] = True,
-) -> xr.Dataset: ...
-
-
-@overload
-def read_scans(
-    paths: PathLike | Sequence[PathLike],
-    instrument: str | Path | None = None,
-    *,
-    x_unit: str | None = None,
-    height_unit: str | None = None,
-    stack: Literal[False],
-) -> list[xr.Dataset]: ...
-
-
-def read_scans(
-    paths: PathLike | Sequence[PathLike],
-    instrument: str | Path | None = None,
-    *,
-    x_unit: str | None = None,
-    height_unit: str | None = None,
-    stack: bool = True,
-) -> xr.Dataset | list[xr.Dataset]:
-    r"""Read scans of one surface.
+) -> list[xr.Dataset]:
+    """Read scans of instruments that are known, and of the formats of profilometers.
 
     Parameters
     ----------
-    paths
-        A file, a pattern with ``*``, or a list of either. A pattern's files come in order of name.
-    instrument
-        Dialect of a text file: its name or the path of a TOML file. Without it text is recognised
-        by content, and what no dialect knows goes to SurfaceTopography (Mitutoyo xlsx, SDF, X3P,
-        SUR, GWY, AL3D and some forty others).
-    x_unit, height_unit
-        Units of positions and heights, for files that state none and have no dialect.
-    stack
-        False: return a list with a dataset for each file, which may differ in pitch and length.
+    files
+        The files.
+    instrument, x_unit, height_unit
+        As for `tribolab.draft.scans.read_scans`.
 
     Returns
     -------
-    xarray.Dataset or list of xarray.Dataset
-        Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
-        names as ``file`` (scan). One map: ``height`` [m] (y, x), several: (scan, y, x). Missing
-        heights are NaN.
-        Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
-        ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
-        has them. Attributes that differ between stacked scans are joined by ``"; "``.
+    list of xarray.Dataset
+        One for each file: ``height`` [m] (x) or (y, x).
 
     Raises
     ------
     ReadError
-        If there is no such file, it cannot be understood, holds results only, or the scans differ
-        in pitch or length.
-
-    Notes
-    -----
-    Positions that deviate from an even grid by no more than the rounding of their last digit are
-    taken as even. Others are interpolated, and the attribute ``resampled`` says so.
-
-    Examples
-    --------
-    >>> import pathlib, tempfile
-    >>> folder = pathlib.Path(tempfile.mkdtemp())
-    >>> head = "# Surftest profile\n# tip radius: 2 um\nx [mm],z [um]\n"
-    >>> for number in (1, 2):
-    ...     file = folder / f"sb-r_{number}.csv"
-    ...     _ = file.write_text(head + f"0.0,{number}\n0.0005,2.5\n0.001,-1\n")
-    >>> scans = read_scans(folder / "sb-r_*.csv")
-    >>> scans.height.values.tolist(), scans.attrs["tip_radius_m"]
-    ([[1e-06, 2.5e-06, -1e-06], [2e-06, 2.5e-06, -1e-06]], 2e-06)
+        If there is no such file, it cannot be understood, or it holds results only.
     """
-    files = _files(paths)
     dialect = load_dialect(instrument) if instrument is not None else None
     if dialect is not None and not is_scan(dialect):
         scanning = ", ".join(d.name for d in scan_dialects())
         raise ReadError(
-            f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height'); "
-            f"those that do are {scanning}"
+            f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height', and "
+            f"there is no pitch); those that do are {scanning}"
         )
-    scans = [_read(file, dialect, x_unit, height_unit) for file in files]
-    return stacked(files, scans) if stack else [stamp(scan) for scan in scans]
+    return [_read(file, dialect, x_unit, height_unit) for file in files]
 
 
-def _files(paths: PathLike | Sequence[PathLike]) -> list[Path]:
+def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
+    """Return the files that a name, a pattern or a list of either stands for.
+
+    Raises
+    ------
+    ReadError
+        If no file is given, or none has such a name.
+    """
     given = [paths] if isinstance(paths, str | Path) else list(paths)
     if not given:
         raise ReadError("no file is given", function="read_scans")
@@ -198,7 +158,11 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
 
     content = read_content(path, dialect)
     if len(content.pieces) != 1:
-        raise ReadError(f"{path}: {len(content.pieces)} tables stand in the file, one is wanted")
+        raise ReadError(
+            f"{path}: {len(content.pieces)} tables of heights stand in the file, one is wanted; "
+            "keep the one that is meant, or describe the file in a dialect without 'repeats', "
+            "which reads the first"
+        )
     columns = content.pieces[0].columns
     attrs = {"instrument": dialect.name, **single_values(content, dialect)}
     if content.not_used:
@@ -208,14 +172,34 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
     if "y" in columns:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
         return scan.assign_attrs(attrs), content.sha256
+    if "x" not in columns:
+        pitch, height = _stated_pitch(path, dialect, attrs), columns["height"]
+        if height.size < 2:
+            raise ReadError(f"{path}: a profile needs at least two points, it has {height.size}")
+        x = pitch * np.arange(height.size, dtype=float)
+        return xr.Dataset({"height": ("x", height)}, {"x": x}, attrs), content.sha256
     pitch, height, evened = even(str(path), columns["x"], columns["height"])
     x = pitch * np.arange(height.size, dtype=float)
     scan = xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
     return scan, content.sha256
 
 
+def _stated_pitch(path: Path, dialect: Dialect, attrs: Mapping[str, str | float]) -> float:
+    """Distance of neighbouring points [m] that the dialect, or the file's header, says."""
+    if dialect.pitch is not None:
+        return positive(dialect.pitch, "m", "pitch")
+    [value] = [value for value in dialect.value if value.name == dialect.pitch_value]
+    said = attrs.get(value.attribute)
+    if said is None or not float(said) > 0:
+        raise ReadError(
+            f"{path}: the distance of its points does not stand in the file as the dialect "
+            f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
+        )
+    return float(said)
+
+
 def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put scans that were read one by one together, as `read_scans` does.
+    """Put scans that were read one by one together, as `tribolab.draft.scans.read_scans` does.
 
     Raises
     ------

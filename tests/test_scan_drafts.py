@@ -1,0 +1,97 @@
+"""Heights without positions, and scans of unknown instruments: read by what their headers say."""
+
+import numpy as np
+import pytest
+
+from tribolab.app.file_info import file_lines
+from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.scans import read_scans
+from tribolab.errors import ReadError, TribolabError
+from tribolab.io.dialects.find import load_dialect
+
+Z = np.round(np.sin(np.arange(200) / 9.0), 4)
+COLUMN = "\n".join(map(str, Z))
+ROWS = "\n".join(f"{0.00025 * n:.5f},{z}" for n, z in enumerate(Z))
+GERMAN = COLUMN.replace(".", ",")
+DRAFTED = {
+    "pitch before the heights": f"Point spacing: 0.25 um\nPoints: 200\nZ [um]\n{COLUMN}\n",
+    "decimal comma": f"Messpunktabstand: 0,25 µm\nHöhe [µm]\n{GERMAN}\n",
+    "units in a line of their own": f"Profile export\nX,Z\nmm,um\n{ROWS}\n",
+    "a table of results above": f"Name,Value,Unit\nRa,0.5,um\nRz,1.2,um\n\nX [mm],Z [um]\n{ROWS}\n",
+}
+
+
+def written(tmp_path, text, name="line.txt"):
+    path = tmp_path / name
+    path.write_bytes(text.encode("latin-1"))
+    return path
+
+
+@pytest.mark.parametrize("kind", DRAFTED)
+def test_a_header_that_says_all_is_enough(tmp_path, kind):
+    path = written(tmp_path, DRAFTED[kind])
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+    assert scan.attrs["instrument"] == "drafted from the file"
+    assert scan.attrs["to_keep_it"] == "tribolab dialect line.txt"
+    target = save_draft(draft_dialect(path), tmp_path / "own.toml")  # what is kept reads the same
+    kept = read_scans(path, target)
+    np.testing.assert_array_equal(kept.height, scan.height)
+    assert any("profile of 200 points" in line for line in file_lines(path))
+
+
+def test_what_would_be_guessed_is_told_instead(tmp_path):
+    path = written(tmp_path, f"Sampling interval = 0.25 um\nPoints = 200\n{COLUMN}\n")
+    with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or: mm, m"):
+        read_scans(path)
+    with pytest.raises(ReadError, match="x is in mm"):
+        read_scans(written(tmp_path, f"X,Z\n{ROWS}\n"))
+    with pytest.raises(ReadError, match=r"how far they lie apart; .*pitch = \"0.25 um\""):
+        read_scans(written(tmp_path, f"Z [um]\n{COLUMN}\n"))
+    twice = f"Raw\nX [mm],Z [um]\n{ROWS}\n\nFiltered\nX [mm],Z [um]\n{ROWS}\n"
+    with pytest.raises(ReadError, match="2 tables of heights"):
+        read_scans(written(tmp_path, twice))
+
+
+def dialect(tmp_path, *lines, value=""):
+    text = "\n".join(
+        ['name = "own"', 'title = "own"', *lines, '[time]\nsource = "none"', "[[column]]",
+         'quantity = "height"', "position = 1", 'unit = "um"', value]
+    )  # fmt: skip
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    return path
+
+
+VALUE = '[[value]]\nname = "step"\npattern = \'^dx = ([\\d.]+)\'\nunit = "um"\nto = "m"\n'
+
+
+def test_a_pitch_in_the_dialect_stands_for_positions(tmp_path):
+    path = written(tmp_path, COLUMN + "\n")
+    scan = read_scans(path, dialect(tmp_path, 'pitch = "0.5 um"'))
+    np.testing.assert_allclose(np.diff(scan.x), 0.5e-6)
+    assert scan.attrs["length_m"] == pytest.approx(199 * 0.5e-6)
+
+
+@pytest.mark.parametrize(
+    ("lines", "value", "words"),
+    [
+        (['pitch = "0.5 um"', 'pitch_value = "step"'], VALUE, "not both"),
+        (['pitch = "-1 um"'], "", "pitch"),
+        (['pitch = "1 s"'], "", "pitch"),
+        (['pitch_value = "step"'], "", "there is no value 'step'"),
+        (['pitch = "1 um"'], '[[column]]\nquantity="x"\nposition=2\nunit="mm"\n', "without one"),
+    ],
+)
+def test_a_pitch_that_cannot_be_is_refused(tmp_path, lines, value, words):
+    with pytest.raises(TribolabError, match=words):
+        load_dialect(dialect(tmp_path, *lines, value=value))
+
+
+def test_a_pitch_that_the_file_does_not_say_is_missed(tmp_path):
+    own = dialect(tmp_path, 'pitch_value = "step"', "[header]\nskip = 1", value=VALUE)
+    good = read_scans(written(tmp_path, f"dx = 0.5\n{COLUMN}\n"), own)
+    assert good.attrs["pitch_m"] == pytest.approx(0.5e-6) and good.attrs["step_m"] == 0.5e-6
+    with pytest.raises(ReadError, match="distance of its points does not stand in the file"):
+        read_scans(written(tmp_path, f"none\n{COLUMN}\n"), own)

@@ -1,0 +1,135 @@
+"""Read scans of any instrument: text that no dialect knows is described from its own header.
+
+The face of `tribolab.io.scans.read` for whoever does not know beforehand what wrote a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, overload
+
+import xarray as xr
+
+from tribolab.draft.draft import holds_heights
+from tribolab.draft.on_the_fly import DRAFTED, draft_of
+from tribolab.draft.questions import GuessedError, how_to_keep, questions
+from tribolab.errors import ReadError
+from tribolab.io import cures
+from tribolab.io.dialects.find import Dialect, Instrument
+from tribolab.io.logs import PathLike
+from tribolab.io.scans.read import files_of, read_known_scans, stacked
+from tribolab.stamping import stamp
+
+_NO_PITCH = "heights without positions stand in the file, which does not say how far they lie apart"
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[True] = True,
+) -> xr.Dataset: ...
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[False],
+) -> list[xr.Dataset]: ...
+
+
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: bool = True,
+) -> xr.Dataset | list[xr.Dataset]:
+    r"""Read scans of one surface; text of an unknown instrument by what its header says.
+
+    Parameters
+    ----------
+    paths
+        A file, a pattern with ``*``, or a list of either. A pattern's files come in order of name.
+    instrument
+        Dialect of a text file: its name, the path of a TOML file, or a dialect. Without it text is
+        recognised by content; of other formats those of `tribolab.io.scans.undescribed` are read.
+        Text that no dialect knows is read where its header says what the columns are, or how far
+        its heights lie apart; ``instrument`` is then "drafted from the file".
+    x_unit, height_unit
+        Units of positions and heights, for files that state none and have no dialect.
+    stack
+        False: return a list with a dataset for each file, which may differ in pitch and length.
+
+    Returns
+    -------
+    xarray.Dataset or list of xarray.Dataset
+        Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
+        names as ``file`` (scan). One map: ``height`` [m] (y, x), several: (scan, y, x). Missing
+        heights are NaN.
+        Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
+        ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
+        has them. Attributes that differ between stacked scans are joined by ``"; "``.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it cannot be understood, holds results only, or the scans differ
+        in pitch or length. Of a file that says too little itself, with the guesses.
+
+    Notes
+    -----
+    Positions that deviate from an even grid by no more than the rounding of their last digit are
+    taken as even. Others are interpolated, and the attribute ``resampled`` says so.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "line.txt"
+    >>> _ = file.write_text("Point spacing: 0.25 um\nZ [um]\n1.0\n1.5\n1.25\n1.0\n")
+    >>> scan = read_scans(file)
+    >>> scan.attrs["instrument"], scan.attrs["pitch_m"], scan.sizes["x"]
+    ('drafted from the file', 2.5e-07, 4)
+    """
+    files = files_of(paths)
+    units = {"x_unit": x_unit, "height_unit": height_unit}
+    if instrument is not None:
+        scans = read_known_scans(files, instrument, **units)
+    else:
+        scans = [_read(file, units) for file in files]
+    return stacked(files, scans) if stack else [stamp(scan) for scan in scans]
+
+
+def _read(file: Path, units: dict[str, str | None]) -> xr.Dataset:
+    try:
+        [scan] = read_known_scans([file], **units)
+    except ReadError as error:
+        dialect = None if any(units.values()) else _drafted(file, error)
+        if dialect is None:
+            raise
+        [scan] = read_known_scans([file], dialect)
+        return scan.assign_attrs(instrument=DRAFTED, to_keep_it=how_to_keep(file))
+    return scan
+
+
+def _drafted(file: Path, error: ReadError) -> Dialect | None:
+    """Return the dialect that a file's header makes of a scan; None if it is none."""
+    draft = draft_of(file)
+    if draft is not None and draft.kind == "table" and holds_heights(draft):
+        raise ReadError(_NO_PITCH, where=file, cure=cures.PITCH) from error
+    if draft is None or draft.kind != "scan" or draft.known:
+        return None
+    if not draft.named and not (draft.understood and draft.understood.pitch_pattern):
+        return None
+    if asked := questions(draft):
+        raise GuessedError(file, asked, cures.SURFACE) from error
+    return draft.dialect
