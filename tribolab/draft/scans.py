@@ -19,6 +19,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
 from tribolab.io.logs import PathLike
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
+from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp
 
 _NO_PITCH = "heights without positions stand in the file, which does not say how far they lie apart"
@@ -124,9 +125,11 @@ def _read(file: Path, units: dict[str, str | None]) -> xr.Dataset:
 def _drafted(file: Path, error: ReadError) -> Dialect | None:
     """Return the dialect that a file's header makes of a scan; None if it is none."""
     draft = draft_of(file)
-    if draft is not None and draft.kind == "table" and holds_heights(draft):
+    if draft is None or draft.known or is_own_text(file):
+        return None
+    if draft.kind == "table" and holds_heights(draft):
         raise ReadError(_NO_PITCH, where=file, cure=cures.PITCH) from error
-    if draft is None or draft.kind != "scan" or draft.known:
+    if draft.kind != "scan":
         return None
     if not draft.named and not (draft.understood and draft.understood.pitch_pattern):
         return None

@@ -16,6 +16,13 @@ from tribolab.io.unpacked import ZIP, unpacked
 _HEAD = 1 << 14  # bytes that tell a format
 
 
+def is_own_text(path: Path) -> bool:
+    """Whether a file is text of a format that is read here: what is wrong with it is said."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    return is_xml(head) or is_iso_xml(head) or is_gauge(head)
+
+
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     """Read a scan in one of our own formats, or else with SurfaceTopography.
 
