@@ -69,12 +69,15 @@ def browser(one_browser):
         yield browser
 
 
-@pytest.fixture(scope="module", params=["among the results", "sent alone"])
-def results(request, whole, tmp_path_factory):
-    """The page of a file's own `whole` among its results, and as it is sent: alone in a folder."""
+@pytest.fixture(scope="module")
+def results(whole, tmp_path_factory):
+    """The page of a file's own `whole` as it is sent: in a folder with nothing beside it.
+
+    That it asks for nothing where it lies among its results, tests/test_report_page.py shows.
+    """
     from report_pages import sent
 
-    return whole if request.param == "among the results" else sent(whole, tmp_path_factory)
+    return sent(whole, tmp_path_factory)
 
 
 @pytest.fixture(scope="session")

@@ -75,10 +75,10 @@ def test_the_earlier_result_of_a_run_is_kept_and_says_so(campaign, spoil, log):
     assert report["verdict"]["kept"] == 1 and report["verdict"]["status"] == "incomplete"
     assert "kept from" in (campaign.parent / "results/report.html").read_text("utf-8")
     when = report["runs"][0]["kept"].split(": ")[0]
-    again = run_campaign(campaign, jobs=1)  # still kept, from the same moment
+    again = run_campaign(campaign, jobs=1, figures="none")  # still kept, from the same moment
     assert again.runs[0].kept.split(": ")[0] == when
     first_log(campaign, log).write_bytes(raw)  # it is there again
-    outcome = run_campaign(campaign, jobs=1)
+    outcome = run_campaign(campaign, jobs=1, figures="none")
     assert not outcome.kept
     report = json.loads((campaign.parent / "results/report.json").read_text("utf-8"))
     assert report["verdict"]["status"] == "complete"
@@ -90,7 +90,7 @@ def test_a_run_is_dropped_when_the_campaign_names_it_no_more(campaign):
     emptied(first_log(campaign))
     start, stop = text.index("[[run]]"), text.index("[[run]]", text.index("[[run]]") + 1)
     campaign.write_text(text[:start] + text[stop:], "utf-8")
-    outcome = run_campaign(campaign, jobs=1)
+    outcome = run_campaign(campaign, jobs=1, figures="none")
     assert RUNS[0] not in [run.name for run in outcome.runs] and not outcome.kept
 
 
@@ -99,7 +99,7 @@ def test_a_raw_file_that_was_renamed_is_not_counted_twice(campaign):
     for log in ("force", "motion"):
         path = first_log(campaign, log)
         path.rename(path.with_name(path.name.replace("_01_", "_07_")))
-    outcome = run_campaign(campaign, jobs=1)
+    outcome = run_campaign(campaign, jobs=1, figures="none")
     assert not outcome.kept and len(outcome.runs) == len(RUNS)
     assert {run.name for run in outcome.runs} == {RUNS[0].replace("_01", "_07"), *RUNS[1:]}
 
@@ -166,7 +166,7 @@ def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
 def test_an_answer_about_data_that_were_read_replaces_the_earlier_one(campaign):
     text = campaign.read_text("utf-8")
     campaign.write_text(text.replace("trim = 0.10", "min_duration = '9 h'"), "utf-8")
-    outcome = run_campaign(campaign, jobs=1)
+    outcome = run_campaign(campaign, jobs=1, figures="none")
     assert not any(run.kept for run in outcome.runs) and outcome.segments == 0
 
 
@@ -188,7 +188,7 @@ def test_inputs_inside_the_results_are_refused_before_work_starts(campaign, old,
     shutil.copy(first_log(campaign), results / "mine")
     campaign.write_text(re.sub(old, new, campaign.read_text("utf-8"), count=1), "utf-8")
     with pytest.raises(ConfigError, match=rf"{what} \(mine.*--output"):
-        run_campaign(campaign, jobs=1)
+        run_campaign(campaign, jobs=1, figures="none")
 
 
 @pytest.mark.slow

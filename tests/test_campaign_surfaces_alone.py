@@ -20,7 +20,8 @@ from tribolab.errors import ConfigError
 def test_surfaces_without_runs_have_their_report(tmp_path):
     made = rig.simulate_campaign(tmp_path / "c", seed=3, small=True)
     campaign = surfaces_alone(made, ("31 N", "91 N"))
-    done = CliRunner().invoke(app, ["run", str(campaign), "-j", "1", "-q"])
+    command = ["run", str(campaign), "-j", "1", "-q", "--figures", "none"]
+    done = CliRunner().invoke(app, command)
     assert done.exit_code == 0, done.output
     assert done.output.startswith("2 of 2 surfaces: spectrum, contact, adhesion")
     results = tmp_path / "c" / "results"
@@ -32,7 +33,7 @@ def test_surfaces_without_runs_have_their_report(tmp_path):
         assert set(table["normal_force_N"].dropna()) == {31.0, 91.0}, name
     page = page_of(results)
     assert "Report on surfaces" in page and 'id="surfaces"' in page and 'id="runs"' not in page
-    again = CliRunner().invoke(app, ["run", str(campaign), "-j", "1", "-q"])
+    again = CliRunner().invoke(app, command)
     assert again.exit_code == 0 and "2 of 2 surfaces" in again.output
 
 

@@ -24,6 +24,7 @@ from tribolab.app.progress import progress_bars
 from tribolab.campaign.settings.config import Qc
 from tribolab.records.parts import ModelOutcome
 
+BARE = ("--figures", "none")  # where they are not looked at
 ENVIRONMENT = os.environ | {"COLUMNS": "100", "NO_COLOR": "1"}
 
 
@@ -123,7 +124,7 @@ def test_another_title_makes_another_report_of_the_same_data(campaign):
 @pytest.mark.slow
 def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv").write_text("Time [s]\n")
-    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1)
+    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
     assert done.returncode == 3
     assert "1 of 2 runs" in done.stdout
     assert done.stderr.startswith("tribolab: sb-r_dry_31N_01 failed: ")
@@ -195,7 +196,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
     text = campaign.read_text(encoding="utf-8")
     text = text.replace("[segments]\ntrim = 0.10\n", '[segments]\nmin_duration = "1000 h"\n')
     campaign.write_text(text, encoding="utf-8")
-    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1)
+    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
     assert done.returncode == 3
     assert "no segment of constant speed was found" in done.stderr
 

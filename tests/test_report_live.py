@@ -22,7 +22,6 @@ from report_pages import (
     made,
     names,
     page_of,
-    sent,
 )
 from reporting import made_run
 
@@ -47,9 +46,8 @@ def whole(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def alone(whole, tmp_path_factory):
-    """The page as it is sent."""
-    return sent(whole, tmp_path_factory) / "report.html"
+def alone(results):
+    return results / "report.html"
 
 
 def rows(page):
