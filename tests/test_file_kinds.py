@@ -148,6 +148,21 @@ def test_what_drives_the_strokes_is_a_guess_unless_it_is_said(tmp_path):
     assert np.median(speed) == pytest.approx(2 * 10e-3 * 1.0, rel=1e-3)
 
 
+def test_a_diameter_of_the_track_and_the_turns_of_a_crank_are_understood(tmp_path):
+    path = write_kind("rotary_steps", tmp_path).path
+    text = path.read_text()
+    path.write_text(text.replace("Track radius: 25 mm", "Wear track diameter (mm): 50"))
+    assert float(tl.read(path)["sliding_velocity"].max()) == pytest.approx(0.2, rel=1e-3)
+    path.write_text(text.replace("Track radius: 25 mm", "Disc diameter (mm): 50"))
+    assert "sliding_velocity" not in tl.read(path)
+    path = write_kind("stroke_settings", tmp_path).path
+    turns = path.read_text().replace("Frequency: 1 Hz", "Crank speed: 60 rpm")
+    path.write_text(turns)
+    run = tl.read(path)
+    assert run.attrs["stroke_frequency_Hz"] == pytest.approx(1.0, rel=1e-3)
+    assert float(run["sliding_velocity"].max()) == pytest.approx(np.pi * 10e-3, rel=1e-2)
+
+
 def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write_kind("radius_unsaid", tmp_path).path

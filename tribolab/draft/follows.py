@@ -18,8 +18,8 @@ _STROKE = re.compile(
     r"^(?:stroke|strokelength|hub|hublaenge|course|carrera|corsa|行程|ストローク)$"
 )
 _FREQUENCY = re.compile(
-    r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing)?"
-    r"(?:frequency|freq|frequenz)|frequence|frecuencia|frequenza|频率|周波数)$"
+    r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
+    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数)$"
 )
 _DRIVE = re.compile(r"drive|motion|waveform|antrieb|bewegung|entrainement|movimento|movimiento")
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")

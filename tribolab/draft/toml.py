@@ -266,6 +266,8 @@ def _value(value: DraftValue) -> list[str]:
     lines.append(f"pattern = {_pattern(value.pattern)}")
     if value.unit is not None:
         lines.append(f"unit = {_text(value.unit)}")
+    if value.scale != 1:
+        lines.append(f"scale = {value.scale:g}")
     if value.to is not None:
         lines.append(f"to = {_text(value.to)}")
     return lines

@@ -34,6 +34,11 @@ _PITCH = re.compile(
 )
 _RADIUS = re.compile("radius|rayon|radio|raggio")
 _OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
+# of the track, not of a ball or a disc
+_DIAMETER = re.compile(
+    r"(?:track|wear|spur|laufbahn|reib|friction|path|piste|traccia).*"
+    r"(?:diam|durchmesser)|diam.*(?:track|piste|traccia)"
+)
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
@@ -47,6 +52,7 @@ class DraftValue(NamedTuple):
     text: str
     source: str = "preamble"
     own_unit: str | None = None
+    scale: float = 1.0
 
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
@@ -145,7 +151,7 @@ def find_pitch(layout: Layout) -> DraftValue | None:
 
 
 def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
-    """Return the radius of the track, if just one of a file's values is one.
+    """Return the radius of the track, if just one of a file's values is one, or its diameter.
 
     Parameters
     ----------
@@ -154,6 +160,9 @@ def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
     """
     radii = [v for v in values if v.to == "m" and _RADIUS.search(v.name)]
     tracks = [v for v in radii if not _OTHER_RADIUS.search(v.name)]
+    if not tracks:
+        across = [v for v in values if v.to == "m" and _DIAMETER.search(squeezed(v.name))]
+        tracks = [v._replace(name="track_radius", scale=0.5) for v in across]
     return tracks[0] if len(tracks) == 1 else None
 
 

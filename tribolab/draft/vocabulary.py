@@ -36,7 +36,8 @@ RUN_WORDS = (
         "friction_force",
         _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs"),
         _words(
-            "frictionforce frictionalforce tangentialforce lateralforce tractionforce shearforce "
+            "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
+            "tractionforce shearforce "
             "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung "
             "forcex xforce sledforce pullforce pullingforce zugkraft "
             "forcedefrottement efforttangentiel forcetangentielle frottement "
