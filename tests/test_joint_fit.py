@@ -315,7 +315,10 @@ def test_two_surfaces_share_their_liquid(curves):
 
 def test_models_are_told_apart_where_the_data_tell(curves):
     fixed = replace(PRIORS, speed_exponent=0.0, load_exponent=0.0)
-    for n, m, wanted in ((N, M, "the data need power law"), (0.0, 0.0, "constant is enough")):
+    for n, m, wanted in (
+        (N, M, "the data speak against constant"),
+        (0.0, 0.0, "constant is enough"),
+    ):
         parts = load_curves(curves, n=n, m=m, loads=LOADS)
         told = compared(
             {"power law": fit_loads(parts, 1.4), "constant": fit_loads(parts, 1.4, fixed)}

@@ -35,6 +35,7 @@ from tribolab.words import many, span
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.store.outcome import Outcome
+    from tribolab.records.joint_record import JointRecord
     from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 
@@ -66,6 +67,7 @@ def report_head(
     surfaces: Iterable[ReportedSurface],
     modes: Iterable[ReportedMode],
     models: Iterable[ReportedModel],
+    joints: Iterable[JointRecord],
     figures: Mapping[str, Sequence[FigureRecord]],
 ) -> ReportHead:
     """Return all of the report but its runs.
@@ -78,7 +80,7 @@ def report_head(
         Of each run what `brief_run` says.
     findings
         All findings, gravest first.
-    curves, surfaces, modes, models
+    curves, surfaces, modes, models, joints
         As they are reported.
     figures
         By their section.
@@ -98,6 +100,7 @@ def report_head(
         surfaces=tuple(surfaces),
         sliding_mode=tuple(modes),
         models=tuple(models),
+        joint_fits=tuple(joints),
         figures=tuple(figures["figures"]),
         surface_figures=tuple(figures["surface_figures"]),
         model_figures=tuple(figures["model_figures"]),

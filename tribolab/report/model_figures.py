@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tribolab.campaign.store.outcome import Outcome
+    from tribolab.records.joint_record import JointRecord
     from tribolab.records.parts import ModelOutcome
 
 _NO_MODEL = ": no shear stress describes this curve, so only the model's viscous part is drawn"
@@ -85,7 +86,9 @@ class ModelFigure:
         return (*files, self.dry) if self.dry else tuple(files)
 
 
-def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRow]) -> list[ModelFigure]:
+def plan_model_figures(
+    outcome: Outcome, rows: Sequence[ModelRow], joints: Sequence[JointRecord] = ()
+) -> list[ModelFigure]:
     """Choose the figures for which there are data."""
     fitted = [row.model for row in rows if row.fit is not None]
     surfaces = tuple(dict.fromkeys(curve.surface for curve in outcome.curves))
@@ -108,6 +111,10 @@ def plan_model_figures(outcome: Outcome, rows: Sequence[ModelRow]) -> list[Model
             without = [force_text(m.normal_force) for m in mine if m not in stressed]
             missing = _NO_LINE.format(" and ".join(without)) if without else ""
             add("loads", f"model_surface_{number + 1}", surface, mine, missing=missing)
+    for joint in joints:
+        shown = ShownModel(joint.name, joint.surface, joint.medium, None, joint.file, ())
+        title = ", ".join(filter(None, (joint.surface, joint.medium, "all loads in one fit")))
+        planned.append(ModelFigure("joint", joint.name, title, (shown,), surfaces))
     if stressed:
         fits = tuple(row.labels | row.fit for row in rows if row.model in stressed and row.fit)
         add("shear_stress", "shear_stress", "Shear stress over the load", stressed, table=fits)
@@ -201,6 +208,22 @@ def _loads(task: _Opened) -> tuple[Figure, str]:
     return figure, f"Measured and computed at {len(task.figure.models)} loads."
 
 
+class _Fitted(NamedTuple):
+    """Points and curves of a joint fit."""
+
+    points: xr.Dataset
+    curves: xr.Dataset
+
+
+def _joint(task: _Opened) -> tuple[Figure, str]:
+    (model,) = task.figure.models
+    fit = _Fitted(_read(task, model, "points"), _read(task, model, "curves"))
+    figure = plot.joint_fit(
+        fit, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
+    )
+    return figure, f"Measured and computed at {fit.curves.sizes['curve']} loads."
+
+
 def _shear_stress(task: _Opened) -> tuple[Figure, str]:
     table = pd.DataFrame(list(task.figure.table), columns=SHEAR_STRESS)
     figure = plot.shear_stress(table, surfaces=task.figure.surfaces)
@@ -249,6 +272,12 @@ _KINDS: dict[str, tuple[Callable[[_Opened], tuple[Figure, str]], str]] = {
         "measured less model.",
     ),
     "loads": (_loads, "Points: measured; lines: the model with the shear stress of each load."),
+    "joint": (
+        _joint,
+        "Above: points with their standard errors; the model at each load with the 95 % band by "
+        "its parameters and, paler, with the errors that the points of a load share. Below: "
+        "measured over computed less 1; lines: what is ascribed to level and neighbouring speeds.",
+    ),
     "shear_stress": (
         _shear_stress,
         "Open: as fitted, for the area without adhesion, with the 95 % interval, the spectrum's "

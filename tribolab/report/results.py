@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.campaign.engine.stage import Progress, perform, silent
+from tribolab.campaign.joint import JointFits
 from tribolab.campaign.modes import Modes
+from tribolab.records.joint_record import (
+    JointRecord,
+    comparison_table_rows,
+    parameter_table_rows,
+)
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice, Row
@@ -91,9 +97,16 @@ def write_report(
     findings += [note for curve in shown for note in decisions.curve_notices(curve)]
     modes, unjudged = _modes(outcome, curves, surfaces, models, executor)
     findings += unjudged
+    joints = perform(JointFits(outcome.campaign, curves, models, store), executor)
+    findings += [
+        Notice("note", "", f"joint fit of {joint.surface} in {joint.medium}", joint.reason)
+        for joint in joints
+        if not joint.done
+    ]
+    fitted = [joint for joint in joints if joint.done]
 
     rows = model_records.model_rows_of(models)
-    live, undrawn = live_figures(outcome, shown, points, rows, modes, executor)
+    live, undrawn = live_figures(outcome, shown, points, rows, modes, fitted, executor)
     findings += undrawn
     tasks: list[FigureTask] = []
     if figures != "none":
@@ -109,7 +122,7 @@ def write_report(
         known = [curve.outcome for curve in shown]
         surfaced = plan_surface_figures(done)
         tasks += planned("surface_figures", surfaced, draw_surfaces, store, pdf=pdf)
-        modelled = plan_model_figures(outcome, list(rows.values()))
+        modelled = plan_model_figures(outcome, list(rows.values()), fitted)
         tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
         sliding = plan_sliding_figures(known, modes, outcome)
         tasks += planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
@@ -121,7 +134,7 @@ def write_report(
             drawn[section].append(record)
 
     ordered = sorted(findings, key=lambda finding: tables.SEVERITIES.index(finding.severity))
-    _write_tables(outcome, shown, surfaces, rows, ordered)
+    _write_tables(outcome, shown, surfaces, rows, fitted, ordered)
     named = {surface.outcome.name: surface.rows for surface in surfaces}
     head = report_head(
         outcome,
@@ -131,6 +144,7 @@ def write_report(
         surfaces=(reported_surface(one, named.get(one.name)) for one in outcome.surfaces),
         modes=(reported_mode(modes[c.outcome.name], c) for c in shown if c.outcome.name in modes),
         models=(reported_model(model, rows.get(model.name)) for model in outcome.models),
+        joints=joints,
         figures=drawn,
     )
     document = report_document(head)
@@ -238,6 +252,7 @@ def _write_tables(
     curves: Sequence[CurveRecord],
     surfaces: Sequence[SurfaceRecord],
     models: Mapping[str, model_records.ModelRow],
+    joints: Sequence[JointRecord],
     findings: Sequence[Notice],
 ) -> None:
     folder = Path(outcome.folder) / "tables"
@@ -300,3 +315,7 @@ def _write_tables(
             ("model_sensitivity", model_records.sensitivity_table(every)),
         ):
             tables.write(made, folder / f"{name}.csv")
+    if joints:
+        tables.write(pd.DataFrame(parameter_table_rows(joints)), folder / "joint_fit.csv")
+        compared = pd.DataFrame(comparison_table_rows(joints))
+        tables.write(compared, folder / "model_comparison.csv")

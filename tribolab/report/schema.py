@@ -13,6 +13,7 @@ from tribolab.campaign.modes import SPEED_COLUMNS
 from tribolab.mode.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN
 from tribolab.qc.register import STATUSES
 from tribolab.records.annotations import Columns, Natural, means, one_of
+from tribolab.records.joint_record import JointRecord
 from tribolab.records.judgement import Limits
 from tribolab.records.mode_record import EvidenceRow
 from tribolab.records.model_rows import FITTED
@@ -250,6 +251,7 @@ class ReportHead:
     surfaces: tuple[ReportedSurface, ...]
     sliding_mode: tuple[ReportedMode, ...]
     models: tuple[ReportedModel, ...]
+    joint_fits: Annotated[tuple[JointRecord, ...], means("all loads of a surface in one fit")]
     figures: tuple[FigureRecord, ...]
     surface_figures: tuple[FigureRecord, ...]
     model_figures: tuple[FigureRecord, ...]

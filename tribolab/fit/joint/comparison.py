@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _BARE, _STRONG = 1.0, 3.0  # of ln of odds: not worth a mention below, strong from here
-POWER_LAW = "power law"
+POWER_LAW = "power law of speed and load"
 CONSTANT = "constant shear stress"
-WITHOUT_FACTORS = "without friction factors"
+WITHOUT_FACTORS = "no friction factors"
 
 
 @dataclass(frozen=True)
@@ -235,6 +235,8 @@ def _said(
     ('the data need b', 'a is enough')
     >>> _said(("b", 4), ("a", 3), 6.0, -4.0), _said(("b", 3), ("a", 3), 2.0, 6.0)
     ('the data do not tell b from a', 'the data lean to b')
+    >>> _said(("b", 2), ("a", 3), -6.0, -4.0), _said(("b", 3), ("a", 3), -2.0, -6.0)
+    ('the data speak against b', 'the data lean to a')
     """
     tellers = np.array([evidence, prediction])
     tellers = tellers[np.isfinite(tellers)]
@@ -244,8 +246,9 @@ def _said(
     wanted, other = (model, reference) if evidence > 0 else (reference, model)
     if wanted[1] < other[1]:
         return f"{wanted[0]} is enough"
-    verb = "need" if strength >= _STRONG else "lean to"
-    return f"the data {verb} {wanted[0]}"
+    if strength < _STRONG:
+        return f"the data lean to {wanted[0]}"
+    return f"the data need {model[0]}" if wanted == model else f"the data speak against {model[0]}"
 
 
 def _odds(value: float) -> str:

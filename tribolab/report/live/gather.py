@@ -8,12 +8,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import perform
+from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import Friction, card_figures, model_figures
+from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask, Missed, live_task
@@ -35,6 +37,7 @@ def live_figures(
     points: Mapping[str, Sequence[RunPoint]],
     rows: Mapping[str, ModelRow],
     modes: Mapping[str, ModeRecord],
+    joints: Sequence[JointRecord],
     executor: Executor | None = None,
 ) -> tuple[list[ShownFigure], list[Notice]]:
     """Return the figures that the page draws, and why others could not be made.
@@ -51,12 +54,14 @@ def live_figures(
         Models that are done, by their names.
     modes
         How the curves slide, by the curve's name.
+    joints
+        Joint fits that are done.
     executor
         Where those that need data files are made; without one it is done here.
     """
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     models = list(rows.values())
-    tasks = list(_tasks(outcome, curves, models, modes, surfaces))
+    tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
     records: list[LiveRecord] = []
     findings: list[Notice] = []
     for came in perform(LiveFigures(tasks, outcome.store), executor, lambda *_: None):
@@ -83,6 +88,7 @@ def _tasks(
     curves: Sequence[CurveRecord],
     models: Sequence[ModelRow],
     modes: Mapping[str, ModeRecord],
+    joints: Sequence[JointRecord],
     surfaces: tuple[str, ...],
 ) -> list[LiveTask]:
     """Plan what is made from data files, of each kind all at once."""
@@ -100,6 +106,13 @@ def _tasks(
             partial(record_of_models, models, surfaces),
             ([(row.labels, row.fit, row.sensitivity) for row in models], surfaces),
             [row.model.data_file for row in models],
+            store,
+        ),
+        live_task(
+            "joint fits",
+            partial(record_of_joint_fits, joints),
+            joints,
+            [joint.file for joint in joints],
             store,
         ),
         live_task(

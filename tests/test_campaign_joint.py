@@ -1,0 +1,123 @@
+"""A campaign with two loads fits them together by itself, and says what it found everywhere."""
+
+import json
+import re
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+
+import tribolab
+from tribolab.campaign.joint import JointFits
+from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.io.netcdf import read_netcdf
+from tribolab.records.joint_record import JointRecord
+from tribolab.records.part_records import CurveRecord, ModelRecord
+from tribolab.report.model_figures import draw_model, plan_model_figures
+from tribolab.report.results import write_report
+from tribolab.rig import Protocol, Rig, simulate_campaign
+
+SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
+SPEEDS = (1e-5, 1e-4, 4.64e-4, 1e-3, 2.15e-3)
+LOADS = (31.0, 211.0)
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """One surface in glycerol at two loads, one run each."""
+    file = simulate_campaign(
+        tmp_path_factory.mktemp("two loads") / "campaign",
+        5,
+        surfaces=("Sb-S",),
+        loads=LOADS,
+        n_repeats=1,
+        n_scans=1,
+        rig=Rig(Protocol(speeds=SPEEDS)),
+    )
+    text = re.sub(
+        r'\n\[\[run\]\]\nfiles = "[^"]*_dry_.*?(?=\n\[|\Z)', "", file.read_text(), flags=re.S
+    )
+    # adhesion would take as long as all the rest
+    text = re.sub(r"(?m)^work_of_adhesion.*\n", "", text)
+    file.write_text(f'{text}\n[model]\nuncertainty = "none"\n', "utf-8")
+    return load_campaign(file)
+
+
+@pytest.fixture(scope="module")
+def outcome(campaign, tmp_path_factory):
+    made = process(campaign, tmp_path_factory.mktemp("results"))
+    write_report(made, figures="none")
+    return made
+
+
+def record_of(outcome) -> JointRecord:
+    (entry,) = outcome.store.all("joint", JointRecord)
+    return entry.record
+
+
+@pytest.mark.slow
+def test_both_loads_are_in_one_fit_beside_the_single_ones(outcome):
+    record = record_of(outcome)
+    assert (record.surface, record.medium, record.reason) == ("Sb-S", "glycerol", "")
+    assert record.done and len(record.curves) == 2
+    assert [model.parts[1] for model in outcome.models] == ["fit", "fit"]
+    points, curves = (
+        read_netcdf(outcome.folder / record.file, part) for part in ("points", "curves")
+    )
+    assert points.sizes["point"] == 2 * len(SPEEDS)
+    assert curves["curve"].values.tolist() == ["31 N", "211 N"]
+    off = np.log(points.friction_coefficient / points.friction_coefficient_model)
+    np.testing.assert_allclose(points.relative_residual, off, atol=1e-12)
+    stress = next(row for row in record.parameters if row.parameter == "shear_stress")
+    single = pd.read_csv(outcome.folder / "tables/shear_stress.csv")["shear_stress_Pa"]
+    assert stress.low < single.max() and single.min() < stress.high
+
+
+@pytest.mark.slow
+def test_tables_report_page_and_figure_say_the_same(outcome):
+    record, folder = record_of(outcome), outcome.folder
+    report = json.loads((folder / "report.json").read_text())
+    jsonschema.validate(report, json.loads(SCHEMA.read_text()))
+    (reported,) = report["joint_fits"]
+    table = pd.read_csv(folder / "tables/joint_fit.csv")
+    assert table["parameter"].tolist() == [row["parameter"] for row in reported["parameters"]]
+    np.testing.assert_allclose(table["value"], [row.value for row in record.parameters])
+    compared = pd.read_csv(folder / "tables/model_comparison.csv")
+    names = ["power law of speed and load", "constant shear stress", "no friction factors"]
+    assert compared["model"].tolist()[:3] == names
+    assert compared["words"].iloc[0] == "the reference"
+    page = (folder / "report.html").read_text("utf-8")
+    assert "All loads in one fit" in page and record.parameters[0].words in page
+    assert 'id="model-joint-sb-s_glycerol"' in page
+    (planned,) = (what for what in plan_model_figures(outcome, [], [record]))
+    drawn = draw_model(planned, folder)
+    assert drawn.kind == "joint" and "at 2 loads" in drawn.alt
+    assert set(tribolab.plot.figure_data(drawn.figure).series) == {"31 N", "211 N"}
+
+
+@pytest.mark.slow
+def test_a_joint_fit_of_the_same_curves_is_taken_over(outcome, campaign, tmp_path):
+    outcome.store.save()
+    again = process(campaign, tmp_path, previous=outcome.folder)
+    curves = [entry.record for entry in again.store.all("curve", CurveRecord)]
+    models = [entry.record for entry in again.store.all("model", ModelRecord)]
+    stage = JointFits(campaign, curves, models, again.store)
+    (task,) = stage.plan()
+    assert stage.known(task, 0) == record_of(outcome)
+    assert (tmp_path / task.file).is_file()
+    # a model that is made anew is another
+    bare = JointFits(campaign, curves, models[:1], again.store)
+    assert bare.plan() == []
+
+
+@pytest.mark.slow
+def test_a_fit_that_is_not_possible_is_a_note_with_the_reason(outcome, campaign):
+    curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
+    models = [entry.record for entry in outcome.store.all("model", ModelRecord)]
+    (task,) = JointFits(campaign, curves, models, outcome.store).plan()
+    gone = task.__class__(**vars(task) | {"measured": ("data/none.nc", "data/none.nc")})
+    record = JointFits.work(gone)
+    assert record.status == "failed" and record.reason and record.parameters == ()

@@ -1,0 +1,185 @@
+"""All that is recorded of a joint fit: its parameters, what it says, and the models compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+from tribolab.records.annotations import means, one_of
+from tribolab.records.parts import Row
+
+if TYPE_CHECKING:
+    from tribolab.fit.joint.comparison import ModelComparison
+    from tribolab.fit.joint.result import JointFit
+
+
+@dataclass(frozen=True)
+class JointParameter:
+    """What is known of one parameter, in the unit that is said."""
+
+    parameter: str
+    value: Annotated[float, means("median")]
+    low: Annotated[float, means("lower end of the 95 % interval")]
+    high: float
+    unit: str
+    prior_low: Annotated[float, means("lower end of the interval that was assumed beforehand")]
+    prior_high: float
+    told: Annotated[
+        float | None,
+        means("share of the prior's standard deviation that the data took away; null if held"),
+    ]
+    identified: Annotated[str, one_of("yes", "weakly", "not identified", "held fixed")]
+    words: Annotated[str, means("name, median and interval as a reader would say them")]
+
+
+@dataclass(frozen=True)
+class JointModelRow:
+    """One model of the same curves, held against the first."""
+
+    model: str
+    evidence: Annotated[float, means("ln of the odds for it against the first, from all points")]
+    prediction: Annotated[
+        float | None,
+        means("ln of the odds by predicting each load from the others; null if there is one"),
+    ]
+    prediction_error: float | None
+    shear_stress_Pa: float
+    shear_stress_low_Pa: float
+    shear_stress_high_Pa: float
+    words: str
+
+
+@dataclass(frozen=True)
+class JointCorrelation:
+    """Posterior correlation of two parameters."""
+
+    first: str
+    second: str
+    correlation: float
+
+
+@dataclass(frozen=True)
+class JointRecord:
+    """The joint fit of all loads of a surface in one liquid.
+
+    Parameters
+    ----------
+    name
+        Of the fit and of its data file.
+    surface, medium
+        What it is of.
+    curves
+        Names of the measured curves.
+    status, reason
+        "done", or "failed" and why.
+    file
+        Data file relative to the results folder; "" of one that failed.
+    reference_speed_m_s, reference_load_N_m
+        Speed and load that the shear stress is for.
+    described
+        Whether the model describes the curves.
+    parameters, correlations
+        The posterior.
+    sentences
+        What the data do not tell, and what goes together.
+    models
+        What the data say of several models, the first being that of the parameters.
+    """
+
+    name: str
+    surface: str
+    medium: str
+    curves: tuple[str, ...]
+    status: Annotated[str, one_of("done", "failed")]
+    reason: Annotated[str, means("why it failed, else empty")] = ""
+    file: str = ""
+    reference_speed_m_s: float | None = None
+    reference_load_N_m: float | None = None
+    described: bool = False
+    parameters: tuple[JointParameter, ...] = ()
+    correlations: tuple[JointCorrelation, ...] = ()
+    sentences: tuple[str, ...] = ()
+    models: tuple[JointModelRow, ...] = ()
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a fit."""
+        return self.status == "done"
+
+
+def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
+    """Return what is known of each parameter of a fit."""
+    from tribolab.fit.joint.result import in_words
+
+    return tuple(
+        JointParameter(
+            parameter=marginal.name,
+            value=marginal.value,
+            low=marginal.low,
+            high=marginal.high,
+            unit=marginal.unit,
+            prior_low=marginal.prior_low,
+            prior_high=marginal.prior_high,
+            told=_known(marginal.told),
+            identified=marginal.identified,
+            words=f"{marginal.words} {in_words(marginal)}",
+        )
+        for marginal in fit.marginals
+    )
+
+
+def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
+    """Return the correlation of every two parameters."""
+    names = [marginal.name for marginal in fit.marginals]
+    size = len(fit.correlation)
+    return tuple(
+        JointCorrelation(names[i], names[j], float(fit.correlation[i, j]))
+        for i in range(size)
+        for j in range(i + 1, size)
+    )
+
+
+def model_rows_of_comparison(comparison: ModelComparison) -> tuple[JointModelRow, ...]:
+    """Return what the data say of each model."""
+    return tuple(
+        JointModelRow(
+            model=model.name,
+            evidence=model.evidence,
+            prediction=_known(model.prediction),
+            prediction_error=_known(model.prediction_error),
+            shear_stress_Pa=model.shear_stress,
+            shear_stress_low_Pa=model.shear_stress_low,
+            shear_stress_high_Pa=model.shear_stress_high,
+            words=model.words,
+        )
+        for model in comparison.models
+    )
+
+
+def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
+    """Return the rows of the table of joint fits."""
+    return [
+        {
+            "surface": record.surface,
+            "medium": record.medium,
+            "reference_speed_m_s": record.reference_speed_m_s,
+            "reference_load_N_m": record.reference_load_N_m,
+            **vars(row),
+        }
+        for record in records
+        for row in record.parameters
+    ]
+
+
+def comparison_table_rows(records: Sequence[JointRecord]) -> list[Row]:
+    """Return the rows of the table of compared models."""
+    return [
+        {"surface": record.surface, "medium": record.medium, **vars(row)}
+        for record in records
+        for row in record.models
+    ]
+
+
+def _known(value: float) -> float | None:
+    return None if value != value else float(value)
