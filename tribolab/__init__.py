@@ -88,6 +88,7 @@ _PUBLIC = {
     "repeatability": "tribolab.across.repeatability",
     "history": "tribolab.across.history",
     "measuring_plan": "tribolab.across.planning",
+    "pack": "tribolab.deposit.pack",
     "TribolabError": "tribolab.errors",
     "plot": "",
     "rig": "",
@@ -163,6 +164,7 @@ __all__ = [
     "repeatability",
     "history",
     "measuring_plan",
+    "pack",
     "TribolabError",
     "plot",
     "rig",
@@ -186,6 +188,7 @@ if TYPE_CHECKING:
     from tribolab.contact.persson import contact_area_ratio, mean_separation
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
+    from tribolab.deposit.pack import pack
     from tribolab.draft.draft import draft_dialect
     from tribolab.draft.read import read
     from tribolab.draft.scans import read_scans

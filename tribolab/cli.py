@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.comparing import compare, history, plan, repeatability
+from tribolab.app.packing import pack
 from tribolab.app.progress import progress_bars
 from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, fail, reported
 from tribolab.app.streams import prepared, say
@@ -385,7 +386,7 @@ def dialect(
         print_next(draft, written, console())
 
 
-for _command in (compare, repeatability, history, plan):
+for _command in (compare, repeatability, history, plan, pack):
     app.command()(_command)
 
 
