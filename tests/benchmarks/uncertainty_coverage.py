@@ -47,8 +47,8 @@ RIG = Rig(Protocol(SPEEDS, stroke=0.15e-3), force_cell=CELL)
 LAW = friction_law("Sb-S", "glycerol", LOAD)
 NO_SLIP = StickSlip()
 SHARED = {
-    "friction_gain": 0.006,
-    "normal_gain": 0.005,
+    "friction_gain": 0.008,
+    "normal_gain": 0.006,
     "cross_talk_friction_from_normal": 0.003,
     "cross_talk_normal_from_friction": 0.003,
     "friction_linearity": 0.06,

@@ -145,14 +145,14 @@ def process_curve(task: CurveTask) -> CurveRecord:
     """
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
-    from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_groups
+    from tribolab.records.budget_rows import budget_rows
     from tribolab.records.frames import curve_table, plain_rows
 
     with NETCDF:
         parts = [read_groups(task.folder / n, ("friction", SLIP)) for n in task.data_files]
     frictions = [part["friction"] for part in parts]
-    curve = measured_stribeck_curve(frictions)
+    curve = _with_budget(frictions)
     levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
@@ -182,12 +182,20 @@ def process_curve(task: CurveTask) -> CurveRecord:
         Origin(str(curve.attrs.get("source", "")), str(curve.attrs.get("source_sha256", ""))),
         reason,
         points_found,
+        tuple(budget_rows(curve)),
+        str(curve.attrs["uncertainty_says"]),
     )
+
+
+def _with_budget(frictions: list[xr.Dataset]) -> xr.Dataset:
+    """Combine runs into a curve whose points have their whole uncertainty."""
+    from tribolab.metrology.budget import uncertainty_budget
+
+    return uncertainty_budget(frictions).data
 
 
 def _as_found(task: CurveTask) -> xr.Dataset | None:
     """Return the curve as it would be without a person's decisions; None if nobody decided."""
-    from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_groups
 
     if not task.found_files:
@@ -195,7 +203,7 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     wanted = ("friction", FRICTION_AS_FOUND)
     with NETCDF:
         parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
-    return measured_stribeck_curve([part.get(wanted[1], part[wanted[0]]) for part in parts])
+    return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])
 
 
 def _condition(run: RunOutcome) -> Condition:

@@ -77,7 +77,7 @@ def uncertainty_budget(
     if isinstance(friction, xr.Dataset):
         known = known_uncertainties(friction, uncertainty)
         return UncertaintyBudget(with_uncertainty(friction, known), known)
-    known = known_uncertainties(friction[0] if friction else xr.Dataset(), uncertainty)
+    known = known_uncertainties(friction[0] if len(friction) else xr.Dataset(), uncertainty)
     curve = measured_stribeck_curve(friction, speed_tolerance)
     return UncertaintyBudget(with_curve_uncertainty(curve, friction, known), known)
 

@@ -23,11 +23,28 @@ _POINT = Columns(
         "friction_coefficient_std": "pooled standard deviation within the segments",
         "friction_coefficient_sem": "standard error of the mean: between runs where `runs` is 2 or "
         "more, else within the run",
+        "friction_coefficient_u": "combined standard uncertainty, without Student's factor",
+        "friction_coefficient_dof": "its degrees of freedom; null where they are without limit",
+        "friction_coefficient_U95": "expanded uncertainty: the friction coefficient lies within "
+        "it with 95 %, as far as uncertainty_says does not say what is left out",
     },
     known=("sliding_speed_m_s",),
     open=True,
 )
 Point = Annotated[Row, _POINT]  # of a measured curve
+_PART = Columns(
+    {
+        "sliding_speed_m_s": "",
+        "part": "name of the input, or of the scatter",
+        "contribution": "by how much one standard uncertainty of it moves the coefficient, signed",
+        "share": "of the variance",
+        "dof": "degrees of freedom; null where they are without limit",
+    },
+    texts=("part",),
+    known=("sliding_speed_m_s",),
+    row="one part of the uncertainty of one point; every column of tables/uncertainty_budget.csv",
+)
+BudgetRow = Annotated[Row, _PART]  # of a measured curve
 
 
 @dataclass(frozen=True)
@@ -51,6 +68,10 @@ class CurveRecord:
         Why there is no stick-slip over speed; "" if there is.
     points_as_found
         What `points` would be without a person's decisions; none where that is the same.
+    budget
+        A row for each point and each part of its uncertainty.
+    uncertainty_says
+        What the uncertainty does not hold; "" where it holds all.
     """
 
     outcome: CurveOutcome
@@ -60,6 +81,8 @@ class CurveRecord:
     origin: Origin = Origin()
     no_slip: str = ""
     points_as_found: tuple[Point, ...] = ()
+    budget: tuple[BudgetRow, ...] = ()
+    uncertainty_says: str = ""
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,8 @@ def reported_curve(curve: CurveRecord) -> ReportedCurve:
         outcome.run_names,
         curve.points,
         curve.points_as_found,
+        curve.budget,
+        curve.uncertainty_says,
     )
 
 

@@ -286,6 +286,10 @@ def _write_tables(
         for curve in curves:
             yield from labelled("curve", curve.outcome.name, curve.outcome, curve.points)
 
+    def budget() -> Iterator[Row]:
+        for curve in curves:
+            yield from labelled("curve", curve.outcome.name, curve.outcome, curve.budget)
+
     def checks() -> Iterator[Row]:
         for record in records():
             for row in record.facts.checks:
@@ -298,6 +302,8 @@ def _write_tables(
     tables.write_rows(static_friction, folder / "static_friction.csv", ["run", "segment"])
     first = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
     tables.write_rows(stribeck, folder / "stribeck.csv", first)
+    first = ["curve", *tables.LABELS, "sliding_speed_m_s", "part", "contribution", "share", "dof"]
+    tables.write_rows(budget, folder / "uncertainty_budget.csv", first)
     first = ["run", "check", "variable", "status", "value", "unit", "message"]
     tables.write_rows(checks, folder / "checks.csv", first)
     decisions.write_tables(outcome, curves, folder)

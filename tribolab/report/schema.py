@@ -17,7 +17,7 @@ from tribolab.records.joint_record import JointRecord
 from tribolab.records.judgement import Limits
 from tribolab.records.mode_record import EvidenceRow
 from tribolab.records.model_rows import FITTED
-from tribolab.records.part_records import FigureRecord, Point
+from tribolab.records.part_records import BudgetRow, FigureRecord, Point
 from tribolab.records.parts import Row
 from tribolab.records.run_record import RunFacts
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
@@ -118,6 +118,10 @@ class ReportedCurve:
     points_as_found: Annotated[
         tuple[Point, ...],
         means("what points would be without a person's decisions; none where that is the same"),
+    ]
+    budget: Annotated[tuple[BudgetRow, ...], means("the parts of the points' uncertainty")]
+    uncertainty_says: Annotated[
+        str, means("what the points' uncertainty does not hold; empty where it holds all")
     ]
 
 

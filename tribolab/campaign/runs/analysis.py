@@ -106,15 +106,24 @@ def _examined(
 ) -> tuple[xr.Dataset, xr.Dataset, Findings]:
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.metrology.budget import known_uncertainties, with_uncertainty
     from tribolab.qc.run_checks import check_run
 
     let_go()
-    friction = friction_coefficient(signals, segments, **run.friction)
+    friction = friction_coefficient(_stated(run, signals), segments, **run.friction)
+    if "friction_coefficient" in friction:
+        friction = with_uncertainty(friction, known_uncertainties(friction))
     let_go()
     friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
     let_go()
     return friction, slip, check_run(signals, segments, friction, slip, **run.quality)
+
+
+def _stated(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
+    """Return the signals with all that is stated of their calibration: the campaign file first."""
+    stated = signals.attrs.get("uncertainty", {}) | run.uncertainty
+    return signals.assign_attrs(uncertainty=stated) if stated else signals
 
 
 def _read(run: PlannedRun) -> xr.Dataset:

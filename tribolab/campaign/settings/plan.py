@@ -53,6 +53,8 @@ class PlannedRun:
         Arguments of `find_segments` and `friction_coefficient`.
     quality
         Arguments of `check_run`: limits, skip, contact_width.
+    uncertainty
+        Standard uncertainties that the campaign file states, by name, in SI.
     config_sha256
         Checksum of all of these, and of the dialect's content.
     reading_sha256
@@ -75,6 +77,7 @@ class PlannedRun:
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
+    uncertainty: Arguments = field(default_factory=dict)
     config_sha256: str = ""
     reading_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
@@ -285,6 +288,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),
+        "uncertainty": campaign.uncertainty.plain(),
     }
     reading = {
         "instrument": entry.instrument,
