@@ -67,6 +67,7 @@ _PUBLIC = {
     "work_of_adhesion_spread": "tribolab.contact.work_of_adhesion",
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "with_shear_stress": "tribolab.lubrication.stribeck",
+    "liquid_viscosity": "tribolab.lubrication.viscosity",
     "film_profile": "tribolab.lubrication.stribeck",
     "relative_flow_factors": "tribolab.lubrication.relative_factors",
     "flow_factors": "tribolab.lubrication.factors",
@@ -144,6 +145,7 @@ __all__ = [
     "work_of_adhesion_spread",
     "stribeck_curve",
     "with_shear_stress",
+    "liquid_viscosity",
     "film_profile",
     "flow_factors",
     "fit_shear_stress",
@@ -215,6 +217,7 @@ if TYPE_CHECKING:
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.relative_factors import relative_flow_factors
     from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
+    from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
     from tribolab.mode.model import Mode
     from tribolab.mode.verdict import sliding_mode

@@ -216,7 +216,9 @@ def _all_known(
 def _known(campaign: Campaign, record: CurveRecord, surface: SurfaceRecord | None) -> Mode:
     curve = record.outcome
     medium = campaign.medium.get(curve.medium)
-    fluid = curve.medium != "dry" if medium is None else medium.viscosity is not None
+    fluid = (
+        curve.medium != "dry" if medium is None else campaign.viscosity_of(curve.medium) is not None
+    )
     mode = Mode(youngs_modulus=campaign.contact.youngs_modulus, fluid=fluid)
     rows = surface.rows if surface else None
     adhesion = [row for row in rows.adhesion if row["medium"] == curve.medium] if rows else []

@@ -14,6 +14,7 @@ from scipy.special import comb
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
 from tribolab.friction.stribeck import measured_stribeck_curve
@@ -43,6 +44,7 @@ def fit_shear_stress(
     common_freedom: float = np.inf,
     spectrum_error: tuple[float, float] | None = None,
     curve: xr.Dataset | None = None,
+    abscissa_error: float = 0.0,
     **model: Any,
 ) -> ShearStressFit:
     """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
@@ -52,7 +54,9 @@ def fit_shear_stress(
     measured
         ``friction_coefficient`` (sliding_speed) with ``_sem`` or, failing that, ``_std``. Points
         that are not finite are left out, as is speed 0. The segments of one run, as
-        `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first.
+        `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first. Parts
+        of the uncertainty that the points share (``uncertainty_part``, from
+        `tribolab.uncertainty_budget`) are taken for such.
     contact, psd, viscosity, load
         As for `stribeck_curve`, with one load.
     speed_range
@@ -72,6 +76,9 @@ def fit_shear_stress(
     curve
         The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
         speeds (and others), with ``"0 Pa"``.
+    abscissa_error
+        Relative standard uncertainty [1] of viscosity times speed, the same along the curve; not
+        with a free viscosity, which takes it up.
     **model
         Further arguments of `stribeck_curve`, such as ``rough_body``.
 
@@ -92,6 +99,9 @@ def fit_shear_stress(
     is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
     An error that all points share cannot be averaged away. It does not move the estimate; it moves
     sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
+    What the points share by their calibration, and by the abscissa, is in their covariance, ``C =
+    diag(e^2) + sum c c^T u^2`` with ``c = d mu/d ln(viscosity v)`` for the latter (`PointErrors`):
+    regression, chi-square and the error of sigma_f are those of generalised least squares.
     The errors of neighbouring speeds may go together, since a run's level wanders: how much is
     told by the residuals, and the error bar grows with it (`residual_error`).
     The runs test is that of Wald and Wolfowitz [1]_, exact and one-sided; the ratio is
@@ -129,7 +139,10 @@ def fit_shear_stress(
             f"a standard error, finite and not negative, is wanted; got {area_enhancement_error:g}",
             function="area_enhancement_error",
         )
+    measured = _over_speed(measured)
     speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
+    shared = shared_errors(measured, speed) if source != "scatter" else np.zeros((0, speed.size))
+    errors = PointErrors(error, shared)
 
     def computed(extra: np.ndarray) -> xr.Dataset:
         if curve is not None and not free:
@@ -148,26 +161,34 @@ def fit_shear_stress(
             function="fit_shear_stress",
         )
     if free:
-        best = _profiled(computed, start, mu[used], error[used], used)
+        best = _profiled(computed, start, mu[used], errors.at(used), used)
         model_curve = computed(best)
     fluid, area = _parts(model_curve)
     area = np.where(area > least, area, 0.0)
-    stress = _regression(mu[used], fluid[used], area[used], error[used])
+    stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
+    if abscissa_error > 0 and "viscosity" not in free:
+        dense = model_curve if curve is None or free else curve
+        steep = _slope(dense, stress, speed)
+        errors = errors.with_part(abscissa_error * steep)
+        stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
     residual = mu - fluid - stress * area
     freedom = int(used.sum()) - 1 - len(free)
     if source == "scatter":
-        error = np.full_like(error, np.sqrt(np.sum(residual[used] ** 2) / freedom))
-    chi_square = float(np.sum((residual[used] / error[used]) ** 2))
+        own = np.full_like(error, np.sqrt(np.sum(residual[used] ** 2) / freedom))
+        errors = errors._replace(own=own)
+    known = errors.at(used)
+    off = known.whitened(residual[used])
+    chi_square = float(off @ off)
     birge = float(np.sqrt(chi_square / freedom))
-    jacobian = _jacobian(computed, best, stress, area, used) / error[used, None]
+    jacobian = known.whitened(_jacobian(computed, best, stress, area, used))
     covariance = _covariance(jacobian, np.exp(best))
-    level = ((fluid + stress * area) / error)[used]
-    shared = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
+    level = known.whitened((fluid + stress * area)[used])
+    common = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
     spread = float(np.sqrt(covariance[0, 0]))
     scatter = residual_error(
-        residual[used],
-        jacobian * error[used, None],
-        error[used],
+        off,
+        jacobian,
+        np.ones(off.size),
         np.log(speed[used]),
         known=source != "scatter",
     )
@@ -186,9 +207,9 @@ def fit_shear_stress(
         chi_square_p_value=float(stats.chi2.sf(chi_square, freedom)),
         birge_ratio=birge,
         runs_p_value=runs_p_value(residual[used]),
-        common_error=shared,
+        common_error=common,
         common_freedom=float(common_freedom),
-        valid_speed_range=_valid_range(speed, mu, fluid, area, error, used),
+        valid_speed_range=_valid_range(speed[used], mu[used], fluid[used], area[used], known),
         area_enhancement=enhancement,
         area_enhancement_error=float(area_enhancement_error),
         error_from=source,
@@ -233,10 +254,14 @@ def runs_p_value(residual: np.ndarray) -> float:
     return float(ways / comb(plus + minus, plus))
 
 
-def _points(
-    measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
-    """Speeds, friction, errors, which to use, and where the errors come from."""
+def _over_speed(measured: xr.Dataset) -> xr.Dataset:
+    """Return the measured curve in the order of its speeds; of segments, what they make.
+
+    Raises
+    ------
+    AnalysisError
+        If it is no curve over sliding speeds.
+    """
     given = measured.get("friction_coefficient")
     if given is not None and given.dims == ("segment",):
         measured = measured_stribeck_curve([measured])
@@ -253,7 +278,13 @@ def _points(
             f"measured: a 'friction_coefficient' over 'sliding_speed' is wanted, but it {over}",
             cure=Cure(notebook=cure),
         )
-    measured = measured.sortby("sliding_speed")
+    return measured.sortby("sliding_speed")
+
+
+def _points(
+    measured: xr.Dataset, speed_range: tuple[str | float, str | float] | None, least: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, str]:
+    """Speeds, friction, errors, which to use, and where the errors come from."""
     speed = measured["sliding_speed"].values.astype(float)
     mu = measured["friction_coefficient"].values.astype(float)
     if speed_range is None:
@@ -288,19 +319,26 @@ def _parts(curve: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     return curve["friction_coefficient"].values, curve["friction_per_shear_stress"].values
 
 
-def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, error: np.ndarray) -> float:
-    weighted = area / error**2
-    return float(weighted @ (mu - fluid) / (weighted @ area))
+def _regression(mu: np.ndarray, fluid: np.ndarray, area: np.ndarray, errors: PointErrors) -> float:
+    solid = errors.whitened(area)
+    return float(solid @ errors.whitened(mu - fluid) / (solid @ solid))
+
+
+def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
+    """Return d mu/d ln v of the computed curve at speeds; viscosity acts as the speed does."""
+    fluid, area = _parts(curve)
+    place = np.log(curve["sliding_speed"].values)
+    return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
 
 
 def _profiled(
-    computed: _Computed, start: np.ndarray, mu: np.ndarray, error: np.ndarray, used: np.ndarray
+    computed: _Computed, start: np.ndarray, mu: np.ndarray, errors: PointErrors, used: np.ndarray
 ) -> np.ndarray:
     """Logarithms of the free parameters at the least squares; sigma_f follows from each."""
 
     def residual(extra: np.ndarray) -> np.ndarray:
         fluid, area = (part[used] for part in _parts(computed(extra)))
-        return (mu - fluid - _regression(mu, fluid, area, error) * area) / error
+        return errors.whitened(mu - fluid - _regression(mu, fluid, area, errors) * area)
 
     steps = np.full(start.size, _STEP)
     fit = least_squares(residual, start, diff_step=steps, x_scale=1.0, xtol=1e-6, ftol=1e-8)
@@ -338,11 +376,9 @@ def _valid_range(
     mu: np.ndarray,
     fluid: np.ndarray,
     area: np.ndarray,
-    error: np.ndarray,
-    used: np.ndarray,
+    errors: PointErrors,
 ) -> tuple[float, float]:
     """Find the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
-    speed, mu, fluid, area, error = (a[used] for a in (speed, mu, fluid, area, error))
     best, widest = (np.nan, np.nan), 0.0
     for first in range(speed.size):
         for stop in range(first + _FEWEST, speed.size + 1):
@@ -350,8 +386,9 @@ def _valid_range(
             width = np.log(speed[stop - 1] / speed[first])
             if width <= widest or not np.any(area[part] > 0):
                 continue
-            stress = _regression(mu[part], fluid[part], area[part], error[part])
-            miss = (mu[part] - fluid[part] - stress * area[part]) / error[part]
+            known = errors.at(part)
+            stress = _regression(mu[part], fluid[part], area[part], known)
+            miss = known.whitened(mu[part] - fluid[part] - stress * area[part])
             if stats.chi2.sf(float(miss @ miss), stop - first - 1) > _LIKELY:
                 best, widest = (float(speed[first]), float(speed[stop - 1])), width
     return best

@@ -6,8 +6,6 @@ import math
 import re
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-
 from tribolab.errors import AnalysisError, nearest, shown
 from tribolab.units import to_si
 
@@ -191,6 +189,8 @@ def _glycerol(celsius: float, water: float) -> float:
 
 def _oil(nominal: float, kelvin: float) -> Viscosity:
     """Viscosity of a silicone oil of so many mm2/s at 25 degrees Celsius."""
+    from scipy.optimize import brentq  # who names no oil waits for nothing
+
     density, falls = _of_grade(nominal)
 
     def kinematic(slope: float, at: float) -> float:

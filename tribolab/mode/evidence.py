@@ -9,6 +9,7 @@ import xarray as xr
 
 from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, STEADY
 from tribolab.friction.oscillation.waveform import UNDECIDED, oscillating
+from tribolab.mode.misfit import is_sufficient
 from tribolab.mode.model import AGAINST, FOR, NEUTRAL, Evidence
 from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text
 from tribolab.words import Count, speed_text
@@ -16,7 +17,6 @@ from tribolab.words import Count, speed_text
 if TYPE_CHECKING:
     from tribolab.mode.model import Mode
 
-SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is sufficient
 FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
 BELOW = 2.0  # times that friction lies below a uniform slip's
 WEAKER = 1.5  # times that drops differ between speeds
@@ -191,7 +191,15 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
     band = ""
     if np.isfinite(inside := numbers["speeds_in_band"]):
         band = f"; {inside:.0f} of {numbers['speeds_with_band']:.0f} speeds lie in the model's band"
-    if off < SUFFICIENT:
+    chance = numbers["model_misfit_p_value"]
+    if np.isfinite(chance):
+        band = f" (probability {chance:.2g} that their errors alone make it so){band}"
+    enough = is_sufficient(numbers)
+    if enough is None:
+        text = "the errors are too large to tell whether the mixed-lubrication model is sufficient:"
+        text += f" it misses the measured curve by {percent_text(off)} of the largest friction"
+        return Evidence(NEUTRAL, f"{text}{band}", "curve")
+    if enough:
         text = "the mixed-lubrication model is sufficient: its curve misses the measured one by"
         text += f" {percent_text(off)} of the largest friction{band}"
         return Evidence(AGAINST, text, "curve")

@@ -11,6 +11,7 @@ from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, one_curve
 from tribolab.friction.oscillation.waveform import UNDECIDED
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
 from tribolab.mode import evidence
+from tribolab.mode.misfit import misfit_numbers
 from tribolab.mode.model import (
     LOCAL,
     NO_STICK_SLIP,
@@ -48,8 +49,9 @@ class SlidingMode:
         measured and computed ``friction_coefficient``.
     numbers
         ``boundary_end_m_s``, ``model_boundary_end_m_s``, ``uniform_friction``,
-        ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit``,
-        ``speeds_in_band`` of ``speeds_with_band``; NaN if unknown.
+        ``forced_wetting_low_m_s``, ``forced_wetting_high_m_s``, ``model_misfit`` with
+        ``_p_value`` and ``_resolved`` (`misfit_numbers`), ``speeds_in_band`` of
+        ``speeds_with_band``; NaN if unknown.
     """
 
     verdict: str
@@ -238,6 +240,8 @@ def _numbers(
         "model_boundary_end_m_s": nan,
         "model_lowest_m_s": nan,
         "model_misfit": nan,
+        "model_misfit_p_value": nan,
+        "model_misfit_resolved": nan,
         "uniform_friction": nan,
         "uniform_stress_Pa": nan,
         "forced_wetting_low_m_s": nan,
@@ -251,8 +255,7 @@ def _numbers(
         if "solid_load_share" in model:
             numbers["model_boundary_end_m_s"] = end_of_boundary(place, model_regimes(model))
         off = curve["friction_coefficient_model"].values - mu
-        if np.isfinite(off).any():
-            numbers["model_misfit"] = float(np.sqrt(np.nanmean(off**2)) / np.nanmax(mu))
+        numbers |= misfit_numbers(measured, model, off)
     stress, area, pressure = known.rough_shear_stress, known.area_ratio, known.pressure
     if stress is not None and area is not None and pressure is not None:
         numbers["uniform_stress_Pa"] = stress * area

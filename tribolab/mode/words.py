@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
+from tribolab.mode.misfit import is_sufficient
 from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
@@ -47,7 +48,10 @@ def verdict_text(
             steady += f"{Count(slip.sizes['sliding_speed']):speed|speeds} not decided"
         if not modelled or np.isnan(off):
             return steady
-        if off < 0.10:
+        enough = is_sufficient(numbers)
+        if enough is None:
+            return f"{steady}; the errors are too large to tell whether the model is sufficient"
+        if enough:
             return f"{steady}; the mixed-lubrication model is sufficient"
         return (
             f"{steady}; the mixed-lubrication model is not sufficient, "

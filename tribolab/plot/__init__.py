@@ -6,6 +6,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tribolab.plot.budget import uncertainty_budget
     from tribolab.plot.compared import differences, forest
     from tribolab.plot.contact import (
         adhesive_area,
@@ -81,6 +82,7 @@ _HOMES = {
     "strokes": "tribolab.plot.panels",
     "svg": "tribolab.plot.style",
     "trace": "tribolab.plot.runs",
+    "uncertainty_budget": "tribolab.plot.budget",
     "viscoelastic": "tribolab.plot.surfaces",
     "waveform_map": "tribolab.plot.stick_slip",
 }
@@ -125,6 +127,7 @@ __all__ = [
     "stribeck",
     "svg",
     "trace",
+    "uncertainty_budget",
     "viscoelastic",
     "waveform_map",
 ]

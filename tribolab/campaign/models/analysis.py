@@ -73,6 +73,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         _, low, high = _enhancement(model, folder)
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
         groups["fit"] = beside(fit, measured).assign_attrs(bounds)
+    groups["curve"].attrs["abscissa_error"] = model.abscissa_error
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
@@ -109,6 +110,7 @@ def _fit(
         common_error=model.repeatability / np.sqrt(runs),
         common_freedom=model.freedom,
         curve=computed,
+        abscissa_error=model.abscissa_error,
     )
 
 

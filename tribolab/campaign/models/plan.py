@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
+_95 = 1.959963984540054
 _DIGITS = 2  # of a repeatability: one more run must not make every model new
 
 
@@ -43,6 +44,8 @@ class PlannedModel:
         Whether the model's own uncertainty is computed.
     repeatability, freedom
         Relative standard deviation of a run's friction level, and its degrees of freedom.
+    abscissa_error
+        Relative standard uncertainty of viscosity times speed.
     missing
         What the campaign knows too little of; "" if a model can be computed.
     source, source_sha256
@@ -62,6 +65,7 @@ class PlannedModel:
     uncertain: bool
     repeatability: float
     freedom: int
+    abscissa_error: float = 0.0
     missing: str = ""
     source: str = ""
     source_sha256: str = ""
@@ -101,12 +105,12 @@ def plan_models(
     wet = [
         (curve, viscosity)
         for curve in done
-        if curve.outcome.medium in campaign.medium
-        and (viscosity := campaign.medium[curve.outcome.medium].viscosity) is not None
+        if (viscosity := campaign.viscosity_of(curve.outcome.medium)) is not None
     ]
     if not wet:
         return ()
     spread, freedom = _repeatability(done)
+    stated = {name: entry["standard"] for name, entry in campaign.uncertainty.plain().items()}
     known = {surface.outcome.name: surface for surface in surfaces}
     contact = campaign.contact.line()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty"})
@@ -121,9 +125,10 @@ def plan_models(
             curve=curve,
             surface_file=surface.outcome.data_file if surface else "",
             contact=contact,
-            viscosity=viscosity,
-            viscosity_range=campaign.medium[curve.medium].viscosity_range,
-            youngs_modulus_range=campaign.contact.youngs_modulus_range,
+            viscosity=viscosity.value,
+            viscosity_range=viscosity.bounds,
+            youngs_modulus_range=_modulus_range(campaign),
+            abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
             settings=settings,
             leading=first,
             uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),
@@ -134,6 +139,16 @@ def plan_models(
         planned.append(model if missing or surface is None else _sealed(model, record, surface))
     order = {curve.outcome.name: number for number, curve in enumerate(done)}
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
+
+
+def _modulus_range(campaign: Campaign) -> tuple[float, float] | None:
+    """Return between which values [Pa] Young's modulus is, as stated or by its uncertainty."""
+    modulus, stated = campaign.contact.youngs_modulus, campaign.contact.youngs_modulus_range
+    known = campaign.uncertainty.plain().get("youngs_modulus")
+    if stated is not None or modulus is None or known is None:
+        return stated
+    factor = float(np.exp(_95 * known["standard"]))
+    return modulus / factor, modulus * factor
 
 
 def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | None) -> str:

@@ -15,11 +15,13 @@ from tribolab.campaign.settings.fields import (
     Patterns,
     PositiveSi,
     ShareOfEnds,
+    ShareOfMass,
     Si,
     Spread,
     Text,
     ZeroPlace,
 )
+from tribolab.campaign.settings.media import MediumViscosity, medium_viscosity
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.io.uncertainty import Uncertainty
 from tribolab.untyped import Arguments, Json
@@ -106,7 +108,12 @@ class Medium(Table):
     ) = None
     """Between which values it is uncertain; contact areas get bounds from it."""
     temperature: Annotated[float, PositiveSi("K", "20 °C")] | None = None
-    """Temperature at which it was measured."""
+    """Temperature at which it was measured; with it the viscosity of "glycerol", "water" and
+    "silicone oil 1000 cSt" (any grade) is known where none is stated."""
+    water_content: ShareOfMass | None = None
+    """Mass fraction of water in glycerol."""
+    liquid: Text | None = None
+    """What it is, where the table's name does not say it: "silicone oil 350 cSt"."""
 
 
 class Segments(Table):
@@ -381,6 +388,26 @@ class Campaign(Table):
     def scan_quality_options(self) -> Arguments:
         """Return the arguments of `check_scan_set` for the scans of a surface."""
         return self.qc.scan_options()
+
+    def viscosity_of(self, medium: str) -> MediumViscosity | None:
+        """Return the viscosity of a medium, stated or from its temperature; None if not known.
+
+        Parameters
+        ----------
+        medium
+            Name of a [medium.*] table.
+        """
+        table = self.medium.get(medium)
+        if table is None:
+            return None
+        return medium_viscosity(
+            table.liquid or medium,
+            table.viscosity,
+            table.viscosity_range,
+            table.temperature,
+            table.water_content,
+            self.uncertainty,
+        )
 
     @property
     def name(self) -> str:

@@ -153,6 +153,22 @@ MiddleShare = Annotated[
 ]
 
 
+# a part of a mass, up to all of it
+ShareOfMass = Annotated[
+    float,
+    Field(ge=0, le=1),
+    BeforeValidator(_share),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "minimum": 0, "maximum": 1},
+                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["1 %"]},
+            ]
+        }
+    ),
+]
+
+
 def _place(value: Any) -> str:
     """Check where a zero is read."""
     try:

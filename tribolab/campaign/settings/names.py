@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.plan import instrument_of
 from tribolab.campaign.settings.problems import Problem
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.lubrication.viscosity import LIQUIDS, knows_liquid
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -39,6 +40,7 @@ def of_names(campaign: Campaign) -> list[Problem]:
         if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
             what = f"must go from below to above {name}"
             found.append(Problem((*where, f"{name}_range"), what))
+    found += _of_liquids(campaign)
     if not campaign.run and not any(surface.scans for surface in campaign.surface):
         what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
         found.append(Problem(("run",), what))
@@ -59,6 +61,22 @@ def of_names(campaign: Campaign) -> list[Problem]:
             found.append(Problem(("run", number, "medium"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
             found.append(Problem(("run", number, "instrument"), what))
+    return found
+
+
+def _of_liquids(campaign: Campaign) -> list[Problem]:
+    """Liquids that are not known, or none at their temperature."""
+    found = []
+    for name, medium in campaign.medium.items():
+        if medium.liquid is not None and not knows_liquid(medium.liquid):
+            what = f"no liquid '{shown(medium.liquid)}' is known{nearest(medium.liquid, LIQUIDS)}"
+            found.append(Problem(("medium", name, "liquid"), what))
+            continue
+        try:
+            campaign.viscosity_of(name)
+        except TribolabError as error:
+            key, _, what = str(error).partition(": ")
+            found.append(Problem(("medium", name, key), what))
     return found
 
 

@@ -1,0 +1,79 @@
+"""Viscosity of the media of a campaign: stated, or of a liquid known by name at its temperature."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from tribolab.io.uncertainty import Known, Uncertainty
+
+_95 = 1.959963984540054
+
+
+class MediumViscosity(NamedTuple):
+    """Viscosity of a medium and how well it is known.
+
+    Parameters
+    ----------
+    value
+        [Pa s]
+    error
+        Relative standard uncertainty [1]; 0 where nothing is known of it.
+    bounds
+        Between which values [Pa s] it is with 95 %; None where nothing is known.
+    """
+
+    value: float
+    error: float
+    bounds: tuple[float, float] | None
+
+
+def medium_viscosity(
+    name: str,
+    viscosity: float | None,
+    bounds: tuple[float, float] | None,
+    temperature: float | None,
+    water_content: float | None,
+    uncertainty: Uncertainty,
+) -> MediumViscosity | None:
+    """Return the viscosity of a medium; None if neither it nor its temperature is stated.
+
+    Parameters
+    ----------
+    name
+        What it is called; liquids that are known by name tell how temperature and water act.
+    viscosity, bounds
+        As stated [Pa s].
+    temperature, water_content
+        [K], mass fraction [1].
+    uncertainty
+        What is stated of temperature and water content.
+
+    Raises
+    ------
+    AnalysisError
+        If the liquid is not one at this temperature.
+    """
+    from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
+
+    computed = None
+    if temperature is not None and knows_liquid(name):
+        computed = liquid_viscosity(name, temperature, water_content or 0.0)
+    if viscosity is None and computed is None:
+        return None
+    error = 0.0
+    if bounds is not None:
+        error = math.log(bounds[1] / bounds[0]) / (2 * _95)
+    elif computed is not None:
+        known = uncertainty.plain()
+        kelvin, water = (
+            Known(**known[name]).standard if name in known else 0.0
+            for name in ("temperature", "water_content")
+        )
+        if viscosity is not None:  # measured, not by the formula
+            computed = computed._replace(formula=0.0)
+        error = computed.uncertainty(kelvin, water)
+    value = viscosity if viscosity is not None else computed.value if computed else math.nan
+    if bounds is None and error > 0:
+        bounds = value * math.exp(-_95 * error), value * math.exp(_95 * error)
+    return MediumViscosity(value, error, bounds)
