@@ -343,3 +343,50 @@ def test_keys_are_found_in_every_place_that_toml_has_for_them(where, line):
         text = text.replace("[t.s]\nk = 3\n", "").replace("[[t]]\nk = 2\n", "")
         where, line = ("t", 0, "quoted key"), 10
     assert line_of(text, where) == line
+
+
+MEDIUM = """[campaign]
+name = "named media"
+[medium.glycerol]
+temperature = "23 °C"
+water_content = "1 %"
+[medium.oil]
+liquid = "silicone oil 1000 cSt"
+temperature = "25 °C"
+[medium.thick]
+viscosity = "1.4 Pa s"
+[uncertainty.temperature]
+value = "0.5 K"
+as = "half-width"
+[uncertainty.water_content]
+value = "1 %"
+as = "half-width"
+[[run]]
+files = "a.csv"
+"""
+
+
+def test_a_medium_is_known_by_name_at_its_temperature(folder):
+    campaign = load(folder, MEDIUM)
+    glycerol = campaign.viscosity_of("glycerol")
+    assert glycerol.value == pytest.approx(0.872, abs=5e-4)
+    assert glycerol.error == pytest.approx(0.124, abs=0.003)
+    assert glycerol.bounds[0] < 0.8 * glycerol.value and glycerol.bounds[1] > 1.2 * glycerol.value
+    assert campaign.viscosity_of("oil").value == pytest.approx(0.970)
+    assert campaign.viscosity_of("thick") == (1.4, 0.0, None)
+    assert campaign.viscosity_of("dry") is None
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('"23 °C"', '"230 °C"'), r"line 4: medium.glycerol.temperature: .* from 0 to 100 °C"),
+        (("silicone oil 1000 cSt", "silikone oil"), "medium.oil.liquid: no liquid"),
+        (("uncertainty.temperature", "uncertainty.temprature"), "did you mean 'temperature'"),
+        (('"0.5 K"', '"0.5 N"'), "a value in K is wanted"),
+        (('as = "half-width"', 'as = "halfwidth"'), "did you mean 'half-width'"),
+    ],
+)
+def test_what_is_wrong_with_media_and_uncertainties_is_said(folder, change, words):
+    with pytest.raises(ConfigError, match=words):
+        load(folder, MEDIUM.replace(*change))

@@ -14,6 +14,10 @@ GLOSSARY: dict[str, str] = {
     "± scatter of the runs": "Standard deviation of repeated runs about their mean: how far a "
     "single run lies from the others. It stands behind the friction of one run where it is larger "
     "than the error within the run.",
+    "± U95": "Expanded uncertainty: the friction coefficient lies within it with 95 %, by scatter, "
+    "repeats and what is stated of the calibration. Without a calibration it is statistical only.",
+    "Degrees of freedom": "How much an uncertainty rests on, by Welch and Satterthwaite: of few, "
+    "Student's t widens U95; ∞ where it does not hang on few repeats.",
     "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
     "the solids touch and the liquid carries nothing.",
     "Segment": "A stretch of a run at constant speed in one direction: one stroke.",
@@ -91,6 +95,10 @@ HEADS: dict[str, str] = {
     "Standard error": GLOSSARY["± within the run"],
     "Standard deviation": "How far friction varies about its mean while sliding.",
     "Trend": "Change of friction along the segment, and whether chance alone explains it.",
+    "± U95": GLOSSARY["± U95"],
+    "Degrees of freedom": GLOSSARY["Degrees of freedom"],
+    "Standard uncertainty": "Root of the sum of squares of all parts, without Student's t.",
+    "Parts of the variance": "Share of each part in the square of the standard uncertainty.",
     "It holds": "Between runs: " + GLOSSARY["± between runs"] + " Within the run: the scatter "
     "inside the only run.",
     "± within the run": GLOSSARY["± within the run"],

@@ -39,6 +39,7 @@ class Section:
 SECTIONS = (
     Section("answer", "What was found", "sections/answer.html.j2", "runs"),
     Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
+    Section("uncertainty", "Uncertainty and its parts", "sections/uncertainty.html.j2", "curves"),
     Section("model", "Model beside measurement", "sections/model.html.j2", "models"),
     Section(
         "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"

@@ -97,7 +97,7 @@ def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
 def labels_of(run: PlannedRun) -> dict[str, str]:
     """Return what every dataset of a run is labelled with."""
     return {"run_name": run.name} | {
-        key: value for key in ("surface", "medium") if (value := getattr(run, key))
+        key: value for key in ("surface", "medium", "mount") if (value := getattr(run, key))
     }
 
 

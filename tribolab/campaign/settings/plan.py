@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.problems import Problem, message
 from tribolab.campaign.settings.review import REVIEW_FILE, review_beside
 from tribolab.errors import ConfigError, nearest, shown
@@ -37,7 +38,7 @@ class PlannedRun:
         Raw files, absolute.
     labels
         The same relative to the campaign file, as reports show them.
-    surface, medium
+    surface, medium, mount
         "" where the campaign file says nothing.
     normal_force, sliding_speed
         Set-points [N, m/s], if the campaign file gives them.
@@ -78,6 +79,7 @@ class PlannedRun:
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
     uncertainty: Arguments = field(default_factory=dict)
+    mount: str = ""
     config_sha256: str = ""
     reading_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
@@ -123,6 +125,7 @@ def plan(campaign: Campaign) -> Plan:
                 name=name,
                 files=tuple(files),
                 labels=tuple(label_of(campaign, file) for file in files),
+                mount=_mount(entry, files[0]),
                 **settings[id(entry)],
             ),
             decisions.get(name, ()),
@@ -130,6 +133,13 @@ def plan(campaign: Campaign) -> Plan:
         for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
+
+
+def _mount(entry: RunEntry, file: Path) -> str:
+    """Return which mounting of the specimen a run belongs to, stated or in the file's name."""
+    if entry.mount is not None or entry.labels_in_name is None:
+        return entry.mount or ""
+    return NamePattern(entry.labels_in_name).labels(file.stem).get("mount", "")
 
 
 def _decided(run: PlannedRun, decisions: tuple[Decision, ...]) -> PlannedRun:
@@ -299,9 +309,10 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "moving_mass": entry.moving_mass,
         "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
+    mounts = [entry.mount, entry.labels_in_name]
     return settings | {
         "instrument": instrument,
-        "config_sha256": sha256_of(settings | reading),
+        "config_sha256": sha256_of(settings | reading | {"mount": mounts}),
         "reading_sha256": sha256_of(reading),
     }
 

@@ -123,7 +123,7 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
     for row in curve.points:
         points = at_speed(every, float(row["sliding_speed_m_s"] or 0.0))
         error = point_error(row, points)
-        words.append(told(row, error, points))
+        words.append(told(row, error, points, _briefly(curve.uncertainty_says)))
         errors.append(error.size)
         targets.append(points[0].run if points else curve.outcome.run_names[0])
     return Series(
@@ -137,6 +137,11 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
         goes_to=targets,
         **labels_of(curve),
     )
+
+
+def _briefly(says: str) -> str:
+    """Return the first thing that an uncertainty does not hold: the pointer has little room."""
+    return says.partition(";")[0].partition(", because")[0]
 
 
 def _as_found(curve: CurveRecord) -> list[Series]:

@@ -126,8 +126,13 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     return PointError(size, holds, within, scatter if runs > 1 else None)
 
 
-def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) -> str:
-    """Return what the pointer reads at a point of a curve, a line for each thing."""
+def told(
+    row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], says: str = ""
+) -> str:
+    """Return what the pointer reads at a point of a curve, a line for each thing.
+
+    `says` is what its uncertainty does not hold.
+    """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
     lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} ({error.holds})"]
     runs = int(row.get("runs") or 1)
@@ -139,6 +144,10 @@ def told(row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint]) 
             lines.append(f"within the run: ± {number(error.within, 2)}")
     else:
         lines.append("between runs: not known, one run")
+    if (wide := row.get("friction_coefficient_U95")) is not None:
+        dof = row.get("friction_coefficient_dof")
+        lines.append(f"U95: ± {number(wide, 2)}" + (f" (ν = {dof:.2g})" if dof else ""))
+        lines += [says] * bool(says)
     if points:
         samples = sum(point.effective_samples for point in points)
         count = sum(point.segments for point in points)
