@@ -362,7 +362,7 @@ as = "half-width"
 value = "1 %"
 as = "half-width"
 [[run]]
-files = "a.csv"
+files = "friction/*.csv"
 """
 
 

@@ -42,7 +42,7 @@ _PART = Columns(
     },
     texts=("part",),
     known=("sliding_speed_m_s",),
-    row="one part of the uncertainty of one point; every column of tables/uncertainty_budget.csv",
+    row="one part of the uncertainty of one point",
 )
 BudgetRow = Annotated[Row, _PART]  # of a measured curve
 
