@@ -121,8 +121,8 @@ class JointFits(Stage[JointTask, JointRecord, JointRecord]):
                 continue
             members.sort(key=lambda model: model.outcome.normal_force or 0.0)
             outcomes = tuple(replace(model.outcome, seconds=0.0) for model in members)
-            liquid = self._campaign.medium[medium]
-            assert liquid.viscosity is not None  # else there were no models
+            liquid = self._campaign.viscosity_of(medium)
+            assert liquid is not None  # else there were no models
             task = JointTask(
                 name=f"joint_{safe_name('_'.join(filter(None, (surface, medium))))}",
                 surface=surface,
@@ -131,8 +131,8 @@ class JointFits(Stage[JointTask, JointRecord, JointRecord]):
                 measured=tuple(self._files[outcome.curve] for outcome in outcomes),
                 enhancement=tuple(_enhancement(model) for model in members),
                 contact=self._campaign.contact.line(),
-                viscosity=liquid.viscosity,
-                viscosity_range=liquid.viscosity_range,
+                viscosity=liquid.value,
+                viscosity_range=liquid.bounds,
                 folder=self._store.folder,
             )
             files = [*task.measured, *(outcome.data_file for outcome in outcomes)]
