@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from tribolab import plot
@@ -30,8 +31,8 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
             (
                 row["condition"], speed_text(float(row["sliding_speed_m_s"])),
                 *(row[name] for name in names), row["pilot_runs"],
-                duration(row["sliding_time_s"]), row["runs"],
-                duration(row["cheapest_sliding_time_s"]), row["cheapest_runs"],
+                duration(row["sliding_time_s"]), _count(row["runs"]),
+                duration(row["cheapest_sliding_time_s"]), _count(row["cheapest_runs"]),
                 duration(row["time_s"]), duration(row["cheapest_time_s"]),
             )
         )
@@ -55,3 +56,8 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
     verdict = plan_text(plan)
     write_page(page, kind="Plan", heading=heading, verdict=verdict, fine=bool(fine), parts=(part,))
     return page
+
+
+def _count(runs: float) -> int | str:
+    """Return a number of runs as a whole one, or that more than can be thought of are needed."""
+    return int(runs) if math.isfinite(runs) else "out of reach"
