@@ -19,7 +19,7 @@ from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, 
 from tribolab.io.dialects.find import recognise
 from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, is_results, peek
+from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
 
 PathLike = str | Path
 
@@ -216,6 +216,8 @@ def _results(file: File, name: str) -> Draft:
     lines = file.head.decode("latin-1").replace("\r", "").split("\n")
     start = next((n for n, line in enumerate(lines) if line.startswith("// CalcResult")), 0) + 1
     rows = [line.split(";") for line in lines[start:] if line.strip()]
+    if not is_surftest_results(file.head):
+        rows = [list(told) for _, told in named_values(file.head)]
     return Draft(
         path=file.path,
         name=name,

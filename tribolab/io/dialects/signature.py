@@ -122,7 +122,44 @@ def _is_workbook(path: Path) -> bool:
 _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
 
 
+# a roughness parameter, its value (asterisks: not computed) and its unit
+_NAMED = re.compile(
+    r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|Δq|Sm|z1max|max|3z|k|pk|vk)\d?|(?:λ|[Ll])[cs]"
+    r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"
+    r"\s*[;,\t]?\s*(?P<unit>[^\s\d;,*][^\s;,]*)?\s*[;,]*\s*$"
+)
+_FEWEST, _MOST = 3, 200  # lines of results
+
+
 def is_results(head: bytes) -> bool:
+    """Whether a file's first bytes are those of a roughness tester's results."""
+    return is_surftest_results(head) or len(named_values(head)) >= _FEWEST
+
+
+def is_surftest_results(head: bytes) -> bool:
     """Whether a file's first bytes are those of a Surftest results file."""
     text = head[:4096].decode("latin-1").replace("\r", "")
     return text.startswith("// Header") and _MODE.search(text) is not None
+
+
+def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
+    r"""Lines of a roughness parameter: their number from 1, with name, value and unit.
+
+    None of a file in which most lines are something else, such as a profile below its results.
+
+    Examples
+    --------
+    >>> named_values(b"Ra = 0.52 um\nRz\t*.***um\nRsk;-0,31\n")[1:]
+    [(2, ('Rz', '*.***', 'um')), (3, ('Rsk', '-0,31', ''))]
+    """
+    if head.count(b"\n") > _MOST or b"\0" in head[:4096]:
+        return []
+    try:
+        text = head.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = head.decode("latin-1")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    told = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
+    if 2 * len(told) < sum(bool(line.strip()) for line in lines):
+        return []
+    return [(n, (match["name"], match["value"], match["unit"] or "")) for n, match in told]

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, UnitError
-from tribolab.io.dialects.signature import is_results, peek
+from tribolab.io.dialects.signature import is_results, is_surftest_results, peek
 from tribolab.io.scans.formats import result
+from tribolab.io.scans.named_results import read_named_results
 from tribolab.provenance import provenance
 from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
@@ -21,12 +22,13 @@ _NAMES = {"RDq": "Rdq"}
 
 
 def read_tester_results(path: str | Path) -> xr.Dataset:
-    r"""Read the roughness parameters that a Surftest SJ-410 computed itself.
+    r"""Read the roughness parameters that a roughness tester, such as a Surftest, computed itself.
 
     Parameters
     ----------
     path
-        A RES file: ``name;value;unit;condition`` with a decimal comma.
+        A RES file: ``name;value;unit;condition`` with a decimal comma; or lines of a name and a
+        value with its unit, see `tribolab.io.scans.named_results`.
 
     Returns
     -------
@@ -53,8 +55,13 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
     (3.246e-06, 0.0008, 'Rc: Err110')
     """
     file = peek(path)
-    if not is_results(file.head):
-        raise ReadError(f"{file.path}: this is no results file of a Surftest (no 'Mode;RES')")
+    if not is_surftest_results(file.head):
+        if is_results(file.head):
+            return read_named_results(file)
+        raise ReadError(
+            f"{file.path}: these are no results of a roughness tester (neither 'Mode;RES' nor "
+            "lines such as 'Ra = 0.5 um')"
+        )
     attrs: dict[str, str | float] = {"instrument": "surftest_res"}
     values: dict[str, float] = {}
     errors, section = [], ""

@@ -1,0 +1,46 @@
+"""Results of roughness testers as names and values: Latin-1, decimal commas, what is not told."""
+
+import numpy as np
+import pytest
+
+from tribolab.app.file_info import file_lines
+from tribolab.draft.draft import draft_dialect
+from tribolab.draft.scans import read_scans
+from tribolab.errors import ReadError
+from tribolab.io.kinds import kind_of
+from tribolab.io.scans.results import read_tester_results
+
+TEXT = "Report\nRa\t0,523µm\nRq\t0,661 µm\nRz\t*.*******µm\nRsk\t-0,31\nRt\t4,2 µm\nλc\t0,8mm\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
+@pytest.mark.parametrize("separator", ["\t", " = ", ": ", ";"])
+def test_names_and_values_are_results(tmp_path, encoding, separator):
+    text = TEXT if encoding != "latin-1" else TEXT.replace("λc", "Lc")
+    path = tmp_path / "tester.txt"
+    path.write_bytes(text.replace("\t", separator).encode(encoding))
+    found = read_tester_results(path)
+    np.testing.assert_allclose([found.Ra, found.Rq, found.Rsk], [0.523e-6, 0.661e-6, -0.31])
+    assert np.isnan(found.Rz)
+    assert found.attrs["instrument_errors"] == "Rz: *.*******µm"
+    assert found.attrs["lambda_c_m"] == 8e-4 and found.attrs["instrument_Rt_m"] == 4.2e-6
+    assert kind_of(path) == "results"
+    assert any("results of a roughness tester" in line for line in file_lines(path))
+    assert "results of a roughness tester" in draft_dialect(path).answer
+    with pytest.raises(ReadError, match="no profile"):
+        read_scans(path)
+
+
+def test_a_value_without_a_unit_is_refused(tmp_path):
+    path = tmp_path / "tester.txt"
+    path.write_text("Ra = 0.5\nRq = 0.6\nRz = 3\n")
+    with pytest.raises(ReadError, match="line 1, 'Ra': the value has no unit"):
+        read_tester_results(path)
+
+
+def test_a_profile_below_its_results_is_a_profile(tmp_path):
+    path = tmp_path / "line.txt"
+    rows = "".join(f"{n * 0.001:.3f},{n % 7}\n" for n in range(50))
+    path.write_text("Ra = 0.5 um\nRq = 0.6 um\nRz = 3 um\nX [mm],Z [um]\n" + rows)
+    assert kind_of(path) == "unknown"
+    assert read_scans(path).sizes["x"] == 50
