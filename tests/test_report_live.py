@@ -20,6 +20,7 @@ from report_pages import (
     figures_of,
     live_of,
     made,
+    made_with_repeats,
     names,
     page_of,
 )
@@ -148,6 +149,39 @@ def test_what_is_looked_at_stands_in_the_address_and_rules_tables_and_figures(br
         assert names(page, "curves-compared") == [*SYSTEMS[1:], HALF]
         assert "1 hidden" in page.run("document.querySelector('.filters output').textContent")
         assert page.console == page.stopped == []
+
+
+@pytest.mark.slow
+def test_what_the_address_asks_for_and_no_run_has_is_said_and_hides_nothing(browser, alone):
+    said = "document.querySelector('.asked').textContent"
+    every = [*(run[0] for run in RUNS), "broken"]
+    asked = [
+        ("#load=92N", "no run at 92 N (shown is 31 N)", every),
+        ("#surface=Sb-X", "no surface “Sb-X” (all are shown; there are Sb-R and Sb-S)", every),
+        ("#medium=oil", "no medium “oil” (all are shown; there are glycerol and dry)", every),
+        ("#hide=sb-r_7", "no run “sb-r_7”, so nothing of that name is hidden", every),
+        ("#mark=sb-r_7", "nothing named “sb-r_7” to highlight", every),
+        ("#surface=sb-s&run-99", "no place “run-99” on this page", ["sb-s_1", "sb-s_long"]),
+        ("#load=31N&medium=dry", "", ["sb-s_1"]),
+    ]
+    with browser.page(f"{alone.as_uri()}#medium=dry") as page:
+        for address, words, left in asked:
+            page.run(f"location.hash = {json.dumps(address)}")
+            page.wait(f"{said} === {json.dumps(words and f'Asked for, but not here: {words}.')}")
+            assert rows(page) == left, address
+        assert page.run("document.querySelector('.asked').hidden")
+
+
+@pytest.mark.slow
+def test_a_card_that_has_no_curve_at_the_chosen_load_says_which_one_it_shows(
+    browser, tmp_path_factory
+):
+    folder = made_with_repeats(tmp_path_factory.mktemp("loads"))
+    with browser.page(f"{(folder / 'report.html').as_uri()}#load=91N") as page:
+        told = "Array.from(document.querySelectorAll('.instead'), one => one.textContent)"
+        assert page.run(told) == ["No curve at 91 N; shown is 31 N."]
+        page.run("report.view.clear()")
+        assert page.run(told) == []
 
 
 @pytest.mark.slow

@@ -30,10 +30,13 @@ _BARS = (
     "and standard error of the mean (open), which tell nothing of how well a run would repeat."
 )
 _RIG = "What the authors measured is published as a picture without numbers."
-_SLIP = (
+_TRACES = (
     "Traces of the virtual rig. Beside each stands by how much it was shifted, up or down, to be "
-    "told apart; without a word it stands where it is. That Smooth sticks and slips is the "
-    "authors' observation, how far and how often is an assumption of the rig."
+    "told apart; without a word it stands where it is."
+)
+_SLIP = (
+    f"{_TRACES} That Smooth sticks and slips is the authors' observation, how far and how often is "
+    "an assumption of the rig."
 )
 
 
@@ -202,7 +205,8 @@ FIGURES = (
         _SLIP, drawing.wet_traces, wide=True,
     ),
     PaperFigure(
-        "sb-r_dry_and_wet", "discussion", "Sb-R, dry and in glycerol", (SIMULATED,), _SLIP,
+        "sb-r_dry_and_wet", "discussion", "Sb-R, dry and in glycerol", (SIMULATED,),
+        f"{_TRACES} Nothing oscillates: what is seen is the rig's noise.",
         drawing.rough_dry_and_wet, wide=True,
     ),
     PaperFigure(

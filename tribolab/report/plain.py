@@ -61,6 +61,31 @@ def plain_speeds(text: str) -> str:
     return _SPEED.sub(lambda found: plain_speed(float(found[1]) * factors[found[2]]), text)
 
 
+_POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)(?: (m/s)\b)?")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def without_exponents(text: str) -> str:
+    """Return a text in which no number is written as a computer writes it.
+
+    Examples
+    --------
+    >>> without_exponents("below 1e-9 m/s, 7.4e-09 m/s; 1e5 to 2.5e+08 rad/s, 1e-3 of it")
+    'below 1 nm/s, 7.4 nm/s; 10⁵ to 2.5 × 10⁸ rad/s, 0.001 of it'
+    """
+
+    def plainly(match: re.Match[str]) -> str:
+        power = int(match[2])
+        if match[3]:
+            return plain_speed(float(f"{match[1]}e{power}"))
+        if -4 < power < 0:
+            return number(float(f"{match[1]}e{power}"), 6)
+        raised = f"10{str(power).translate(_RAISED)}"
+        return raised if float(match[1]) == 1 else f"{match[1]} × {raised}"
+
+    return _POWER.sub(plainly, text)
+
+
 def listed(words: Sequence[str]) -> str:
     """Return words as a sentence lists them.
 

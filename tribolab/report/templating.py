@@ -23,7 +23,7 @@ from tribolab.records.packed import deflated
 from tribolab.report.answer import conditions, oscillating
 from tribolab.report.glossary import GLOSSARY, HEADS
 from tribolab.report.live.points import run_error
-from tribolab.report.plain import plain_speed, plain_speeds
+from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 from tribolab.report.sections import Section
 from tribolab.untyped import Json
 from tribolab.words import aligned, force_text, number
@@ -32,7 +32,7 @@ _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
-_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "start.js")
+_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "asked.js", "start.js")
 _REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
 _DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
 _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
@@ -73,19 +73,20 @@ def framing(
 
     Notes
     -----
-    Scripts and styles are allowed by their checksums alone. The library is unpacked from the page
-    and started as a ``blob:``; it makes an empty style element, whose checksum is allowed too, and
-    fills it by script.
+    Scripts and styles are allowed by their checksums alone, the library too, which is unpacked from
+    the page. It makes an empty style element, whose checksum is allowed as well, and fills it by
+    script.
     """
     style = "".join(asset(name) for name in _STYLES)
     names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
     scripts = [asset(name) for name in names]
-    hashes = " ".join(f"'{fingerprint(script)}'" for script in scripts)
+    started = [*scripts, asset(_LIBRARY)] if draws else scripts
+    hashes = " ".join(f"'{fingerprint(script)}'" for script in started)
     styles = " ".join(f"'{fingerprint(text)}'" for text in ((style, "") if draws else (style,)))
     policy = (
         "default-src 'none'; img-src data: blob: 'self' file:; connect-src 'none'; "
         f"base-uri 'none'; form-action 'none'; style-src {styles}; "
-        f"script-src {hashes}{' blob:' if draws else ''}"
+        f"script-src {hashes}"
     )
     frame = {"style": style, "scripts": scripts, "sections": sections, "policy": policy}
     frame["library"] = library() if draws else ""
@@ -116,6 +117,7 @@ def environment(folder: Path) -> jinja2.Environment:
         ),
         "speed": plain_speed,
         "plain": plain_speeds,
+        "without_exponents": without_exponents,
         "force": lambda value: "–" if value is None else force_text(value),
         "duration": words.duration,
         "percent": words.percent,

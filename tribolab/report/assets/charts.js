@@ -5,9 +5,23 @@ report.charts = (() => {
   const { plotly, heightOf, state } = report.drawing;
 
   // Figures are made when the reader comes near; on a browser that cannot unpack, a word says so.
+  // One after the other, so that the first of them answers before the last is drawn.
+  const waiting = [];
   const near = new IntersectionObserver((entries) => {
-    for (const entry of entries) if (entry.isIntersecting) show(entry.target);
+    for (const entry of entries) if (entry.isIntersecting) come(entry.target);
   }, { rootMargin: "600px" });
+  function come(figure) {
+    near.unobserve(figure);
+    if (waiting.push(figure) === 1) next();
+  }
+  async function next() {
+    try {
+      await show(waiting[0]);
+    } finally {
+      waiting.shift();
+      if (waiting.length) setTimeout(next);
+    }
+  }
   const sized = new ResizeObserver((entries) => {
     for (const entry of entries) {
       const chart = charts.get(entry.target.closest("figure"));
@@ -24,7 +38,6 @@ report.charts = (() => {
   }
 
   async function show(figure) {
-    near.unobserve(figure);
     try {
       await chartOf(figure).draw();
     } catch (error) {
@@ -35,13 +48,15 @@ report.charts = (() => {
   }
 
   function watch(place) {
-    for (const figure of place.querySelectorAll("figure.live")) {
-      const plot = figure.querySelector(".plot"), { panels, labels } = plot.dataset;
-      const size = panels && plot.clientWidth && heightOf(plot, plot.clientWidth, Number(panels), Number(labels));
+    const plots = Array.from(place.querySelectorAll("figure.live"), (figure) => figure.querySelector(".plot"));
+    const widths = plots.map((plot) => plot.clientWidth); // all are read before the first is written: the page is laid out once
+    plots.forEach((plot, place) => {
+      const { panels, labels } = plot.dataset;
+      const size = panels && widths[place] && heightOf(plot, widths[place], Number(panels), Number(labels));
       if (size) plot.style.minHeight = `${size.plot + size.legend}px`;
       if (size) plot.querySelector(".still")?.setAttribute("height", size.plot + size.legend);
-      near.observe(figure);
-    }
+      near.observe(plot.closest("figure"));
+    });
   }
   const repaint = () => { for (const chart of charts.values()) if (chart.drawn) chart.paint(); };
   addEventListener("appearance", repaint);
@@ -66,6 +81,8 @@ report.charts = (() => {
 
   report.begun.push(() => {
     watch(document);
+    const first = document.querySelector(".cards figure.live");
+    if (first) come(first); // that the reader is near it, nobody has to see first
     report.view.changed(repaint);
     (globalThis.requestIdleCallback ?? setTimeout)(() => prepare().catch(() => {}));
   });

@@ -2,6 +2,7 @@
 // What is packed inside the page, and files that the page hands out. No request leaves it.
 {
   report.bytes = (text) => {
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
     const letters = atob(text), bytes = new Uint8Array(letters.length);
     for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
     return bytes;
@@ -9,8 +10,10 @@
 
   // Fails where the browser has no DecompressionStream (those of before 2023).
   report.unpacked = async (text) => {
-    const packed = new Blob([report.bytes(text)]).stream();
-    return new Uint8Array(await new Response(packed.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+    const { readable, writable } = new DecompressionStream("deflate"), writer = writable.getWriter();
+    const sent = writer.write(report.bytes(text)).then(() => writer.close());
+    const [bytes] = await Promise.all([new Response(readable).arrayBuffer(), sent]);
+    return new Uint8Array(bytes);
   };
 
   report.save = (name, type, content) => {

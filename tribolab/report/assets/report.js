@@ -58,7 +58,7 @@
   addEventListener("scroll", later, { passive: true });
   addEventListener("resize", later);
   fold();
-  follow();
+  later(); // with the first picture of the page: asked now, it would be laid out twice
 })();
 
 const report = {

@@ -236,7 +236,7 @@
     const rows = runs ? held(runs).rows.filter((row) => row.dataset.run !== undefined) : [];
     const shown = rows.filter((row) => !row.hidden).length;
     for (const said of document.querySelectorAll(".filters output")) {
-      const gone = hidden.size ? `, ${hidden.size} hidden` : "";
+      const away = rows.filter((row) => hidden.has(row.dataset.run)).length, gone = away ? `, ${away} hidden` : "";
       said.textContent = shown === rows.length ? `${rows.length} ${rows.length === 1 ? "run" : "runs"}` : `${shown} of ${rows.length} runs${gone}`;
     }
     for (const field of document.querySelectorAll("[data-view]")) if (field.value !== view.get(field.dataset.view)) field.value = view.get(field.dataset.view);

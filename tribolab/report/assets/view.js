@@ -4,16 +4,30 @@
 report.view = (() => {
   const KEYS = ["surface", "medium", "load", "find", "mark", "hide", "status"];
   const listeners = [];
-  let state = {}, anchor = "";
+  const known = JSON.parse(document.querySelector("form[data-known]")?.dataset.known ?? "{}");
+  let state = {}, anchor = "", unknown = [];
+
+  // As the page writes it; what no run has is told (asked.js), and hides nothing.
+  function valid(key, value) {
+    if (!known[key]) return value;
+    const same = (one) => (key === "load" ? /^[\d.e+-]+\s*N?$/i.test(value) && Number.parseFloat(one) === Number.parseFloat(value) : one.toLowerCase() === value.toLowerCase());
+    const kept = known[key].find(same);
+    if (!kept) unknown.push([key, value]);
+    return kept;
+  }
+
+  function decoded(text) {
+    try { return decodeURIComponent(text); } catch { return text; }
+  }
 
   function read() {
     state = {};
     anchor = "";
+    unknown = [];
     for (const part of location.hash.slice(1).split("&")) {
       const [key, value] = part.split("=", 2);
-      if (value === undefined) anchor = anchor || decodeURIComponent(key);
-      else if (KEYS.includes(key) && value) state[key] = decodeURIComponent(value);
-      if (key === "load") state.load = state.load?.replace(/\s*N$/, " N");
+      if (value === undefined) anchor = anchor || decoded(key);
+      else if (KEYS.includes(key) && value) state[key] = valid(key, decoded(value));
     }
   }
 
@@ -44,16 +58,20 @@ report.view = (() => {
   const list = (text) => new Set((text ?? "").split(",").filter(Boolean));
   return {
     get anchor() { return anchor; },
+    get known() { return known; },
+    get unknown() { return unknown; }, // what the address asks for, and no run has
     get(key) { return state[key] ?? ""; },
     set(key, value) {
       if ((state[key] ?? "") === value) return;
       if (value) state[key] = value;
       else delete state[key];
+      unknown = [];
       history.replaceState(null, "", address());
       tell();
     },
     clear() {
       state = {};
+      unknown = [];
       history.replaceState(null, "", address());
       tell();
     },

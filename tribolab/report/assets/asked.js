@@ -1,0 +1,44 @@
+"use strict";
+// What the address asks for and the page does not have: it is said, beside what is shown instead.
+(() => {
+  const { view } = report;
+  const list = (names) => (names.length > 5 ? `${names.slice(0, 4).join(", ")} and ${names.length - 4} more` : names.join(", ").replace(/, ([^,]*)$/, " and $1"));
+
+  function instead(key, value) {
+    const there = view.known[key];
+    if (key === "load") return `no run at ${value.replace(/\s*N$/i, " N")} (shown ${there.length > 1 ? `is the lowest load of each figure; there are ${list(there)}` : `is ${there[0]}`})`;
+    const what = key === "status" ? `no run is “${value}”` : `no ${key} “${value}”`;
+    return `${what} (all are shown; there ${there.length > 1 ? "are" : "is"} ${list(there)})`;
+  }
+
+  const runs = Array.from(document.querySelectorAll("details.run"), ({ dataset }) => dataset);
+  function missing() {
+    const said = view.unknown.filter(([key]) => view.known[key].length).map(([key, value]) => instead(key, value));
+    for (const name of view.hidden) if (!runs.some(({ run }) => run === name)) said.push(`no run “${name}”, so nothing of that name is hidden`);
+    const names = runs.map(({ run, surface, medium, load }) => `${run} ${surface} ${medium} ${load}`);
+    if (view.get("mark") && !names.some((name) => view.marks(name))) said.push(`nothing named “${view.get("mark")}” to highlight`);
+    if (view.anchor && !document.getElementById(view.anchor)) said.push(`no place “${view.anchor}” on this page`);
+    return said;
+  }
+
+  // A card whose curves are of other loads says which one it shows.
+  function card(place) {
+    const loads = Array.from(place.querySelectorAll("[data-at-load]"), (one) => one.dataset.atLoad), wanted = view.get("load");
+    place.querySelector(".instead")?.remove();
+    if (!wanted || !loads.length || loads.includes(wanted)) return;
+    const words = `No curve at ${wanted}; shown is ${loads[0]}.`;
+    place.querySelector("h3").after(Object.assign(document.createElement("p"), { className: "instead missing", textContent: words }));
+  }
+
+  function tell() {
+    const words = missing();
+    for (const place of document.querySelectorAll(".asked")) {
+      place.textContent = words.length ? `Asked for, but not here: ${words.join("; ")}.` : "";
+      place.hidden = !words.length;
+    }
+    document.querySelectorAll(".answer").forEach(card);
+  }
+  view.changed(tell);
+  addEventListener("hashchange", tell); // a place alone changes nothing else
+  tell();
+})();
