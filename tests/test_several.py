@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.signal
 import xarray as xr
 
 import tribolab as tl
@@ -93,3 +94,114 @@ def test_a_list_of_runs_is_analysed_run_by_run():
         assert slip["drop"].equals(tl.stick_slip(run, found)["drop"])
     with pytest.raises(AnalysisError, match="2 runs are given, and 1 datasets as 'segments'"):
         tl.stick_slip(runs, segments[:1])
+
+
+def test_several_trims_are_a_dim_of_segments_and_coefficients():
+    run = tl.rig.simulate_trace("none", noise=0.05, samples=600, speed=1e-5)
+    trims = xr.DataArray([0.0, 0.2, 0.4], dims="trim")
+    several = tl.friction_coefficient(run, tl.find_segments(run, trims))
+    assert several.friction_coefficient.dims == ("trim", "segment")
+    for place, trim in enumerate(trims.values):
+        alone = tl.friction_coefficient(run, tl.find_segments(run, float(trim)))
+        for name in ("friction_coefficient", "friction_coefficient_sem", "samples"):
+            np.testing.assert_array_equal(several[name].isel(trim=place), alone[name])
+
+
+def test_lists_of_conditions_make_the_runs_of_each():
+    short = tl.rig.Rig(tl.rig.Protocol(speeds=(1e-3,)))
+    made = tl.rig.simulate_run("Sb-R", ["dry", "glycerol"], seed=[4, 5], rig=short)
+    alone = tl.rig.simulate_run("Sb-R", "glycerol", seed=5, rig=short)
+    assert [run.name for run in made] == ["sb-r_dry_31N_01", "sb-r_glycerol_31N_01"]
+    assert made[1].force_log.identical(alone.force_log)
+    struck = tl.rig.inject(made, ["", ["spikes", "frozen"]], rng=3)
+    told = [[fault["name"] for fault in run.facts.get("faults", [])] for run in struck]
+    assert told == [[], ["spikes", "frozen"]]
+    # for one run, names are struck one after the other, as ever
+    assert len(tl.rig.inject(made[0], ["spikes", "frozen"], rng=3).facts["faults"]) == 2
+    with pytest.raises(AnalysisError, match="2 for medium, 3 for seed"):
+        tl.rig.simulate_run("Sb-R", ["dry", "glycerol"], seed=[1, 2, 3], rig=short)
+
+
+def test_objections_to_several_runs_stand_in_one_table_by_their_labels():
+    clean = tl.rig.simulate_trace("none", noise=0.02, samples=800, speed=1e-5)
+    frozen = clean.friction_coefficient.copy()
+    frozen[200:600] = frozen[200]
+    both = [clean, clean.assign(friction_coefficient=frozen)]
+    findings = tl.check(both)
+    table = tl.objections(findings, rig=["new", "old"])
+    own = findings[1].table
+    assert (
+        table[table.rig == "old"].check.tolist()
+        == own[own.status.isin(["suspect", "fail"])].check.tolist()
+    )
+    assert "stuck" in set(table[table.rig == "old"].check) - set(table[table.rig == "new"].check)
+    with pytest.raises(AnalysisError, match="1 labels are given for 2"):
+        tl.objections(findings, rig=["new"])
+
+
+def test_the_error_from_blocks_of_noise_with_memory_is_that_of_the_closed_form():
+    rho, n = 0.9, 400_000  # AR(1): variance of the mean is s2 / n (1 + rho) / (1 - rho)
+    noise = np.random.default_rng(8).standard_normal(n)
+    signal = scipy.signal.lfilter([np.sqrt(1 - rho**2)], [1, -rho], noise)
+    blocks = tl.error_from_blocks(signal, [1, 1000])
+    exact = np.sqrt([1 / n, (1 + rho) / (1 - rho) / n])
+    off = (blocks.standard_error - exact) / blocks.standard_error_std
+    assert abs(off.isel(block_length=1)) < 3
+    assert blocks.standard_error[0] == pytest.approx(exact[0], rel=0.02)
+    with pytest.raises(AnalysisError, match="1 to 200000 samples"):
+        tl.error_from_blocks(signal, [n])
+
+
+def test_modes_of_several_surfaces_are_those_of_each():
+    speed = np.geomspace(1e-6, 1e-2, 5)
+    curve = xr.Dataset(
+        {"friction_coefficient": (("surface", "sliding_speed"), [[1.0] * 5, [1, 1, 1, 1, np.nan]])},
+        {"surface": NAMES, "sliding_speed": speed},
+    )
+    kinds = np.array([["smooth sliding"] * 5, ["sawtooth stick-slip"] * 4 + [""]], object)
+    slip = xr.Dataset({"waveform": (("surface", "sliding_speed"), kinds)}, curve.coords)
+    slip["drop"] = curve.friction_coefficient.where(kinds == "sawtooth stick-slip")
+    adhesion = xr.Dataset(
+        {
+            "macroscopic_work_of_adhesion": ("surface", [0.0, 4e-3]),
+            "macroscopic_work_of_adhesion_low": ("surface", [0.0, 1e-3]),
+            "macroscopic_work_of_adhesion_high": ("surface", [0.0, 8e-3]),
+            "contact_area_ratio": ("surface", [0.1, 0.9]),
+        },
+        {"surface": NAMES},
+    )
+    known = tl.Mode(pressure=4.2e4, fluid=False)
+    modes = tl.sliding_modes(curve, None, slip, known, adhesion=adhesion)
+    assert [labels["surface"] for labels, _ in modes] == NAMES
+    assert [mode.verdict for _, mode in modes] == [
+        "no stick-slip",
+        "adhesion-controlled macroscopic instability suspected",
+    ]
+    mine = tl.Mode(
+        pressure=4.2e4,
+        fluid=False,
+        work_of_adhesion=4e-3,
+        work_of_adhesion_range=(1e-3, 8e-3),
+        area_ratio=0.9,
+    )
+    part = [data.isel(surface=1, sliding_speed=slice(4), drop=True) for data in (curve, slip)]
+    alone = tl.sliding_mode(part[0], None, part[1], mine, name=NAMES[1])
+    assert modes.sel(surface=NAMES[1]).paragraph == alone.paragraph
+    assert alone.text in modes._repr_html_() and alone.text in repr(modes)
+    assert set(modes.to_dataframe().surface) == set(NAMES)
+    with pytest.raises(AnalysisError, match="no further dim"):
+        tl.sliding_modes(part[0])
+
+
+def test_stick_slip_of_several_runs_is_drawn_by_its_labels():
+    runs = tl.rig.simulate_trace(["sawtooth", "rounded"], samples=1000, speed=1e-5, seed=[1, 2])
+    slips = tl.stick_slip(runs, tl.find_segments(runs))
+    for draw in (tl.plot.slip_events, tl.plot.slip_spectra):
+        data = tl.plot.figure_data(draw(slips, medium=["dry", "wet"]))
+        assert {"dry", "wet"} <= {*data.panel, *data.series}
+    alone = tl.plot.figure_data(tl.plot.slip_events({"dry": slips[0]}))
+    several = tl.plot.figure_data(tl.plot.slip_events(slips, medium=["dry", "wet"]))
+    mine = several[several.series == "dry"].reset_index(drop=True)
+    np.testing.assert_array_equal(mine.value, alone.value)
+    with pytest.raises(AnalysisError, match="one label for each of 2 results"):
+        tl.plot.slip_events(slips, medium=["dry"])

@@ -37,10 +37,12 @@ _PUBLIC = {
     "without_inertia": "tribolab.friction.moving_mass",
     "static_friction": "tribolab.friction.coefficient.static",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
+    "error_from_blocks": "tribolab.friction.blocks",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
     "check": "tribolab.qc.run_checks",
     "RUN_CHECKS": "tribolab.qc.run_checks",
+    "objections": "tribolab.qc.objections",
     "check_scans": "tribolab.qc.scan_checks",
     "check_scan_set": "tribolab.qc.scan_sets",
     "read_scans": "tribolab.draft.scans",
@@ -78,6 +80,7 @@ _PUBLIC = {
     "DryFriction": "tribolab.fit.joint.inputs",
     "compare_shear_stress_models": "tribolab.fit.joint.comparison",
     "sliding_mode": "tribolab.mode.verdict",
+    "sliding_modes": "tribolab.mode.several",
     "Mode": "tribolab.mode.model",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
@@ -114,10 +117,12 @@ __all__ = [
     "half_loops",
     "uncertainty_budget",
     "stick_slip",
+    "error_from_blocks",
     "stick_slip_curve",
     "measured_stribeck_curve",
     "check",
     "RUN_CHECKS",
+    "objections",
     "check_scans",
     "check_scan_set",
     "read_scans",
@@ -155,6 +160,7 @@ __all__ = [
     "DryFriction",
     "compare_shear_stress_models",
     "sliding_mode",
+    "sliding_modes",
     "Mode",
     "model_uncertainty",
     "viscoelastic_friction",
@@ -202,6 +208,7 @@ if TYPE_CHECKING:
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress
+    from tribolab.friction.blocks import error_from_blocks
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.coefficient.cycles import friction_per_cycle
     from tribolab.friction.coefficient.half_loops import half_loops
@@ -220,7 +227,9 @@ if TYPE_CHECKING:
     from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
     from tribolab.mode.model import Mode
+    from tribolab.mode.several import sliding_modes
     from tribolab.mode.verdict import sliding_mode
+    from tribolab.qc.objections import objections
     from tribolab.qc.run_checks import RUN_CHECKS, check
     from tribolab.qc.scan_checks import check_scans
     from tribolab.qc.scan_sets import check_scan_set

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
 
 import numpy as np
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 R = TypeVar("R")
+R_co = TypeVar("R_co", covariant=True)
 
 
 class OfRuns(Protocol[P, R]):
@@ -59,14 +60,74 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
                     f"{function.__name__}: {count} runs are given, and {len(value)} datasets as "
                     f"{_name(function, key)}; give one for each run"
                 )
-        results = []
-        for number in range(count):
-            mine = {key: value[number] if key in own else value for key, value in given.items()}
-            places = [mine.pop(place) for place in range(len(args))]
-            results.append(function(*places, **mine))
-        return results
+        return [_called(function, given, own, len(args), number) for number in range(count)]
 
     return with_lists
+
+
+class OfLists(Protocol[P, R_co]):
+    """A function that gives a list for lists."""
+
+    @overload
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...
+
+    @overload
+    def __call__(self, *args: Any, **kwargs: Any) -> list[R_co]: ...
+
+
+def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
+    """Let a function take lists for these arguments, and give a list.
+
+    Parameters
+    ----------
+    *names
+        Arguments that may be lists; what is none holds for all.
+    beside
+        One more, whose list is for one call unless another argument is a list too.
+
+    Examples
+    --------
+    >>> @of_lists("load", "speed")
+    ... def named(load, speed, unit="N"):
+    ...     return f"{load} {unit}, {speed}"
+    >>> named(31, speed=["slow", "fast"])
+    ['31 N, slow', '31 N, fast']
+    """
+
+    def decorate(function: Callable[P, R]) -> OfLists[P, R]:
+        places = list(inspect.signature(function).parameters)
+
+        @functools.wraps(function)
+        def with_lists(*args: Any, **kwargs: Any) -> Any:
+            given = dict(zip(places, args, strict=False)) | kwargs
+            own = {name: given[name] for name in names if isinstance(given.get(name), list)}
+            if not own:
+                return function(*args, **kwargs)
+            if isinstance(given.get(beside), list):
+                own[beside] = given[beside]
+            counts = {name: len(value) for name, value in own.items()}
+            if len({*counts.values()}) > 1:
+                told = ", ".join(f"{count} for {name}" for name, count in counts.items())
+                raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {told}")
+            count = next(iter(counts.values()))
+            return [_called(function, given, own, 0, number) for number in range(count)]
+
+        return with_lists
+
+    return decorate
+
+
+def _called(
+    function: Callable[..., R],
+    given: Mapping[Any, Any],
+    own: Mapping[Any, Sequence[Any]],
+    placed: int,
+    number: int,
+) -> R:
+    """Call a function with one thing of each list; so many arguments go by their place."""
+    mine = {key: own[key][number] if key in own else value for key, value in given.items()}
+    places = [mine.pop(place) for place in range(placed)]
+    return function(*places, **mine)
 
 
 def _of_datasets(value: Any) -> bool:
@@ -158,10 +219,12 @@ def one(value: str | float | xr.DataArray) -> str | float:
 
 
 def _cut(value: Any) -> Any:
-    """Leave out the wavenumbers at which this part of several spectra has no value."""
-    if "wavenumber" not in value.dims or not hasattr(value, "data_vars"):
+    """Leave out what this part of several does not have: wavenumbers of spectra, segments."""
+    if not hasattr(value, "data_vars"):
         return value
-    return value.dropna("wavenumber", how="all")
+    for dim in {"wavenumber", "segment"} & {*value.dims}:
+        value = value.dropna(dim, how="all")
+    return value
 
 
 def _array(result: Any, who: str) -> Any:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, shown
+from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
 
 Label = str | float
@@ -52,7 +53,8 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     ----------
     curves
         Each curve (sliding_speed) with what tells it from the others, the same dims for all:
-        names such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N].
+        names such as ``surface`` and ``medium``, or numbers in SI such as ``normal_force`` [N];
+        numbers of other names stay as they are, without a unit.
 
     Returns
     -------
@@ -87,11 +89,20 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
                 empty = np.full(shape, "", object) if text else np.full(shape, np.nan)
                 values.setdefault(str(name), empty)[at] = variable.to_numpy()
     whole = (*dims, "sliding_speed")
-    return stamp(
+    foreign = {dim: axis for dim, axis in axes.items() if _is_foreign(dim, axis)}
+    joined = stamp(
         xr.Dataset(
-            {name: (whole, one) for name, one in values.items()}, axes | {"sliding_speed": speeds}
+            {name: (whole, one) for name, one in values.items()},
+            {dim: axis for dim, axis in axes.items() if dim not in foreign}
+            | {"sliding_speed": speeds},
         )
     )
+    return joined.assign_coords(foreign)
+
+
+def _is_foreign(dim: str, axis: np.ndarray) -> bool:
+    """Whether numbers are of a kind that we have no unit for: a person's own labels."""
+    return axis.dtype != object and dim not in QUANTITIES
 
 
 def _axis(labels: Sequence[Label]) -> np.ndarray:

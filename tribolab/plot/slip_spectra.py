@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.plot.frame import logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.panel import Panels, name_all, several_panels
+from tribolab.plot.several import Label, labelled
 from tribolab.plot.style import (
     BLACK,
     DOUBLE_MM,
@@ -27,17 +28,26 @@ from tribolab.plot.style import (
 
 
 def slip_spectra(
-    slips: Mapping[str, tuple[xr.Dataset, int]], *, axes: Panels | None = None
+    slips: Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset],
+    *,
+    segment: int = 0,
+    axes: Panels | None = None,
+    **labels: Sequence[Label],
 ) -> Figure:
     """Draw the power spectra of segments with their background and what would be significant.
 
     Parameters
     ----------
     slips
-        Label to a result of `stick_slip` and the number of its segment.
+        Label to a result of `stick_slip` and the number of its segment; or such a result, also over
+        further dims; or a list of them.
+    segment
+        The number of the segment of results that come without one.
     axes
         The axes to draw in, one for each segment; they keep their look. Without
         them a figure is made.
+    **labels
+        What tells the results of a list apart, one label for each, e.g. ``run=["dry", "wet"]``.
 
     Returns
     -------
@@ -57,11 +67,14 @@ def slip_spectra(
     >>> slip = tl.stick_slip(run, tl.find_segments(run))
     >>> tl.plot.figure_data(slip_spectra({"dry": (slip, 0)})).series.unique().tolist()
     ['psd']
+    >>> len(slip_spectra([slip, slip], run=["dry", "wet"]).axes)
+    2
     """
-    if not slips:
+    drawn = _chosen(slips, segment, labels)
+    if not drawn:
         raise AnalysisError("there is no spectrum to draw")
-    with several_panels(axes, list(slips), lambda: _grid(len(slips))) as (figure, panels):
-        for panel, (label, (slip, number)) in zip(panels, slips.items(), strict=True):
+    with several_panels(axes, list(drawn), lambda: _grid(len(drawn))) as (figure, panels):
+        for panel, (label, (slip, number)) in zip(panels, drawn.items(), strict=True):
             _spectrum(figure, panel, label, slip, number)
         if axes is None:
             handles, words = panels[0].get_legend_handles_labels()
@@ -69,6 +82,17 @@ def slip_spectra(
         else:
             name_all(panels[0])
     return figure
+
+
+def _chosen(
+    slips: Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset],
+    segment: int,
+    labels: Mapping[str, Sequence[Label]],
+) -> dict[str, tuple[xr.Dataset, int]]:
+    """Return what to draw by its label."""
+    if isinstance(slips, Mapping) and not isinstance(slips, xr.Dataset):
+        return dict(slips)
+    return {name: (slip, segment) for name, slip in labelled(slips, labels, "segment").items()}
 
 
 def _grid(count: int) -> tuple[PaperFigure, list[Axes]]:

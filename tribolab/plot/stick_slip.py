@@ -19,6 +19,7 @@ from tribolab.plot.frame import colours, logarithmic
 from tribolab.plot.labels import plain
 from tribolab.plot.panel import Panels, name_all, several_panels
 from tribolab.plot.reduce import envelope
+from tribolab.plot.several import Label, Results, labelled, parts
 from tribolab.plot.signals import main_signal
 from tribolab.plot.style import (
     BLACK,
@@ -208,19 +209,26 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 
 def slip_events(
-    slips: Mapping[str, xr.Dataset], surfaces: Sequence[str] = (), *, axes: Panels | None = None
+    slips: Results,
+    surfaces: Sequence[str] = (),
+    *,
+    axes: Panels | None = None,
+    **labels: Sequence[Label],
 ) -> Figure:
     """Draw how drops, recurrence distances and durations of the events are distributed.
 
     Parameters
     ----------
     slips
-        Label to a result of `stick_slip`; all its events count.
+        Label to a result of `stick_slip`; or such a result, also over further dims; or a list of
+        them. All events count.
     surfaces
         Not used but for the order of colours.
     axes
         The axes to draw in, three of them; they keep their look. Without
         them a figure is made.
+    **labels
+        What tells the results of a list apart, one label for each, e.g. ``run=["dry", "wet"]``.
 
     Returns
     -------
@@ -237,10 +245,11 @@ def slip_events(
     >>> import tribolab as tl
     >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     >>> slip = tl.stick_slip(run, tl.find_segments(run))
-    >>> len(slip_events({"dry": slip}).axes)
-    3
+    >>> len(slip_events({"dry": slip}).axes), len(slip_events([slip, slip], run=[1, 2]).axes)
+    (3, 3)
     """
-    shown = {label: slip for label, slip in slips.items() if slip.sizes.get("event", 0)}
+    every = labelled(slips, labels, "segment")
+    shown = {label: slip for label, slip in every.items() if slip.sizes.get("event", 0)}
     if not shown:
         raise AnalysisError("there is no event to draw")
     lines = [BLACK, SKY, ORANGE, PURPLE, GREY]
@@ -357,7 +366,8 @@ def waveform_map(
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("sliding speed $v$ (m/s)")
         if ax is None:
-            axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, fontsize=7)
+            handles, words = axes.get_legend_handles_labels()
+            figure.legend(handles, words, loc="upper center", ncols=5, fontsize=7)
         else:
             name_all(ax)
     return figure
@@ -365,10 +375,7 @@ def waveform_map(
 
 def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return the curves of a dataset that holds several by their labels, the last one first."""
-    dims = [dim for dim in curves["waveform"].dims if dim != "sliding_speed"]
-    places = np.ndindex(*(curves.sizes[dim] for dim in dims))
-    parts = [curves.isel(dict(zip(dims, place, strict=True))) for place in places]
-    named = {", ".join(str(part[dim].item()) for dim in dims): one_curve(part) for part in parts}
+    named = {label: one_curve(part) for label, part in parts(curves, "sliding_speed").items()}
     return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 
 

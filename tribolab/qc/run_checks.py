@@ -20,6 +20,7 @@ from tribolab.qc.rig_checks import RIG_CHECKS
 from tribolab.qc.sliding_checks import SLIDING_CHECKS
 from tribolab.qc.subject import RunSubject
 from tribolab.qc.zero_checks import ZERO_CHECKS
+from tribolab.several import of_runs
 from tribolab.units import to_si
 
 RUN_CHECKS: dict[str, Check] = {
@@ -153,13 +154,14 @@ def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
     return results | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
 
 
+@of_runs
 def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:
     """Examine a run: short for `check_run`, with the same options.
 
     Parameters
     ----------
     run, segments
-        The run dataset (time); its segments, found if not given.
+        The run dataset (time); its segments, found if not given. A list of runs gives a list.
     **options
         As for `check_run`: ``friction``, ``slip``, ``limits``, ``skip``, ``normal_force``,
         ``contact_width``.

@@ -15,10 +15,12 @@ from tribolab.qc.flags import FAIL, SUSPECT, attach
 from tribolab.qc.register import Check, Limit, Result, resolve_limits, results_of_checks
 from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan_subject import ScanSubject
+from tribolab.several import of_runs
 from tribolab.surface.level import level_map
 from tribolab.words import Count
 
 
+@of_runs
 def check_scans(
     scans: xr.Dataset,
     *,
@@ -32,7 +34,7 @@ def check_scans(
     ----------
     scans
         ``height`` [m] (scan, x) from `tribolab.draft.scans.read_scans`; a single profile or a map
-        (y, x) will do.
+        (y, x) will do. A list of such datasets gives a list.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip

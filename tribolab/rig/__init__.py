@@ -9,7 +9,7 @@ from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import simulate_run
-from tribolab.rig.simulated import SimulatedRun
+from tribolab.rig.simulated import SimulatedRun, on_one_clock
 from tribolab.rig.traces import simulate_trace
 from tribolab.rig.truth import Truth, read_truth
 
@@ -32,6 +32,7 @@ __all__ = [
     "Truth",
     "friction_law",
     "inject",
+    "on_one_clock",
     "read_truth",
     "scans",
     "simulate_campaign",

@@ -10,6 +10,7 @@ import numpy as np
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.rig import strikes
 from tribolab.rig.simulated import SimulatedRun
+from tribolab.several import of_lists
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ class Fault:
         return self.surface in ("", surface) and self.medium in ("", medium)
 
 
+@of_lists("run", beside="faults")
 def inject(
     run: SimulatedRun, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> SimulatedRun:
@@ -59,9 +61,10 @@ def inject(
     Parameters
     ----------
     run
-        A simulated run; stays as it is.
+        A simulated run; stays as it is. A list of runs gives a list.
     faults
-        Names of faults, in the order in which they strike.
+        Names of faults, in the order in which they strike; for a list of runs a list has those of
+        each run.
     rng
         Seed or generator.
 
@@ -79,7 +82,7 @@ def inject(
     'stuck'
     """
     rng = np.random.default_rng(rng)
-    for name in [faults] if isinstance(faults, str) else faults:
+    for name in [faults] * bool(faults) if isinstance(faults, str) else faults:
         fault = known_fault(name)
         surface, medium = str(run.facts["surface"]), str(run.facts["medium"])
         if not fault.suits(surface, medium):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from tribolab.several import of_lists
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
     return head.encode() + fixed_table(columns, ";")
 
 
+@of_lists("run")
 def write_run(
     run: SimulatedRun, folder: str | Path = ".", date: dt.datetime = FIRST_DAY
 ) -> tuple[Path, Path]:
@@ -109,7 +111,7 @@ def write_run(
     Parameters
     ----------
     run
-        From `simulate_run`.
+        From `simulate_run`; a list of runs gives a list.
     folder
         Where to; made if it is not there.
     date

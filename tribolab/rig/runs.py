@@ -24,6 +24,7 @@ from tribolab.rig.sensors import (
 )
 from tribolab.rig.signals import make_signals
 from tribolab.rig.simulated import SimulatedRun
+from tribolab.several import of_lists
 from tribolab.stamping import stamp
 from tribolab.studies import xu2026
 from tribolab.units import to_si
@@ -39,6 +40,7 @@ def run_name(surface: str, medium: str, normal_force: float, number: int) -> str
     return f"{surface.lower()}_{medium}_{normal_force:g}N_{number:02d}"
 
 
+@of_lists("surface", "medium", "normal_force", "number", "seed", beside="faults")
 def simulate_run(
     surface: str = "Sb-S",
     medium: str = "glycerol",
@@ -52,7 +54,10 @@ def simulate_run(
     faults: str | Sequence[str] = (),
     calibration: Calibration = TRUE,
 ) -> SimulatedRun:
-    """Simulate one run on the linear slider.
+    """Simulate one run on the linear slider, or one for each of several conditions.
+
+    Lists of surfaces, media, loads, numbers and seeds go together, one of each for every run, and
+    give a list; beside them a list of faults has those of each run.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pandas as pd
 import xarray as xr
 
+from tribolab.several import of_lists
 from tribolab.untyped import Json
 
 
@@ -46,3 +47,30 @@ class SimulatedRun:
     noise_free: xr.Dataset
     segments: pd.DataFrame
     facts: Json
+
+
+@of_lists("run")
+def on_one_clock(run: SimulatedRun) -> xr.Dataset:
+    """Return what a rig with one clock would have recorded: forces, and the true velocity.
+
+    Parameters
+    ----------
+    run
+        From `simulate_run`; a list of runs gives a list.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``friction_force`` and ``normal_force`` [N] as the force log has them, and
+        ``sliding_velocity`` [m/s], over ``time``.
+
+    Examples
+    --------
+    >>> from tribolab.rig.parameters import Protocol, Rig
+    >>> from tribolab.rig.runs import simulate_run
+    >>> made = simulate_run("Sb-S", ["dry", "glycerol"], rig=Rig(Protocol(speeds=(1e-4,))))
+    >>> sorted(on_one_clock(made)[1].data_vars)
+    ['friction_force', 'normal_force', 'sliding_velocity']
+    """
+    velocity = run.noise_free["sliding_velocity"]
+    return run.force_log.assign(sliding_velocity=velocity)

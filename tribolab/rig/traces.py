@@ -10,11 +10,13 @@ import xarray as xr
 from tribolab.errors import AnalysisError, nearest
 from tribolab.rig.noise import slow_noise
 from tribolab.rig.waves import JITTER, WAVES
+from tribolab.several import of_lists
 from tribolab.stamping import stamp
 
 _FINE = 400  # points in a period, for what the truth states
 
 
+@of_lists("form", "wavelength", "drop", "noise", "samples", "speed", "seed")
 def simulate_trace(
     form: str = "sawtooth",
     *,
@@ -32,6 +34,9 @@ def simulate_trace(
     seed: int | np.random.Generator = 0,
 ) -> xr.Dataset:
     """Simulate the friction coefficient along one stroke at constant speed.
+
+    Lists of forms, wavelengths, drops, noises, numbers of samples, speeds and seeds go together,
+    one of each for every stroke, and give a list.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.pieces import one_by_one
-from tribolab.several import of_runs
+from tribolab.several import of_runs, over_dims
 from tribolab.stamping import stamp
 from tribolab.untyped import Json
 
@@ -26,6 +26,7 @@ LOST = 0.05  # share of samples without contact that spoils a segment
 
 
 @of_runs
+@over_dims(segments=("segment", "omitted"))
 def friction_coefficient(
     run: xr.Dataset,
     segments: xr.Dataset,
@@ -45,7 +46,8 @@ def friction_coefficient(
         ``friction_force`` alone (then only forces come out).
     segments
         From `find_segments` on the same run, or from `decide`: rejected segments tell nothing of
-        the others, and have the values that they would have had.
+        the others, and have the values that they would have had. A further dim (of several trims)
+        is one of the result.
     offset
         ``"half loop"``: the middle of the loop of two neighbouring strokes of opposite direction,
         its drift from loop to loop taken out. ``"zero load"``: the reading of rests without load,

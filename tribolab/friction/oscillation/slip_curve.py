@@ -152,13 +152,14 @@ def _of_several(
     joined = joined_curves(curves)
     dims = tuple(labels)
     shape = tuple(joined.sizes[dim] for dim in dims)
+    scaling = xr.Dataset()
     for attribute, name in _SCALING.items():
         values = np.full(shape, "" if name == "scaling" else np.nan, object)
         for curve, key in curves:
             at = tuple(joined.indexes[dim].get_loc(key[dim]) for dim in dims)
             values[at] = curve.attrs.get(attribute, values[at])
-        joined[name] = dims, values if name == "scaling" else values.astype(float)
-    return stamp(joined)
+        scaling[name] = dims, values if name == "scaling" else values.astype(float)
+    return joined.assign(stamp(scaling).data_vars)
 
 
 def one_curve(curve: xr.Dataset) -> xr.Dataset:

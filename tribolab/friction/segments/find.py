@@ -22,7 +22,7 @@ from tribolab.friction.segments.stretches import (
 )
 from tribolab.friction.segments.strokes import middle_parts
 from tribolab.pieces import one_by_one
-from tribolab.several import of_runs
+from tribolab.several import of_runs, one, over_dims
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
@@ -30,9 +30,10 @@ LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "sl
 
 
 @of_runs
+@over_dims(trim=())
 def find_segments(
     run: xr.Dataset,
-    trim: str | float = 0.10,
+    trim: str | float | xr.DataArray = 0.10,
     *,
     resolution: float = 0.02,
     drift: float = 0.10,
@@ -52,7 +53,7 @@ def find_segments(
         first of these that is there is used (see Notes).
     trim
         Share of each segment's duration that is left out at each end, 0 <= trim < 0.5; ``"10 %"``
-        is 0.1.
+        is 0.1. Several shares, over a dim of their own, make that a dim of the result.
     resolution
         Relative difference of speed that separates two neighbouring plateaus.
     drift
@@ -119,7 +120,7 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'at rest', 'at rest'])
     """
-    share = _share(trim)
+    share = _share(one(trim))
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")

@@ -1,0 +1,74 @@
+"""Several results of one kind, by the labels that stand beside them in a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError, shown
+
+Label = str | float
+Results = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
+
+
+def labelled(
+    results: Results, labels: Mapping[str, Sequence[Label]], known: str
+) -> dict[str, xr.Dataset]:
+    """Return results by their labels.
+
+    Parameters
+    ----------
+    results
+        Label to a result; or a result, also over further dims; or a list of results.
+    labels
+        What tells the results of a list apart, one label for each; by default their number.
+    known
+        The dim that one result has.
+
+    Raises
+    ------
+    AnalysisError
+        If there is not one label for each result of a list.
+
+    Examples
+    --------
+    >>> data = xr.Dataset({"waveform": (("run", "segment"), [["saw"], ["sine"]])}, {"run": [1, 2]})
+    >>> list(labelled(data, {}, "segment")), list(labelled([data], {"medium": ["dry"]}, "segment"))
+    (['1', '2'], ['dry'])
+    """
+    if isinstance(results, xr.Dataset):
+        return parts(results, known)
+    if not isinstance(results, Sequence):
+        return dict(results)
+    for name, given in labels.items():
+        if isinstance(given, str) or len(given) != len(results):
+            raise AnalysisError(
+                f"{shown(name)}: one label for each of {len(results)} results is wanted"
+            )
+    rows = list(zip(*labels.values(), strict=True)) or [(k + 1,) for k in range(len(results))]
+    names = [", ".join(map(str, row)) for row in rows]
+    if len({*names}) < len(names):
+        raise AnalysisError("labels: two results have the same; give others, or one more kind")
+    return dict(zip(names, results, strict=True))
+
+
+def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
+    """Return what a dataset holds along its further dims, by their labels; itself if it has none.
+
+    Parameters
+    ----------
+    results
+        With ``waveform`` over `known` and further dims.
+    known
+        The dim that one result has.
+    """
+    dims = [dim for dim in results["waveform"].dims if dim != known]
+    named = {}
+    for place in np.ndindex(*(results.sizes[dim] for dim in dims)):
+        part = results.isel(dict(zip(dims, place, strict=True)))
+        words = [str(part[dim].item() if dim in part.coords else k + 1)
+                 for dim, k in zip(dims, place, strict=True)]  # fmt: skip
+        named[", ".join(words)] = part
+    return named

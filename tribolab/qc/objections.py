@@ -1,0 +1,68 @@
+"""What the checks of several runs or scans object to, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from tribolab.errors import AnalysisError, shown
+from tribolab.qc.findings import Findings
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_COLUMNS = ["check", "status", "variable", "message", "cure"]
+_OBJECTING = ("suspect", "fail", "error")
+
+
+def objections(
+    findings: Findings | Sequence[Findings], **labels: Sequence[str | float]
+) -> pd.DataFrame:
+    """Return all that was objected to, a row for each.
+
+    Parameters
+    ----------
+    findings
+        From `check`, `check_scans` or `check_scan_set`, of one or of several.
+    **labels
+        What tells them apart, one label for each, e.g. ``fault=["spikes", "gaps"]``; by default
+        their ``name``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The labels, ``check``, ``status``, ``variable``, ``message`` and ``cure``; what nobody
+        objected to has no row.
+
+    Raises
+    ------
+    AnalysisError
+        If there is not one label for each.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> run = tl.rig.simulate_trace(noise=0.02)
+    >>> table = objections(tl.check([run, run]), rig=["old", "new"])
+    >>> table.columns.tolist()[:3], set(table.rig) <= {"old", "new"}
+    (['rig', 'check', 'status'], True)
+    """
+    import pandas as pd
+
+    every = [findings] if isinstance(findings, Findings) else list(findings)
+    names = {name: list(given) for name, given in labels.items()} or {
+        "name": [each.name for each in every]
+    }
+    for name, given in names.items():
+        if len(given) != len(every):
+            raise AnalysisError(
+                f"{shown(name)}: {len(given)} labels are given for {len(every)} that were checked; "
+                "give one for each"
+            )
+    tables = [
+        each.table[_COLUMNS].assign(**{name: given[k] for name, given in names.items()})
+        for k, each in enumerate(every)
+    ]
+    columns = [*names, *_COLUMNS]
+    whole = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+    return whole.loc[whole["status"].isin(_OBJECTING), columns].reset_index(drop=True)
