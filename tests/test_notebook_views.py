@@ -135,16 +135,20 @@ def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
         "import tribolab, sys\n"
         "assert 'xarray' not in sys.modules\n"
         "import xarray as xr\n"
-        "run = xr.Dataset({'friction_force': ('time', [1.0], {'units': 'N'}), 'note': ('time', "
-        "['a'])}, {'time': ('time', [0.0], {'units': '<s>'})})\n"
-        "show = shell.display_formatter.format\n"
-        "print(json.dumps([show(run)[0]['text/html'], show(run.friction_force)[0]['text/html']]))"
+        "from tribolab.stamping import stamp\n"
+        "data = {'friction_force': ('time', [1.0]), 'note': ('time', ['a'])}\n"
+        "run = stamp(xr.Dataset(data, {'time': ('time', [0.0])}))\n"
+        "run.time.attrs['units'] = '<s>'\n"
+        "foreign = xr.Dataset({'air': ('time', [1.0], {'units': 'K', 'long_name': 'air'})})\n"
+        "show = lambda data: shell.display_formatter.format(data)[0]['text/html']\n"
+        "print(json.dumps([*map(show, [run, run.friction_force, foreign, foreign.air])]))"
     )
     done = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", code],
         check=True, capture_output=True, text=True, env={**os.environ, "IPYTHONDIR": str(tmp_path)},
     )  # fmt: skip
-    dataset, array = json.loads(done.stdout)
+    dataset, array, *foreign = json.loads(done.stdout)
+    assert not [shown for shown in foreign if "K, float64" in shown or "[K]" in shown]
     types = re.findall(r"<div class='xr-var-dtype'>(.*?)</div>", dataset)
     assert types == ["&lt;s&gt;, float64", "N, float64", "&lt;U1"]
     assert "&#x27;friction_force&#x27; [N]" in array or "'friction_force' [N]" in array

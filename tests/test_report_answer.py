@@ -3,6 +3,7 @@
 import pytest
 
 from tribolab.report.answer import cards
+from tribolab.report.in_short import in_short
 
 CHECK = {"check": "friction_sign", "status": "fail", "decision": "", "message": "it drives. Look"}
 SEM = {"friction_coefficient_sem": 0.01, "runs": 2}
@@ -97,3 +98,33 @@ def test_findings_that_are_alike_are_said_once_and_those_of_others_not_at_all():
     notes = [one | {"severity": "note", "run": "a"}, one | {"run": "elsewhere"}]
     (card,) = cards(report([], alike + notes))
     assert card.findings == (("suspect", "spikes (friction force): 3 stand out (and 1 alike)"),)
+
+
+def falling(surface, medium, load, *points):
+    rows = [{"sliding_speed_m_s": v, "friction_coefficient": mu} for v, mu in points]
+    named = {"surface": surface, "medium": medium, "nominal_normal_force_N": load}
+    return named | {"name": f"{surface}, {medium}", "points": rows}
+
+
+def test_in_short_it_is_said_which_surface_lifts_off_last_and_where_the_model_fails():
+    fine, rough = ((1e-6, 1.0), (1e-4, 0.01)), ((1e-6, 1.1), (1e-3, 0.9))
+    curves = [falling("fine", "oil", 31.0, *fine), falling("rough", "oil", 31.0, *rough)]
+    fit = {"judgement": "the model does not describe this curve: off by 80 % of its height"}
+    models = [
+        {"curve": "fine, oil", "fit": fit},
+        {"curve": "rough, oil", "fit": {"judgement": "within its errors"}},
+    ]
+    assert in_short({"curves": curves, "models": models}) == [
+        "In oil at 31 N, half of the highest friction is left at 10 µm/s on fine and not up to "
+        "1 mm/s on rough: rough needs the highest speed to lift off.",
+        "The model fails on 1 of 2 curves: fine, oil, at 31 N.",
+    ]
+    # of two that never fall nobody knows which is the last
+    third = falling("third", "oil", 31.0, (1e-6, 1.0), (1e-2, 0.8))
+    (said,) = in_short({"curves": [*curves, third]})
+    assert "highest speed" not in said
+    # and a curve that was not measured far enough is not the first, either
+    slow = falling("slow", "oil", 31.0, (1e-6, 1.0), (2e-6, 0.9))
+    (said,) = in_short({"curves": [curves[0], slow]})
+    assert "highest speed" not in said
+    assert in_short({"curves": [third, slow], "models": []}) == []

@@ -1,4 +1,4 @@
-"""Units in what Jupyter shows of a dataset before anything is opened."""
+"""Units in what Jupyter shows of our datasets before anything is opened."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ _HOMES = (("xarray.core.dataset", "Dataset"), ("xarray.core.dataarray", "DataArr
 
 
 def show_units() -> None:
-    """Let the notebook that runs this name units beside the variables of xarray.
+    """Let the notebook that runs this name units beside the variables of our datasets.
 
-    Without a notebook nothing happens. `import tribolab` does it.
+    Without a notebook nothing happens. `import tribolab` does it. What others made is shown as
+    xarray shows it.
     """
     from IPython.core.getipython import get_ipython
 
@@ -32,16 +33,24 @@ def show_units() -> None:
 
 
 def with_units(data: xr.Dataset | xr.DataArray) -> str:
-    """Return xarray's own HTML, each variable that has a unit with it before its type.
+    """Return xarray's own HTML; of what we made, each variable that has a unit with it.
+
+    Ours is what has a variable with the unit and the name in words that we give it.
 
     Examples
     --------
     >>> import xarray as xr
-    >>> run = xr.Dataset({"friction_force": ("time", [1.0], {"units": "N"})})
+    >>> from tribolab.stamping import stamp
+    >>> run = stamp(xr.Dataset({"friction_force": ("time", [1.0])}))
     >>> "N, float64" in run._repr_html_(), "N, float64" in with_units(run)
     (False, True)
+    >>> other = xr.Dataset({"friction_force": ("time", [1.0], {"units": "N"})})
+    >>> "N, float64" in with_units(other)
+    False
     """
     text = data._repr_html_()
+    if not _is_ours(data):
+        return text
     own = getattr(data, "data_vars", {})
 
     def beside(found: re.Match[str]) -> str:
@@ -55,3 +64,17 @@ def with_units(data: xr.Dataset | xr.DataArray) -> str:
     if unit:
         text = _NAME.sub(rf"\g<1>\g<2> [{html.escape(str(unit))}]\g<3>", text, count=1)
     return text
+
+
+def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
+    from tribolab.quantities import QUANTITIES
+
+    own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}
+    for name, holder in {**data.coords, **own}.items():
+        known = QUANTITIES.get(str(name))
+        if known and (holder.attrs.get("units"), holder.attrs.get("long_name")) == (
+            known.unit,
+            known.long_name,
+        ):
+            return True
+    return False

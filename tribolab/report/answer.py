@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -180,16 +181,26 @@ def _plateau(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str
 
 
 def _half(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str:
-    """Return the speed above that of the highest friction at which half of it is left."""
-    half = 0.5 * high["friction_coefficient"]
-    after = known[known.index(high) :]
-    for one, other in zip(after, after[1:], strict=False):
-        a, b = one["friction_coefficient"], other["friction_coefficient"]
+    speed = half_speed(known[known.index(high) :])
+    return "" if speed is None else f"half of it at {plain_speed(speed)}"
+
+
+def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
+    """Return the speed at which half of the first row's friction is left [m/s]; None if at none.
+
+    Parameters
+    ----------
+    falling
+        Rows of a curve from its highest friction on, in the order of their speeds.
+    """
+    half = 0.5 * falling[0]["friction_coefficient"]
+    for row, other in itertools.pairwise(falling):
+        a, b = row["friction_coefficient"], other["friction_coefficient"]
         if a >= half > b:
             share = (a - half) / (a - b)
-            v, w = (math.log(row["sliding_speed_m_s"]) for row in (one, other))
-            return f"half of it at {plain_speed(math.exp(v + share * (w - v)))}"
-    return ""
+            v, w = (math.log(each["sliding_speed_m_s"]) for each in (row, other))
+            return math.exp(v + share * (w - v))
+    return None
 
 
 def model_in_words(fit: Mapping[str, Any]) -> list[str]:

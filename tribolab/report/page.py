@@ -15,6 +15,7 @@ from tribolab.records.packed import deflated
 from tribolab.records.parts import PageTrace
 from tribolab.records.traces import as_text
 from tribolab.report.answer import cards, of_nothing
+from tribolab.report.in_short import in_short
 from tribolab.report.live.shown import ShownFigure
 from tribolab.report.sections import shown_sections
 from tribolab.report.templating import environment, framing
@@ -90,6 +91,7 @@ def _context(
         "left_out": left_out(every),
         "places": {run["name"]: place + 1 for place, run in enumerate(every)},
         "cards": cards(document),
+        "short": in_short(document),
         "unnamed": of_nothing(document),
         "live": live,
         "decided": document["review"]["entries"] if "review" in document else [],
