@@ -35,7 +35,7 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
     ...     return {"surface": surface, "medium": "oil", "nominal_normal_force_N": 31.0,
     ...             "name": surface, "points": rows}
     >>> in_short({"curves": [curve("fine", 1e-5), curve("rough", 1e-3)]})
-    ['In oil at 31 N, half of the highest friction is left at 4.6 µm/s on fine and at 100 µm/s on \
+    ['In oil at 31 N, friction falls to half of its highest at 4.6 µm/s on fine and at 100 µm/s on \
 rough: rough needs the highest speed to lift off.']
     """
     return [*_falls(document["curves"]), *_models(document)]
@@ -54,7 +54,7 @@ def _falls(curves: Iterable[Mapping[str, Any]]) -> Iterable[str]:
         if len(falls) > 1 and any(fall.half is not None for fall in falls):
             where = f"In {medium}" if medium != "dry" else "Dry"
             told = listed([_told(fall) for fall in falls])
-            head = f"{where} at {force_text(load)}, half of the highest friction is left {told}"
+            head = f"{where} at {force_text(load)}, friction falls to half of its highest {told}"
             yield f"{head}{_last(falls)}."
 
 
@@ -74,7 +74,7 @@ def _fall(curve: Mapping[str, Any]) -> Fall | None:
 
 def _told(fall: Fall) -> str:
     if fall.half is None:
-        return f"not up to {plain_speed(fall.fastest)} on {fall.surface}"
+        return f"not yet at {plain_speed(fall.fastest)} on {fall.surface}"
     return f"at {plain_speed(fall.half)} on {fall.surface}"
 
 
