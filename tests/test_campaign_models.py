@@ -107,6 +107,15 @@ def test_the_shear_stress_that_went_in_comes_back(outcome):
 
 
 @pytest.mark.slow
+def test_the_shear_stress_stands_for_both_theories_of_the_area(outcome):
+    """The corrected area is larger by a fifth to two fifths, the stress lower by as much."""
+    fits = read_csv(outcome.folder / "tables" / "shear_stress.csv")
+    assert set(fits["area"]) == {"persson"}
+    assert set(fits["other_area"]) == {"corrected"}
+    ratio = fits["shear_stress_other_area_Pa"] / fits["shear_stress_Pa"]
+    assert np.all((ratio > 0.71) & (ratio < 0.83))
+
+
 def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
     (model,) = outcome.models
     assert model.parts == ("curve", "fit", "profiles", "factors", "uncertainty")

@@ -85,6 +85,10 @@ _PUBLIC = {
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
+    "PronySeries": "tribolab.rubber.prony",
+    "WilliamsLandelFerry": "tribolab.rubber.temperature",
+    "flash_temperature": "tribolab.rubber.temperature",
+    "modulus_at": "tribolab.rubber.temperature",
     "load_campaign": "tribolab.campaign.settings.load",
     "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
@@ -165,6 +169,10 @@ __all__ = [
     "model_uncertainty",
     "viscoelastic_friction",
     "read_modulus",
+    "PronySeries",
+    "WilliamsLandelFerry",
+    "flash_temperature",
+    "modulus_at",
     "load_campaign",
     "load_review",
     "run_campaign",
@@ -236,6 +244,8 @@ if TYPE_CHECKING:
     from tribolab.report.read_results import read_results
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
+    from tribolab.rubber.prony import PronySeries
+    from tribolab.rubber.temperature import WilliamsLandelFerry, flash_temperature, modulus_at
     from tribolab.surface.extrapolation import extrapolate
     from tribolab.surface.form import fill_dropouts, remove_form
     from tribolab.surface.psd import psd_1d, psd_2d

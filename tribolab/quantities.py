@@ -185,6 +185,7 @@ _ROWS = [
     ("friction_coefficient_pressure", "\\mu_p", "1", "friction by the fluid's pressure gradient"),
     ("friction_coefficient_solid", "\\mu_s", "1", "friction by shear in the solid contact"),
     ("friction_per_shear_stress", "a", "1/Pa", "real contact area per normal force"),
+    ("friction_per_shear_stress_other", "a", "1/Pa", "the same with another theory of the area"),
     ("minimum_separation", "u_min", "m", "smallest mean separation"),
     ("solid_load_share", "", "1", "share of the load carried by the solid contact"),
     ("residual", "", "1", "largest error of pressure over the largest pressure"),

@@ -83,6 +83,13 @@ LIMITS = {
         "give a master curve that reaches over the frequencies q v (shift sweeps of several "
         "temperatures), or other speeds",
     ),
+    "heating": ValidityLimit(
+        "temperature rise in K in the contact spots of sliding rubber",
+        10.0,  # a relaxation is some two times as fast
+        np.inf,  # a warning: friction falls, and how far is not computed
+        "the modulus is that of the rubber at rest, without heat by friction",
+        "take lower speeds, or the modulus at the temperature of the contact",
+    ),
     "pressure": ValidityLimit(
         "contact pressure over the largest in the table of p(u)",
         1.0,

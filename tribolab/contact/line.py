@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.linalg import lu_factor, lu_solve
 
+from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
 from tribolab.contact.limits import line_limits
@@ -33,6 +34,7 @@ def rough_line_contact(
     psd: xr.Dataset,
     gamma: float = 0.45,
     points: int = 401,
+    area: AreaTheory = "persson",
 ) -> xr.Dataset:
     """Pressure and mean separation across a dry, rough line contact at rest.
 
@@ -48,6 +50,8 @@ def rough_line_contact(
         Elastic-energy reduction factor [1] of the mean separation.
     points
         Cells across the domain; odd, so that one lies in the middle.
+    area
+        Theory of the contact area, see `contact_area_ratio`.
 
     Returns
     -------
@@ -100,7 +104,7 @@ def rough_line_contact(
             "separation": ("x", separation),
             "contact_area_ratio": (
                 "x",
-                contact_area_ratio(pressure, psd, contact.effective_modulus),
+                contact_area_ratio(pressure, psd, contact.effective_modulus, area),
             ),
             "max_pressure": pressure.max(),
             "central_separation": separation[points // 2],
@@ -115,6 +119,7 @@ def rough_line_contact(
         residual=residual,
         load_balance=float(balance),
         steps=steps,
+        area=area,
         contact_width_definition=f"pressure above {WIDTH_LEVEL:g} of its maximum (inferred)",
     )
 

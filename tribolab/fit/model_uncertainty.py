@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
+from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
@@ -21,7 +22,7 @@ from tribolab.untyped import Arguments
 from tribolab.validity import reasons_of, together
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
-_CELLS = 200  # a change needs no finer mesh than this: its error is in both curves
+_CELLS = 160  # a change needs no finer mesh than this: its error is in both curves
 _NORMAL = 1.959963984540054
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 
@@ -44,6 +45,7 @@ def model_uncertainty(
     youngs_modulus_range: tuple[str | float, str | float] | None = None,
     inlet_length: str | float = np.inf,
     cells: int = CELLS,
+    area: AreaTheory = "persson",
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
@@ -64,7 +66,7 @@ def model_uncertainty(
     viscosity_range, youngs_modulus_range
         Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
         leaves them out.
-    inlet_length, cells
+    inlet_length, cells, area
         As for `stribeck_curve`.
 
     Returns
@@ -96,7 +98,7 @@ def model_uncertainty(
     would overstate the band; many are one-sided or bend the curve differently at both ends, so
     that a symmetric band would hide the sign; and mu spans decades and stays positive, so that
     ratios are combined. Of a variation whose two ends both raise mu the larger counts. The
-    reference for the changes is computed on the same coarser mesh, 200 cells, as the variations.
+    reference for the changes is computed on the same coarser mesh, 160 cells, as the variations.
 
     The refitted sigma_f is that of least squares with equal weights, as in `fit_shear_stress`.
 
@@ -137,6 +139,7 @@ def model_uncertainty(
             youngs_modulus_range, contact.youngs_modulus, "Pa", "youngs_modulus"
         ),
         inlet_length=begins,
+        area=area,
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
@@ -151,6 +154,7 @@ def model_uncertainty(
         "friction_factors": friction_factors,
         "gamma": gamma,
         "inlet_length": begins,
+        "area": area,
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
     with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.contact.adhesive_growth import AdhesiveGrowth
+from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
@@ -38,6 +40,8 @@ class System(NamedTuple):
     cells: int
     domain: float
     inlet_length: float  # infinite if the liquid is everywhere
+    area: AreaTheory
+    growth: AdhesiveGrowth | None = None  # of the area by adhesion
 
     def problem(self, force: float, speed: float) -> Problem:
         """Scales and mesh at one load [N/m] and speed [m/s], that of rest included."""

@@ -11,8 +11,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from threadpoolctl import ThreadpoolController
 
+from tribolab.contact.adhesive_growth import adhesive_growth
+from tribolab.contact.area import AreaTheory, check_area, other_area
 from tribolab.contact.geometry import LineContact
-from tribolab.contact.hertz import hertz_half_width
+from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
 from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
@@ -54,6 +56,8 @@ def stribeck_curve(
     cells: int = CELLS,
     domain: float = 1.0,
     inlet_length: str | float = np.inf,
+    area: AreaTheory = "persson",
+    work_of_adhesion: str | float | None = None,
 ) -> xr.Dataset:
     """Friction coefficient of a lubricated rough line contact over sliding speed (and load).
 
@@ -89,6 +93,10 @@ def stribeck_curve(
         beyond its ends is added in closed form.
     inlet_length
         Where the liquid begins [m], before the contact's middle; by default it is everywhere.
+    area
+        Theory of the contact area, see `contact_area_ratio`. Films do not hang on it.
+    work_of_adhesion
+        Of the bodies under the liquid [J/m2]: adhesion then adds to the contact area, see Notes.
 
     Returns
     -------
@@ -96,7 +104,9 @@ def stribeck_curve(
         Over ``sliding_speed`` (and ``load``): ``friction_coefficient`` and its parts
         ``_couette``, ``_pressure`` and ``_solid``; ``friction_without_factors``, the coefficient
         that `friction_factors` False gives; ``friction_per_shear_stress`` [1/Pa], which
-        times sigma_f is the solid part; ``minimum_separation``, ``central_separation`` [m];
+        times sigma_f is the solid part, and ``friction_per_shear_stress_other``, the same with the
+        corrected contact area where `area` is Persson's, else with his; ``minimum_separation``,
+        ``central_separation`` [m];
         ``contact_area_ratio`` [1], real area over that of the Hertz contact, 2 a L;
         ``solid_load_share`` [1]; and the proof of every point: ``residual``, ``load_balance``,
         ``flux_variation``, ``iterations``.
@@ -111,6 +121,14 @@ def stribeck_curve(
     -----
     Eqs. (3)-(5), (9), (10) of [1]_ with cavitation (p_fluid >= 0); friction by Eq. (4), whose
     pressure gradient is the fluid's. In the cavity the fluid covers the part u*/u of the flat.
+
+    With a work of adhesion the area is A(p_cont) A_adh(p)/A_0(p), A_adh being that of `adhesion` at
+    the whole pressure, inside the nominal contact. This mean field leaves out that attraction also
+    pulls the bodies together (p(u), the width of the contact and the load that the liquid carries
+    stay as they are), that contact once made is harder to open than to make, that the liquid has to
+    be squeezed out before the bodies bind, and that the sliding itself may be by waves of
+    detachment (Sec. 8 of [1]_): it tells the friction of the boundary regime, and not at which
+    speed it ends.
 
     References
     ----------
@@ -128,12 +146,22 @@ def stribeck_curve(
     """
     with _one_thread():
         system = _system(
-            contact, psd, one(viscosity), rough_body, factors, gamma, cells, domain, inlet_length
+            contact,
+            psd,
+            one(viscosity),
+            rough_body,
+            factors,
+            gamma,
+            cells,
+            domain,
+            inlet_length,
+            area,
         )
     stress = to_si(one(shear_stress), "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
     loads, speeds = _loads(load), _speeds(speed, psd)
+    system = _binding(system, float(np.max(loads.values)), work_of_adhesion)
     curves = []
     with _one_thread():
         for force in np.atleast_1d(loads.values):
@@ -179,6 +207,8 @@ def _facts(system: System) -> dict[str, str | float | int]:
         "cells": system.cells,
         "domain": float(system.domain),
         "inlet_length_m": system.inlet_length,
+        "area": system.area,
+        "work_of_adhesion_J_m2": system.growth.work_of_adhesion if system.growth else 0.0,
         "references": REFERENCE,
     }
 
@@ -232,6 +262,8 @@ def film_profile(
     cells: int = CELLS,
     domain: float = 1.0,
     inlet_length: str | float = np.inf,
+    area: AreaTheory = "persson",
+    work_of_adhesion: str | float | None = None,
 ) -> xr.Dataset:
     """Separation and pressures across the contact at one speed, or at each of several.
 
@@ -239,6 +271,8 @@ def film_profile(
     ----------
     contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain, inlet_length
         As for `stribeck_curve`, with one load.
+    area, work_of_adhesion
+        Theory of the contact area, and what adhesion adds to it, as there.
 
     Returns
     -------
@@ -259,7 +293,9 @@ def film_profile(
     """
     force = positive(load, "N/m", "load")
     if np.ndim(speed):
-        numerics = (rough_body, factors, gamma, cells, domain, inlet_length)
+        numerics = (
+            rough_body, factors, gamma, cells, domain, inlet_length, area, work_of_adhesion
+        )  # fmt: skip
         films = [
             film_profile(contact, psd, viscosity, load, float(v), *numerics)
             for v in _speeds(speed, psd).values
@@ -268,18 +304,20 @@ def film_profile(
     v = float(_speeds(speed, psd).values[0])
     with _one_thread():
         system = _system(
-            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length
+            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length, area
         )
+        system = _binding(system, force, work_of_adhesion)
         ((_, problem, solution),) = solve_speeds(system, force, np.array([abs(v)]))
     fields = solution.fields
     side = -1 if v < 0 else 1
     solid = fields.contact * problem.pressure
+    whole = solid + fields.fluid * problem.pressure
     values = {
         "separation": solution.state.film * problem.gap,
         "contact_pressure": solid,
         "fluid_pressure": fields.fluid * problem.pressure,
-        "pressure": solid + fields.fluid * problem.pressure,
-        "contact_area_ratio": _area(system, solid),
+        "pressure": whole,
+        "contact_area_ratio": _area(system, solid, whole, area),
     }
     x = side * problem.mesh.x * problem.half_width
     unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
@@ -318,8 +356,10 @@ def _system(
     cells: int,
     domain: float,
     inlet_length: str | float,
+    area: AreaTheory,
 ) -> System:
     eta = positive(viscosity, "Pa s", "viscosity")
+    check_area(area)
     if cells < 50:
         raise AnalysisError(f"cells: at least 50 are wanted; got {cells}")
     if not 0.2 <= domain <= 5:
@@ -332,7 +372,7 @@ def _system(
         factors = replace(factors, rough_body=rough_body)
     separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
     begins = to_si(inlet_length, "m", name="inlet_length")  # `solve_speeds` has its lower limit
-    return System(contact, psd, separation, factors, eta, cells, domain, begins)
+    return System(contact, psd, separation, factors, eta, cells, domain, begins, area)
 
 
 @functools.cache
@@ -372,10 +412,15 @@ def _curve(
     points = solve_speeds(system, force, magnitudes)
     # all in one: the pressures of all meshes have one unit
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
+    whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
     hertz = hertz_half_width(force, system.contact)
+    areas = np.stack(
+        [_area(system, solid, whole, theory) for theory in (system.area, other_area(system.area))],
+        axis=1,
+    )
     rows = [
         _row(point, force, float(hertz), area, friction_factors)
-        for point, area in zip(points, _area(system, solid), strict=True)
+        for point, area in zip(points, areas, strict=True)
     ]
     return {name: np.array([row[name] for row in rows])[back] for name in rows[0]}
 
@@ -383,10 +428,13 @@ def _curve(
 def _row(
     point: Point, force: float, hertz: float, area: np.ndarray, friction_factors: bool
 ) -> dict[str, float]:
-    """All that a curve has of one speed, the relative contact area in its cells being known."""
+    """All that a curve has of one speed, the relative contact area in its cells being known.
+
+    That is of the theory asked for, and of the other one (2, cells).
+    """
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
-    real_length = mesh.width @ area * problem.half_width
+    real_length, otherwise = area @ mesh.width * problem.half_width
     rough, plain = fluid_friction(problem, solution)
     couette, pressure = rough if friction_factors else plain
     return {
@@ -394,6 +442,7 @@ def _row(
         "friction_coefficient_pressure": pressure,
         "friction_without_factors": sum(plain),
         "friction_per_shear_stress": real_length / force,
+        "friction_per_shear_stress_other": otherwise / force,
         "contact_area_ratio": real_length / (2 * hertz),
         "minimum_separation": film.min() * problem.gap,
         "central_separation": np.interp(0.0, mesh.x, film) * problem.gap,
@@ -402,7 +451,19 @@ def _row(
     }
 
 
-def _area(system: System, pressure: np.ndarray) -> np.ndarray:
+def _binding(system: System, highest_load: float, work_of_adhesion: str | float | None) -> System:
+    """Return the system with what adhesion adds to its contact area up to a load [N/m]."""
+    if work_of_adhesion is None or system.psd is None:
+        return system
+    modulus = system.contact.effective_modulus
+    # a film's pressure peaks a little above that of Hertz
+    highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
+    return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
+
+
+def _area(system: System, solid: np.ndarray, whole: np.ndarray, theory: AreaTheory) -> np.ndarray:
+    """Relative contact area at the solid's pressure and the whole one [Pa]."""
     if system.psd is None:
-        return np.zeros_like(pressure)
-    return contact_area_ratio(pressure, system.psd, system.contact.effective_modulus)
+        return np.zeros_like(solid)
+    area = contact_area_ratio(solid, system.psd, system.contact.effective_modulus, theory)
+    return area if system.growth is None else system.growth(solid, whole, area)

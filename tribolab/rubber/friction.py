@@ -7,8 +7,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
+from tribolab.contact.adhesion import adhesion
 from tribolab.errors import AnalysisError
 from tribolab.rubber.modulus import Modulus, TabulatedModulus
+from tribolab.rubber.temperature import flash_temperature
 from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import (
     bin_integrals,
@@ -17,6 +19,7 @@ from tribolab.surface.moments import (
     rms_slope,
     spectrum_arrays,
 )
+from tribolab.units import to_si
 from tribolab.validity import LIMITS, examine, together
 
 _PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
@@ -30,6 +33,7 @@ def viscoelastic_friction(
     modulus: Modulus,
     poisson_ratio: float = 0.5,
     complete_contact: bool = False,
+    work_of_adhesion: str | float | None = None,
 ) -> xr.Dataset:
     """Viscoelastic friction coefficient and contact area of rubber sliding on a rough surface.
 
@@ -47,6 +51,8 @@ def viscoelastic_friction(
         Poisson's ratio of the rubber [1].
     complete_contact
         Take contact as complete at every wavenumber (P = S = 1), as adhesion may make it.
+    work_of_adhesion
+        [J/m2]: adhesion then adds to the contact at every wavenumber, as it does at rest.
 
     Returns
     -------
@@ -65,8 +71,13 @@ def viscoelastic_friction(
     With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq
     int_0^{2 pi} cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``,
     ``S = 1/2 + P^2/2``, ``G = (1/8) int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_.
-    At rest G is that of the elastic contact with the relaxed modulus. Flash temperature is left
-    out.
+    At rest G is that of the elastic contact with the relaxed modulus. With adhesion P is that of
+    sliding times P_adh/P of `adhesion` at rest, with the relaxed modulus, at each wavenumber; at
+    most 1. So the growth counts where the loss is made: it is larger for short waves than for long
+    ones, and friction grows by less than the whole contact area does. That the rubber is stiffer
+    at the frequencies of the shortest waves, where less would bind, is left out. Heating is left
+    out, too; ``validity`` says where contact spots of a quarter of the mean wavelength of heights
+    would heat by more than 10 K by `tribolab.rubber.temperature.flash_temperature`.
 
     References
     ----------
@@ -94,10 +105,18 @@ def viscoelastic_friction(
         raise AnalysisError(
             f"pressure: it must be above zero and finite; the lowest is {over.values.min():g} Pa"
         )
-    friction, area = _solved(speed, over, psd, modulus, poisson_ratio, complete_contact)
-    valid = examine("viscoelastic_friction", slope=rms_slope(psd))
+    work = 0.0
+    if work_of_adhesion is not None:
+        work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
+    growth = None
+    if work > 0 and not complete_contact:
+        growth = _growth(over, psd, float(modulus(0.0).real) / (1 - poisson_ratio**2), work)
+    shape_of = poisson_ratio, complete_contact, growth
+    friction, area = _solved(speed, over, psd, modulus, *shape_of)
+    rise = _heating(friction, area, speed, over, psd)
+    valid = examine("viscoelastic_friction", slope=rms_slope(psd), heating=rise)
     if isinstance(modulus, TabulatedModulus):
-        other = _solved(speed, over, psd, modulus.continued, poisson_ratio, complete_contact)
+        other = _solved(speed, over, psd, modulus.continued, *shape_of)
         valid = together([valid, _outside((friction, area), other, speed, modulus)])
     dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
     return stamp(
@@ -110,6 +129,7 @@ def viscoelastic_friction(
         ),
         poisson_ratio=poisson_ratio,
         complete_contact=int(complete_contact),
+        work_of_adhesion_J_m2=work,
         modulus=repr(modulus),
         **valid,
     )
@@ -122,6 +142,7 @@ def _solved(
     modulus: Modulus,
     poisson_ratio: float,
     complete_contact: bool,
+    growth: np.ndarray | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
     q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
@@ -131,9 +152,38 @@ def _solved(
     g = relative**2 / 8 * cumulative(q, spectrum * stored, 3)
     with np.errstate(divide="ignore"):
         area = np.ones_like(g) if complete_contact else erf(1 / (2 * np.sqrt(g)))
+    if growth is not None:
+        area = np.minimum(area * growth, 1.0)
     integrand = spectrum * area * (1 + area**2) / 2 * lost
     friction = relative[..., 0] / 2 * bin_integrals(q, integrand, 3).sum(axis=-1)
     return friction, area[..., -1]
+
+
+def _heating(
+    friction: np.ndarray, area: np.ndarray, speed: xr.DataArray, over: xr.DataArray, psd: xr.Dataset
+) -> np.ndarray:
+    """Temperature rise [K] in the spots by the loss in the rubber (pressures, speed)."""
+    q, spectrum = spectrum_arrays(psd)
+    first, second = (cumulative(q, spectrum, power)[-1] for power in (1, 2))
+    if first == 0:
+        return np.zeros_like(friction)
+    spot = np.pi / 2 * first / second
+    stress = friction * over.values.reshape(*over.shape, 1) / area
+    return np.asarray(flash_temperature(stress, np.atleast_1d(speed.values), spot))
+
+
+def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
+    """P(q) with adhesion over that without, at rest (pressures, 1, wavenumber)."""
+    q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
+    bound = adhesion(over.values.ravel(), psd, stiffness, work)
+    nodes = bound["wavenumber"].values
+    with np.errstate(divide="ignore"):
+        free = erf(
+            over.values.reshape(-1, 1) / stiffness / np.sqrt(np.pi * cumulative(q, spectrum, 3))
+        )
+    seen = bound["apparent_contact_area_ratio"].values
+    logs = np.stack([np.interp(np.log(q), np.log(nodes), row) for row in np.log(seen)])
+    return np.exp(logs - np.log(free)).reshape(*over.shape, 1, q.size)
 
 
 def _outside(

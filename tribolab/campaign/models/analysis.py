@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
+from tribolab.contact.area import other_area
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError
 from tribolab.fit.model_uncertainty import model_uncertainty
@@ -50,6 +51,7 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
     settings = model.settings
     body = {name: settings[name] for name in ("rough_body", "friction_factors")}
     body["inlet_length"] = settings["inlet_length"] or np.inf
+    body["area"] = model.area
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
@@ -72,7 +74,14 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         _, low, high = _enhancement(model, folder)
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
-        groups["fit"] = beside(fit, measured).assign_attrs(bounds)
+        other = _with_other_area(computed)
+        again = _fit(model, measured, contact, psd, load, other, folder)
+        groups["fit"] = beside(fit, measured).assign_attrs(
+            **bounds,
+            area=model.area,
+            other_area=other_area(model.area),
+            shear_stress_other_area_Pa=again.shear_stress,
+        )
     groups["curve"].attrs["abscissa_error"] = model.abscissa_error
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
@@ -112,6 +121,11 @@ def _fit(
         curve=computed,
         abscissa_error=model.abscissa_error,
     )
+
+
+def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
+    """Give a computed curve the contact area of the other theory; its films stay."""
+    return computed.assign(friction_per_shear_stress=computed["friction_per_shear_stress_other"])
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
@@ -179,7 +193,16 @@ def _profiles(
     body = model.settings["rough_body"]
     begins = model.settings["inlet_length"] or np.inf
     films = [
-        film_profile(contact, psd, model.viscosity, load, v, body, inlet_length=begins)
+        film_profile(
+            contact,
+            psd,
+            model.viscosity,
+            load,
+            v,
+            body,
+            inlet_length=begins,
+            area=model.area,
+        )
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")

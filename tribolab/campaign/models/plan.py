@@ -13,6 +13,7 @@ from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
+    from tribolab.contact.area import AreaTheory
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
@@ -38,6 +39,8 @@ class PlannedModel:
         Between which values [Pa s], [Pa] they are uncertain; None if the campaign does not say.
     settings
         The table [model].
+    area
+        Theory of the contact area.
     leading
         Whether it is the surface's model at its lowest load, which shows profiles and factors.
     uncertain
@@ -61,6 +64,7 @@ class PlannedModel:
     viscosity_range: tuple[float, float] | None
     youngs_modulus_range: tuple[float, float] | None
     settings: Arguments
+    area: AreaTheory
     leading: bool
     uncertain: bool
     repeatability: float
@@ -130,6 +134,7 @@ def plan_models(
             youngs_modulus_range=_modulus_range(campaign),
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
             settings=settings,
+            area=campaign.contact.area,
             leading=first,
             uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),
             repeatability=spread,

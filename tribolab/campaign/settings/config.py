@@ -70,6 +70,9 @@ class Contact(Table):
     """Between which values it is uncertain; model curves get a band from it."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
+    area: Literal["persson", "corrected", "numerics"] = "persson"
+    """Theory of the contact area: Persson's as in the paper; corrected for the elastic energy that
+    partial contact saves; or as fitted to boundary elements."""
     normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
     """Normal forces at which contact and adhesion are computed, beside those of the runs."""
     modulus_file: Text | None = None

@@ -32,6 +32,7 @@ from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
+    from tribolab.contact.area import AreaTheory
     from tribolab.contact.geometry import LineContact
 
 Groups = dict[str, xr.Dataset]
@@ -99,16 +100,17 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
                 severity = "fail"
             findings.append(Finding(severity, f"{what}: {explain(error)[0]}"))
 
-    attempt("contact", ("contact",), lambda: (_contact(grid, psd, modulus),))
+    attempt("contact", ("contact",), lambda: (_contact(grid, psd, modulus, surface.area),))
     if contact is None or not forces.size:
         missing = "radius and length in [contact]" if contact is None else "normal_force of a run"
         text = f"line contact, gap and rubber friction at the loads are not computed: no {missing}"
         findings.append(Finding("note", text))
         loads = None
     else:
-        loads = _loads(forces, contact, psd)
+        theory = surface.area
+        loads = _loads(forces, contact, psd, theory)
         groups["loads"] = loads
-        attempt("dry line contact", ("line",), lambda: (_lines(forces, contact, psd),))
+        attempt("dry line contact", ("line",), lambda: (_lines(forces, contact, psd, theory),))
         attempt("gap", ("gap",), lambda: (_gaps(loads, psd, modulus),))
         _rubber(surface, loads, psd, groups, findings, attempt)
     if not surface.media:
@@ -131,22 +133,26 @@ def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
     }
 
 
-def _areas(pressure: xr.DataArray, psd: xr.Dataset, modulus: float) -> dict[str, xr.DataArray]:
+def _areas(
+    pressure: xr.DataArray, psd: xr.Dataset, modulus: float, theory: AreaTheory
+) -> dict[str, xr.DataArray]:
     return {
-        f"contact_area_ratio{ending}": contact_area_ratio(pressure, spectrum, modulus)
+        f"contact_area_ratio{ending}": contact_area_ratio(pressure, spectrum, modulus, theory)
         for ending, spectrum in _bounds(psd).items()
     }
 
 
-def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float) -> xr.Dataset:
+def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float, theory: AreaTheory) -> xr.Dataset:
     pressure = labelled(grid, "pressure")
-    data = _areas(pressure, psd, modulus)
+    data = _areas(pressure, psd, modulus, theory)
     data["separation"] = mean_separation(pressure, psd, modulus)
     valid = data["contact_area_ratio"].attrs
     return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **together([valid]))
 
 
-def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
+def _loads(
+    forces: np.ndarray, contact: LineContact, psd: xr.Dataset, theory: AreaTheory
+) -> xr.Dataset:
     """Hertz contact at each load, and the rough contact at its mean pressure."""
     load = forces / contact.length
     coords = {"load": load}
@@ -161,18 +167,20 @@ def _loads(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Data
         "pressure": pressure,
         "max_pressure": over_load(hertz_max_pressure(load, contact)),
         "contact_width": over_load(2 * hertz_half_width(load, contact)),
-        **_areas(pressure, psd, modulus),
+        **_areas(pressure, psd, modulus, theory),
         "separation": mean_separation(pressure, psd, modulus),
     }
     valid = line_limits("line contact", contact, load, psd)
     return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **valid)
 
 
-def _lines(forces: np.ndarray, contact: LineContact, psd: xr.Dataset) -> xr.Dataset:
+def _lines(
+    forces: np.ndarray, contact: LineContact, psd: xr.Dataset, theory: AreaTheory
+) -> xr.Dataset:
     """Dry rough line contact at each load; every load has its own x."""
     parts = []
     for force in forces:
-        line = rough_line_contact(contact.load(float(force)), contact, psd)
+        line = rough_line_contact(contact.load(float(force)), contact, psd, area=theory)
         parts.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
     lines = xr.concat(parts, "load", combine_attrs="drop_conflicts")
     valid = together([line.attrs for line in parts])

@@ -20,6 +20,7 @@ from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
+    from tribolab.contact.area import AreaTheory
     from tribolab.records.parts import RunOutcome
 
 
@@ -61,6 +62,8 @@ class PlannedSurface:
         File of the viscoelastic modulus, and its label; None if there is none.
     quality
         Arguments of `check_scan_set`: limits, skip.
+    area
+        Theory of the contact area.
     config_sha256
         Checksum of all of these, but of the scans.
     """
@@ -76,6 +79,7 @@ class PlannedSurface:
     lowest_force: float | None
     media: tuple[PlannedMedium, ...]
     modulus_file: tuple[Path, str] | None = None
+    area: AreaTheory = "persson"
     quality: Arguments = field(default_factory=dict)
     config_sha256: str = field(default="", compare=False)
 
@@ -116,6 +120,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
             "contact": campaign.contact.line(),
+            "area": campaign.contact.area,
             "forces": tuple(
                 sorted({*stated, *(force for name, force in known if name == surface.name)})
             ),

@@ -1,0 +1,87 @@
+"""How much adhesion adds to the contact area, tabulated over the pressure for solvers."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.adhesion import adhesion
+from tribolab.contact.line import WIDTH_LEVEL
+from tribolab.units import to_si
+
+_POINTS = 21  # pressures of the table
+
+
+class AdhesiveGrowth(NamedTuple):
+    """Contact area with adhesion over that without, over the pressure.
+
+    Parameters
+    ----------
+    log_pressure
+        ln p, p in Pa (n).
+    log_growth
+        ln of the ratio of the areas (n).
+    work_of_adhesion
+        [J/m2]
+    """
+
+    log_pressure: np.ndarray
+    log_growth: np.ndarray
+    work_of_adhesion: float
+
+    def __call__(self, solid: np.ndarray, whole: np.ndarray, area: np.ndarray) -> np.ndarray:
+        """Return the area with adhesion for an area without.
+
+        Parameters
+        ----------
+        solid, whole
+            Pressure of the solid contact, and that of solid and fluid [Pa] (..., x).
+        area
+            A/A0 at the solid's pressure without adhesion [1] (..., x).
+
+        Notes
+        -----
+        ``A(p_cont) A_adh(p)/A_0(p)``, at most 1: adhesion acts in the
+        share of the contact that the solid holds. In the linear range it is A_adh(p_cont), and
+        where a contact binds at no pressure at all it goes to 0 with p_cont all the same. Outside
+        the nominal contact, where p is under 1e-3 of its maximum, nothing is added.
+        """
+        with np.errstate(divide="ignore"):
+            growth = np.exp(np.interp(np.log(whole), self.log_pressure, self.log_growth))
+        nominal = whole > WIDTH_LEVEL * whole.max(axis=-1, keepdims=True)
+        return np.where(nominal & (solid > 0), np.minimum(area * growth, 1.0), area)
+
+
+def adhesive_growth(
+    psd: xr.Dataset, effective_modulus: float, work_of_adhesion: str | float, highest: float
+) -> AdhesiveGrowth | None:
+    """Tabulate the growth of the area by adhesion up to a pressure.
+
+    Parameters
+    ----------
+    psd, effective_modulus
+        As for `adhesion`.
+    work_of_adhesion
+        Under the liquid [J/m2]; where it is not above zero, the liquid wets and nothing is added.
+    highest
+        Largest pressure [Pa] that will be asked for.
+
+    Returns
+    -------
+    AdhesiveGrowth or None
+        None if nothing is added.
+
+    Raises
+    ------
+    AnalysisError
+        As for `adhesion`.
+    """
+    work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
+    if work <= 0:
+        return None
+    pressure = np.geomspace(WIDTH_LEVEL * highest / 2, highest, _POINTS)
+    solved = adhesion(pressure, psd, effective_modulus, work)
+    growth = solved["contact_area_ratio"] / solved["contact_area_ratio_no_adhesion"]
+    return AdhesiveGrowth(np.log(pressure), np.log(growth.values), work)
