@@ -109,7 +109,7 @@ def test_the_shear_stress_that_went_in_comes_back(outcome):
 @pytest.mark.slow
 def test_the_shear_stress_stands_for_both_theories_of_the_area(outcome):
     """The corrected area is larger by a fifth to two fifths, the stress lower by as much."""
-    fits = read_csv(outcome.folder / "tables" / "shear_stress.csv")
+    fits = pd.read_csv(outcome.folder / "tables" / "shear_stress.csv")
     assert set(fits["area"]) == {"persson"}
     assert set(fits["other_area"]) == {"corrected"}
     ratio = fits["shear_stress_other_area_Pa"] / fits["shear_stress_Pa"]
@@ -196,7 +196,7 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     text = campaign.read_text("utf-8")
     for line, more in (
         ("viscosity =", 'viscosity_range = ["1.2 Pa s", "1.6 Pa s"]'),
-        ("youngs_modulus =", 'youngs_modulus_range = ["1.4 MPa", "1.6 MPa"]'),
+        ("youngs_modulus =", 'youngs_modulus_range = ["1.4 MPa", "1.6 MPa"]\narea = "corrected"'),
     ):
         text = re.sub(rf"^({line}.*)$", rf"\1\n{more}", text, flags=re.M)
     file, folder = campaign.with_name("ranges.toml"), campaign.parent / "ranges"
@@ -211,6 +211,7 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     model = folder / made.models[0].data_file
     for part in ("curve", "profiles"):
         assert read_netcdf(model, part).attrs["inlet_length_m"] == 0.04
+        assert read_netcdf(model, part).attrs["area"] == "corrected"
     assert (after["viscosity"]["low"], after["viscosity"]["high"]) == ("1.2 Pa s", "1.6 Pa s")
     assert after["viscosity"]["largest_relative_change"] > 0.1
     assert "no viscosity_range was given" in rows[0].not_varied

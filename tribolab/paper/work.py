@@ -131,10 +131,15 @@ def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> Row:
         # one run at each load does not tell how well it would repeat; the rig's is known
         common_error=Scatter().repeat,
     )
+    plain, corrected = (
+        fit.curve[f"friction_per_shear_stress{other}"].values for other in ("", "_other")
+    )
     return {
         "surface": task.surface,
         "normal_force_N": force,
         "printed_shear_stress_Pa": printed,
+        # what leaves the solid's friction over the measured speeds as it is
+        "printed_with_corrected_area_Pa": printed * (plain @ corrected) / (corrected @ corrected),
         "shear_stress_Pa": fit.shear_stress,
         "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,
         "shear_stress_high_Pa": fit.shear_stress + fit.half_interval,
