@@ -166,7 +166,9 @@ def gap_effect(
     The gaps are moved along (round the ends) and mirrored, in sixteen ways that are the same each
     time. They fall on what is bridged already as often as the share of the gaps, which the mean
     shift is corrected for. Three tenths of the shift are added to the error: gaps of real scans
-    stand on flanks and in pits rather than anywhere.
+    stand on flanks and in pits rather than anywhere. Of known scans with points, streaks and blobs
+    knocked out, 1.96 errors held the whole scan's value in 95.5 % of all cases, and in 87 % of the
+    poorest kind: streaks over a twentieth of a map (`tests/benchmarks/gap_coverage.py`).
     """
     share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
     if share > _MOST:
