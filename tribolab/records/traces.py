@@ -27,7 +27,7 @@ _MOST_SPANS = 400
 _FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal takes
 _FINEST = 24_000  # points of a signal that the page zooms into
 _POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
-_BYTES, _FEW = 1.5e6, 32  # of all traces together, of so many runs or fewer
+_BYTES, _FEW = 1.25e6, 32  # of all traces together, of so many runs or fewer
 _COARSE_SHARE = 0.3  # of that for what is shown at once
 
 
@@ -84,7 +84,7 @@ def trace_size(runs: int) -> tuple[int, int]:
     Examples
     --------
     >>> trace_size(5), trace_size(200), trace_size(2000)
-    ((2000, 131250), (621, 11600), (300, 4101))
+    ((2000, 109375), (517, 9667), (300, 3417))
     """
     runs = 1 << max(runs - 1, 0).bit_length()
     # of many runs the page grows, but more slowly than their number
