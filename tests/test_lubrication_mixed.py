@@ -266,7 +266,9 @@ def test_anything_converges_or_says_why(modulus, viscosity, load, roughness, nam
         return
     assert float(curve.residual.max()) < 1e-8
     assert float(np.abs(curve.load_balance).max()) < 1e-8
-    assert np.all(np.diff(curve.minimum_separation.values) > 0)
+    film = curve.minimum_separation.values
+    # where the film is thick beside what the flow lifts, it grows by less than its last digit
+    assert np.all(np.diff(film) >= 0) and film[-1] > film[0]
     assert np.all(np.diff(curve.friction_per_shear_stress.values) <= 1e-12)
 
 

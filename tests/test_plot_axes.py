@@ -45,6 +45,8 @@ def drawings():
     jointly = tl.fit_shear_stress_jointly(
         points, xu2026.contact, psd, 1.4, points["load"], curves=several
     )
+    stated = {"tilt": {"value": "1 deg", "as": "half-width"}}
+    budget = tl.uncertainty_budget(friction, stated)
     film = tl.film_profile(xu2026.contact, psd, speed=1e-3, **given)
     factors = tl.flow_factors(psd)
     factors = factors.dataset(factors.rms_roughness * np.geomspace(0.3, 3, 5))
@@ -98,6 +100,7 @@ def drawings():
     return {
         "runs_needed": (lambda **k: plot.runs_needed(wanted, **k), 1, "dry"),
         "control": (lambda **k: plot.control(chart, **k), 1, "weighted mean"),
+        "uncertainty_budget": (lambda **k: plot.uncertainty_budget(budget, **k), 1, "combined"),
         "precision": (lambda **k: plot.precision(spreads, **k), 1, "between day"),
         "differences": (lambda **k: plot.differences(beside, **k), 1, "dry"),
         "forest": (lambda **k: plot.forest(beside, **k), 1, "90 %"),

@@ -215,7 +215,7 @@ def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any
 
 def one(value: str | float | xr.DataArray) -> str | float:
     """Return what was stated, or of an array without dims its number."""
-    return value if isinstance(value, str | float | int) else float(value.item())
+    return float(value.item()) if hasattr(value, "item") else value
 
 
 def _cut(value: Any) -> Any:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 _ABOVE = 8  # lines above the first row that are looked at
 _TELLING = 200  # cells that tell whether a row is one of units
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
-_BRACKETED = re.compile(r"\S[^\[\]()]*?[\[(][^\[\]()]*[\])]|\S+")
+# A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
+# look for it, a long line without brackets would be gone through once for each of its words
+_BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
 # SI units of what an instrument records: a text that converts to one of them is a unit
 DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),

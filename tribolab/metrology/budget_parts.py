@@ -106,11 +106,12 @@ def combined(
     """
     size = data.sizes[dim]
     names = [str(s.name) for s in scatter] + list(parts)
-    values = np.array([s.u for s in scatter] + list(parts.values()), float).reshape(-1, size)
+    shape = len(names), size
+    values = np.array([s.u for s in scatter] + list(parts.values()), float).reshape(shape)
     freedom = [np.broadcast_to(s.dof, size) for s in scatter]
     stated = [known[name].dof if name in known else np.inf for name in parts]
     freedom += [np.full(size, dof) for dof in stated]
-    dof = np.array(freedom, float).reshape(-1, size)
+    dof = np.array(freedom, float).reshape(shape)
     missing = [n for n, row in zip(names, values, strict=True) if size and np.isnan(row).all()]
     counted = np.where([[n in missing] for n in names], 0.0, values)
     u = np.sqrt(np.sum(counted**2, axis=0))

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.plot.labels import plain
-from tribolab.plot.panel import name_panel, several_panels
+from tribolab.plot.panel import name_all, name_panel, several_panels
 from tribolab.plot.style import (
     BLUE,
     GREY,
@@ -73,8 +73,8 @@ def uncertainty_budget(
         (axes,),
     ):
         y = np.arange(names.size)[::-1]
-        colours = [BLUE] * (names.size - 1) + [ORANGE]
-        axes.barh(y, share, 0.62, color=colours)
+        axes.barh(y[:-1], share[:-1], 0.62, color=BLUE, label="parts")
+        axes.barh(y[-1:], share[-1:], 0.62, color=ORANGE, label="combined")
         keep(figure, "parts", "parts", part=names, contribution_percent=share)
         axes.axhline(0.5, color=GREY, linewidth=0.6)
         axes.set_yticks(y, [plain(name) for name in names])
@@ -84,6 +84,7 @@ def uncertainty_budget(
         axes.set_xlabel(r"standard uncertainty (% of $\mu$)")
         tidy(axes)
         if ax is not None:
+            name_all(axes)
             name_panel(axes, title)
             return figure
         margins(figure, 45, 3, 10.5, 7.5 if title else 3.5)
