@@ -10,7 +10,8 @@ from tribolab.contact.area import area_of
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import apparent_contact_area_ratio, contact_area_ratio
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.stribeck import stribeck_curve
 
 SHARES = {
     "corrected": lambda area: 0.51 + 0.49 * area**2,

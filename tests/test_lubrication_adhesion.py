@@ -6,7 +6,8 @@ from contact_cases import CONTACT, E_STAR, reference_psd
 
 from tribolab.contact.adhesion import adhesion
 from tribolab.contact.line import rough_line_contact
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.stribeck import stribeck_curve
 
 WET = "51 mJ/m^2"
 

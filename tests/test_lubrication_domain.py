@@ -8,7 +8,8 @@ from scipy.integrate import quad
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import _tail, film_estimate
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.stribeck import stribeck_curve
 
 
 def friction(name, speeds, load=310.0, **more):

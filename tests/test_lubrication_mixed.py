@@ -16,8 +16,9 @@ from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
+from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.mixed import _film, _jacobian, _rupture, couette_number
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.sweep import dry_state
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)

@@ -11,8 +11,9 @@ from contact_cases import CONTACT, reference_psd
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.errors import AnalysisError, UnitError
 from tribolab.fit.model_uncertainty import model_uncertainty
+from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.patir_cheng import patir_cheng
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.studies import xu2026
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 33)

@@ -18,7 +18,8 @@ from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.lubrication.factors import flow_factors, smooth_factors
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve
+from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.records.parts import beyond_limits
 from tribolab.records.wording import validity_of
 from tribolab.report.templating import environment

@@ -70,7 +70,7 @@ _PUBLIC = {
     "stribeck_curve": "tribolab.lubrication.stribeck",
     "with_shear_stress": "tribolab.lubrication.stribeck",
     "liquid_viscosity": "tribolab.lubrication.viscosity",
-    "film_profile": "tribolab.lubrication.stribeck",
+    "film_profile": "tribolab.lubrication.film",
     "relative_flow_factors": "tribolab.lubrication.relative_factors",
     "flow_factors": "tribolab.lubrication.factors",
     "fit_shear_stress": "tribolab.fit.shear_stress",
@@ -230,8 +230,9 @@ if TYPE_CHECKING:
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.lubrication.factors import flow_factors
+    from tribolab.lubrication.film import film_profile
     from tribolab.lubrication.relative_factors import relative_flow_factors
-    from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
+    from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
     from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
     from tribolab.mode.model import Mode

@@ -15,7 +15,8 @@ from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
 from tribolab.fit.variations import Base, Skipped, Variation, held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
-from tribolab.lubrication.stribeck import CELLS, stribeck_curve
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.system import CELLS
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
 from tribolab.untyped import Arguments

@@ -1,44 +1,36 @@
-"""Computed Stribeck curves: friction over speed and load, and profiles across the contact."""
+"""Computed Stribeck curves: friction over speed and load."""
 
 from __future__ import annotations
-
-import functools
-from contextlib import AbstractContextManager
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from threadpoolctl import ThreadpoolController
 
-from tribolab.contact.adhesive_growth import adhesive_growth
-from tribolab.contact.area import AreaTheory, check_area, other_area
+from tribolab.contact.area import AreaTheory, other_area
 from tribolab.contact.geometry import LineContact
-from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
+from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.limits import line_limits
-from tribolab.contact.persson import contact_area_ratio
-from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import (
     FlowFactors,
     RoughBody,
-    check_rough_body,
-    flow_factors,
-    smooth_factors,
 )
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.speeds import Point, System, solve_speeds
-from tribolab.several import one, over_dims
-from tribolab.stamping import labelled, stamp
-from tribolab.units import positive, to_si
-from tribolab.validity import together
-
-CELLS = 280
-PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
-REFERENCE = (
-    "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
-    "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
+from tribolab.lubrication.system import (
+    CELLS,
+    PROOF,
+    checked_loads,
+    checked_speeds,
+    one_thread,
+    real_area,
+    system_attributes,
+    system_of,
+    with_adhesion,
 )
+from tribolab.several import one, over_dims
+from tribolab.stamping import stamp
+from tribolab.units import to_si
 
 
 @over_dims(psd=("wavenumber",), viscosity=(), shear_stress=())
@@ -144,8 +136,8 @@ def stribeck_curve(
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    with _one_thread():
-        system = _system(
+    with one_thread():
+        system = system_of(
             contact,
             psd,
             one(viscosity),
@@ -160,10 +152,10 @@ def stribeck_curve(
     stress = to_si(one(shear_stress), "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
-    loads, speeds = _loads(load), _speeds(speed, psd)
-    system = _binding(system, float(np.max(loads.values)), work_of_adhesion)
+    loads, speeds = checked_loads(load), checked_speeds(speed, psd)
+    system = with_adhesion(system, float(np.max(loads.values)), work_of_adhesion)
     curves = []
-    with _one_thread():
+    with one_thread():
         for force in np.atleast_1d(loads.values):
             curves.append(_curve(system, float(force), speeds.values, friction_factors))
     stacked = {name: np.stack([curve[name] for curve in curves], axis=1) for name in curves[0]}
@@ -180,7 +172,7 @@ def stribeck_curve(
         data = data.isel(load=0)
     return stamp(
         data,
-        **_facts(system),
+        **system_attributes(system),
         shear_stress_Pa=stress,
         **line_limits(
             "stribeck_curve",
@@ -193,24 +185,6 @@ def stribeck_curve(
         ),
         friction_factors="yes" if friction_factors else "no",
     )
-
-
-def _facts(system: System) -> dict[str, str | float | int]:
-    """Attributes that say what was computed, and on which grid."""
-    return {
-        "viscosity_Pa_s": system.viscosity,
-        "youngs_modulus_Pa": system.contact.youngs_modulus,
-        "poisson_ratio": system.contact.poisson_ratio,
-        "radius_m": system.contact.radius,
-        "rough_body": system.factors.rough_body,
-        "factors": system.factors.model,
-        "cells": system.cells,
-        "domain": float(system.domain),
-        "inlet_length_m": system.inlet_length,
-        "area": system.area,
-        "work_of_adhesion_J_m2": system.growth.work_of_adhesion if system.growth else 0.0,
-        "references": REFERENCE,
-    }
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
@@ -249,162 +223,6 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> 
     return stamp(curve, shear_stress_Pa=float(shear_stress))
 
 
-@over_dims(psd=("wavenumber",))
-def film_profile(
-    contact: LineContact,
-    psd: xr.Dataset | None,
-    viscosity: str | float,
-    load: str | float,
-    speed: str | ArrayLike,
-    rough_body: RoughBody | None = None,
-    factors: FlowFactors | None = None,
-    gamma: float = 0.45,
-    cells: int = CELLS,
-    domain: float = 1.0,
-    inlet_length: str | float = np.inf,
-    area: AreaTheory = "persson",
-    work_of_adhesion: str | float | None = None,
-) -> xr.Dataset:
-    """Separation and pressures across the contact at one speed, or at each of several.
-
-    Parameters
-    ----------
-    contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain, inlet_length
-        As for `stribeck_curve`, with one load.
-    area, work_of_adhesion
-        Theory of the contact area, and what adhesion adds to it, as there.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over ``x`` [m], the flat sliding to +x (at a negative speed to -x); of several speeds over
-        (sliding_speed, point), with ``x`` as a variable: ``separation`` [m],
-        ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
-        ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``, the
-        ``flux`` [m2/s] and ``cavity_start`` [m], and the proof of the point: ``residual``,
-        ``load_balance``, ``flux_variation``, ``iterations``. Grid and system are attributes.
-
-    Examples
-    --------
-    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
-    >>> film = film_profile(contact, None, "1.4 Pa s", "310 N/m", "1 mm/s")
-    >>> f"{1e6 * film.separation.min():.2f} um, {1e-3 * film.pressure.max():.1f} kPa"
-    '5.89 um, 52.3 kPa'
-    """
-    force = positive(load, "N/m", "load")
-    if np.ndim(speed):
-        numerics = (
-            rough_body, factors, gamma, cells, domain, inlet_length, area, work_of_adhesion
-        )  # fmt: skip
-        films = [
-            film_profile(contact, psd, viscosity, load, float(v), *numerics)
-            for v in _speeds(speed, psd).values
-        ]
-        return _put_together(films)
-    v = float(_speeds(speed, psd).values[0])
-    with _one_thread():
-        system = _system(
-            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length, area
-        )
-        system = _binding(system, force, work_of_adhesion)
-        ((_, problem, solution),) = solve_speeds(system, force, np.array([abs(v)]))
-    fields = solution.fields
-    side = -1 if v < 0 else 1
-    solid = fields.contact * problem.pressure
-    whole = solid + fields.fluid * problem.pressure
-    values = {
-        "separation": solution.state.film * problem.gap,
-        "contact_pressure": solid,
-        "fluid_pressure": fields.fluid * problem.pressure,
-        "pressure": whole,
-        "contact_area_ratio": _area(system, solid, whole, area),
-    }
-    x = side * problem.mesh.x * problem.half_width
-    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
-    # variables, since several speeds that are put together lose attributes that differ
-    scalars = {
-        "flux": float(side * fields.flux[0] * unit),
-        "cavity_start": float(x[min(fields.front, x.size - 1)]),
-        **{name: getattr(solution, name) for name in PROOF},
-    }
-    data = xr.Dataset(
-        {name: ("x", value[::side]) for name, value in values.items()} | scalars,
-        coords={"x": x[::side], "sliding_speed": v, "load": force},
-    )
-    thinnest = values["separation"].min()
-    limits = line_limits("film_profile", contact, force, psd, system.separation, [v], [thinnest])
-    return stamp(data, **_facts(system), **limits)
-
-
-def _put_together(films: list[xr.Dataset]) -> xr.Dataset:
-    """Profiles at several speeds over (sliding_speed, point): each is on a grid of its own."""
-    rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
-    joined = xr.concat(
-        rows, "sliding_speed", data_vars="all", coords="different", compat="equals", join="outer",
-        combine_attrs="drop_conflicts",
-    )  # fmt: skip
-    return joined.assign_attrs(together(film.attrs for film in films))
-
-
-def _system(
-    contact: LineContact,
-    psd: xr.Dataset | None,
-    viscosity: str | float,
-    rough_body: RoughBody | None,
-    factors: FlowFactors | None,
-    gamma: float,
-    cells: int,
-    domain: float,
-    inlet_length: str | float,
-    area: AreaTheory,
-) -> System:
-    eta = positive(viscosity, "Pa s", "viscosity")
-    check_area(area)
-    if cells < 50:
-        raise AnalysisError(f"cells: at least 50 are wanted; got {cells}")
-    if not 0.2 <= domain <= 5:
-        raise AnalysisError(f"domain: a length between 0.2 and 5 is wanted; got {domain:g}")
-    if factors is None:
-        body = rough_body or "stationary"
-        factors = smooth_factors(body) if psd is None else flow_factors(psd, body, gamma=gamma)
-    elif rough_body is not None:
-        check_rough_body(rough_body)
-        factors = replace(factors, rough_body=rough_body)
-    separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
-    begins = to_si(inlet_length, "m", name="inlet_length")  # `solve_speeds` has its lower limit
-    return System(contact, psd, separation, factors, eta, cells, domain, begins, area)
-
-
-@functools.cache
-def _libraries() -> ThreadpoolController:
-    """Find what computes on threads, once: it takes as long as some speeds of a curve."""
-    return ThreadpoolController()
-
-
-def _one_thread() -> AbstractContextManager[object]:
-    """BLAS on one thread: two are slower on matrices as small as these."""
-    limited: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
-    return limited
-
-
-def _loads(load: str | ArrayLike) -> xr.DataArray:
-    loads = labelled(load, "load")
-    if loads.ndim > 1 or not np.all((loads.values > 0) & np.isfinite(loads.values)):
-        raise AnalysisError(f"load: positive, finite values in N/m are wanted; got {loads.values}")
-    return loads
-
-
-def _speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArray:
-    speeds = labelled(speed, "sliding_speed")
-    if speeds.ndim == 0:
-        speeds = speeds.expand_dims("sliding_speed")
-    if speeds.ndim > 1 or speeds.size == 0 or not np.all(np.isfinite(speeds.values)):
-        raise AnalysisError("speed: a list of finite sliding speeds in m/s is wanted")
-    if psd is None and np.any(speeds.values == 0):
-        raise AnalysisError("speed: at 0 no film is left between smooth surfaces; leave it out")
-    return speeds
-
-
 def _curve(
     system: System, force: float, speeds: np.ndarray, friction_factors: bool
 ) -> dict[str, np.ndarray]:
@@ -415,7 +233,10 @@ def _curve(
     whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
     hertz = hertz_half_width(force, system.contact)
     areas = np.stack(
-        [_area(system, solid, whole, theory) for theory in (system.area, other_area(system.area))],
+        [
+            real_area(system, solid, whole, theory)
+            for theory in (system.area, other_area(system.area))
+        ],
         axis=1,
     )
     rows = [
@@ -449,21 +270,3 @@ def _row(
         "solid_load_share": solid @ mesh.width / problem.load,
         **{name: getattr(solution, name) for name in PROOF},
     }
-
-
-def _binding(system: System, highest_load: float, work_of_adhesion: str | float | None) -> System:
-    """Return the system with what adhesion adds to its contact area up to a load [N/m]."""
-    if work_of_adhesion is None or system.psd is None:
-        return system
-    modulus = system.contact.effective_modulus
-    # a film's pressure peaks a little above that of Hertz
-    highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
-    return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
-
-
-def _area(system: System, solid: np.ndarray, whole: np.ndarray, theory: AreaTheory) -> np.ndarray:
-    """Relative contact area at the solid's pressure and the whole one [Pa]."""
-    if system.psd is None:
-        return np.zeros_like(solid)
-    area = contact_area_ratio(solid, system.psd, system.contact.effective_modulus, theory)
-    return area if system.growth is None else system.growth(solid, whole, area)

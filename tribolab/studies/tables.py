@@ -151,7 +151,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Gr
 
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
-    from tribolab.lubrication.stribeck import film_profile
+    from tribolab.lubrication.film import film_profile
     from tribolab.stamping import stamp
 
     profiles = [

@@ -16,7 +16,8 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.factors import flow_factors
-from tribolab.lubrication.stribeck import film_profile, stribeck_curve, with_shear_stress
+from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp
 from tribolab.untyped import Arguments
