@@ -15,11 +15,12 @@ from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed, plain_speed, plain_speeds
 from tribolab.words import aligned, force_text, many
 
-_FLAT = 0.75  # lowest over highest friction of a curve that hardly depends on speed
+_FLAT = 0.75  # lowest over highest friction of a curve that has no fall to speak of
+_SURE = 3.0  # standard errors of a difference that is told
 _NEAR = 0.9  # of the highest friction: still on the plateau
 _GRAVE = ("fail", "error", "suspect")
 _MOST_FINDINGS = 2  # on a card; all of them stand among the findings
-_LONGEST = 110  # characters of a finding on a card
+_LONGEST = 160  # characters of a finding on a card
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ def friction_in_words(points: Sequence[Mapping[str, Any]]) -> str:
     'Plateau of µ = 1.100 ± 0.010 up to 10 µm/s; half of it at 2 mm/s; lowest 0.200 ± 0.010 at \
 10 mm/s, the fastest speed (± between runs).'
     >>> friction_in_words([row(1e-6, 1.1), row(1e-2, 1.05)])
-    'µ hardly depends on speed: 1.050 ± 0.010 to 1.100 ± 0.010 from 1 µm/s to 10 mm/s (± \
+    'µ falls by 4.5 % with speed: from 1.100 ± 0.010 at 1 µm/s to 1.050 ± 0.010 at 10 mm/s (± \
 between runs).'
     """
     known = [row for row in points if row["friction_coefficient"] is not None]
@@ -148,15 +149,29 @@ between runs).'
     high = max(known, key=lambda row: row["friction_coefficient"])
     low = min(known, key=lambda row: row["friction_coefficient"])
     top, bottom = high["friction_coefficient"], low["friction_coefficient"]
-    first, last = (plain_speed(known[k]["sliding_speed_m_s"]) for k in (0, -1))
     if top > 0 and bottom >= _FLAT * top:
-        values = f"{_mu(low)} to {_mu(high)} from {first} to {last}{_held([low, high])}"
-        return f"µ hardly depends on speed: {values}."
+        return f"{_flat(known, low, high)}{_held([low, high])}."
     parts = [_plateau(known, high), _half(known, high)]
     where = plain_speed(low["sliding_speed_m_s"])
     side = {id(known[0]): ", the slowest speed", id(known[-1]): ", the fastest speed"}
     parts.append(f"lowest {_mu(low)} at {where}{side.get(id(low), '')}")
     return "; ".join(filter(None, parts)) + f"{_held([high, low])}."
+
+
+def _flat(known: list[Mapping[str, Any]], low: Mapping[str, Any], high: Mapping[str, Any]) -> str:
+    """Say how a curve without a fall depends on speed; `known` from slow to fast."""
+    first, last = (plain_speed(known[k]["sliding_speed_m_s"]) for k in (0, -1))
+    change = high["friction_coefficient"] - low["friction_coefficient"]
+    error = math.hypot(*(row["friction_coefficient_sem"] or 0.0 for row in (low, high)))
+    between = f"from {first} to {last}"
+    if change <= _SURE * error:
+        return f"µ hardly depends on speed: {_mu(low)} to {_mu(high)} {between}"
+    share = f"{100 * change / high['friction_coefficient']:.2g} %"
+    if {id(low), id(high)} != {id(known[0]), id(known[-1])}:
+        return f"µ varies by {share} with speed: {_mu(low)} to {_mu(high)} {between}"
+    way = "rises" if high is known[-1] else "falls"
+    ends = f"from {_mu(known[0])} at {first} to {_mu(known[-1])} at {last}"
+    return f"µ {way} by {share} with speed: {ends}"
 
 
 def _held(rows: Sequence[Mapping[str, Any]]) -> str:
