@@ -1,6 +1,6 @@
 """What the tests of drafted dialects share."""
 
-from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.io.dialects.find import load_dialect

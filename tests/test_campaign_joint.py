@@ -16,7 +16,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord
-from tribolab.report.model_figures import draw_model, plan_model_figures
+from tribolab.report.figures.models import draw_model, plan_model_figures
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 

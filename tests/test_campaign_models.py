@@ -15,8 +15,8 @@ import xarray as xr
 import tribolab
 from tribolab.app.demo import DemoComparison
 from tribolab.app.terminal import truth_lines
-from tribolab.app.truth import Comparison
-from tribolab.app.truth_shear_stress import compare_shear_stress
+from tribolab.app.truth.friction import Comparison
+from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.campaign.models.analysis import beside
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
@@ -28,8 +28,8 @@ from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.records.model_words import is_described, judgement, stress_interval
 from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
-from tribolab.report.model_figures import draw_model, plan_model_figures
-from tribolab.report.model_records import ModelRow
+from tribolab.report.document.models import ModelRow
+from tribolab.report.figures.models import draw_model, plan_model_figures
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 import tribolab
 from tribolab import rig
 from tribolab.app.run import run_campaign
-from tribolab.app.truth_surfaces import compare_surfaces
+from tribolab.app.truth.surfaces import compare_surfaces
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store.catalogue import CATALOGUE, Store
 from tribolab.campaign.surfaces.plan import PlannedMedium, PlannedSurface, plan_surfaces
@@ -29,7 +29,7 @@ from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.parts import RunOutcome
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.report.page import write_page
+from tribolab.report.page.page import write_page
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, rms_slope

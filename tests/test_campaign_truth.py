@@ -9,7 +9,7 @@ import xarray as xr
 from campaigns import simulated
 
 from tribolab.app.demo import run_demo
-from tribolab.app.truth import compare_run, compare_with_truth, summary
+from tribolab.app.truth.friction import compare_run, compare_with_truth, summary
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 

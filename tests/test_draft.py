@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from drafts import drafted
 
-from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.errors import OutputError, ReadError

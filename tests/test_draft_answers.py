@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.draft.answers import corrected
-from tribolab.draft.draft import draft_dialect
-from tribolab.draft.examples import draft_of_examples
+from tribolab.draft.dialect.answers import corrected
+from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.draft.dialect.examples import draft_of_examples
 from tribolab.errors import ReadError
 
 

@@ -6,7 +6,7 @@ from drafts import drafted
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
 
 NAMES = {

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.app.file_info import run_lines
-from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.errors import ConfigError
 from tribolab.io.dialects.find import load_dialect
 

@@ -5,9 +5,9 @@ import pytest
 from drafts import drafted
 
 import tribolab as tl
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.columns.words import squeezed
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
-from tribolab.draft.words import squeezed
 
 TABLES = {
     "French": "Temps (s);Force de frottement (N);Charge (N);Vitesse de glissement (mm/s);"

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.draft.questions import GuessedError
+from tribolab.draft.dialect.questions import GuessedError
 from tribolab.errors import ReadError
 
 GOOD = "Temps (s);Force de frottement (N);Charge (N);Vitesse (mm/s)"

@@ -13,7 +13,7 @@ from mutations import MADE
 from typer.testing import CliRunner
 
 from tribolab.cli import app
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError

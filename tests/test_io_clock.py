@@ -5,7 +5,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.app.file_info import file_lines
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.qc.run_checks import check_run

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribolab.app.file_info import file_lines
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.kinds import kind_of

@@ -27,7 +27,7 @@ from tribolab.campaign.settings.plan import planned_runs
 from tribolab.errors import ConfigError, OutputError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.traces import trace_size
-from tribolab.report.reviewing import review_data
+from tribolab.report.page.reviewing import review_data
 from tribolab.rig import read_truth
 
 

@@ -17,9 +17,9 @@ import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
 from tribolab.io.netcdf import write_netcdf
-from tribolab.plot.signals import main_signal
-from tribolab.plot.style import DOUBLE_MM, SINGLE_MM, surface_styles
-from tribolab.report.sliding_figures import Shown, SlipFigure, draw_sliding
+from tribolab.plot.look.style import DOUBLE_MM, SINGLE_MM, surface_styles
+from tribolab.plot.runs.signals import main_signal
+from tribolab.report.figures.sliding import Shown, SlipFigure, draw_sliding
 from tribolab.stamping import stamp
 
 

@@ -5,9 +5,9 @@ import pytest
 from matplotlib.ticker import LogLocator
 
 from tribolab.plot import svg
-from tribolab.plot.decades import SmallTicks, power_of_ten
-from tribolab.plot.frame import logarithmic
-from tribolab.plot.panel import one_panel
+from tribolab.plot.look.decades import SmallTicks, power_of_ten
+from tribolab.plot.look.frame import logarithmic
+from tribolab.plot.look.panel import one_panel
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 import pytest
 
-from tribolab.report.answer import cards
-from tribolab.report.in_short import in_short
+from tribolab.report.page.answer import cards
+from tribolab.report.page.in_short import in_short
 
 CHECK = {"check": "friction_sign", "status": "fail", "decision": "", "message": "it drives. Look"}
 SEM = {"friction_coefficient_sem": 0.01, "runs": 2}

@@ -16,7 +16,7 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.errors import ConfigError
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_record import RunRecord
-from tribolab.report.figure_choice import wanted
+from tribolab.report.figures.choice import wanted
 from tribolab.report.results import write_report
 from tribolab.report.tables import read, write, write_rows
 
@@ -65,7 +65,7 @@ def test_figures_of_the_same_data_are_taken_over_and_not_drawn(made, tmp_path, m
     def refuse(*given, **more):
         raise AssertionError("drawn again")
 
-    monkeypatch.setattr("tribolab.report.figures.draw", refuse)
+    monkeypatch.setattr("tribolab.report.figures.stage.draw", refuse)
     again = the_next(made, tmp_path)
     write_report(again, pdf=True)
     assert drawn(again) == drawn(made) and drawn(made)
@@ -73,7 +73,7 @@ def test_figures_of_the_same_data_are_taken_over_and_not_drawn(made, tmp_path, m
 
 
 def test_a_figure_whose_data_changed_is_drawn_anew_alone(made, tmp_path, monkeypatch):
-    from tribolab.report import figures
+    from tribolab.report.figures import stage as figures
 
     again = the_next(made, tmp_path)
     file = again.folder / again.curves[1].data_file  # of Sb-S

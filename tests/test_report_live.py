@@ -27,9 +27,9 @@ from report_pages import (
 from reporting import made_run
 
 from tribolab.campaign.store.catalogue import Catalogue
-from tribolab.report import page as page_module
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain
 from tribolab.report.live.still import first_view
+from tribolab.report.page import page as page_module
 
 PANEL = (
     "(() => { const e = document.querySelector('#run-1 .nsewdrag');"

@@ -21,8 +21,8 @@ from report_pages import (
 from reporting import made_outcome, made_run, with_run
 
 from tribolab.qc.flags import attach
+from tribolab.report.page.templating import _DRAWING, _SCRIPTS, data_address
 from tribolab.report.results import write_report
-from tribolab.report.templating import _DRAWING, _SCRIPTS, data_address
 
 SCRIPTS = _SCRIPTS + _DRAWING
 AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")

@@ -426,7 +426,7 @@ def test_a_curve_that_failed_is_a_finding(tmp_path):
 
 def test_curves_beyond_nine_go_to_further_figures(tmp_path):
     from tribolab.records.parts import CurveOutcome
-    from tribolab.report.curve_figures import draw_curves, plan_figures
+    from tribolab.report.figures.curves import draw_curves, plan_figures
 
     curves = []
     for number in range(11):

@@ -18,7 +18,7 @@ from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
 from tribolab.io.runs import read_run
-from tribolab.report.reviewing import pieces
+from tribolab.report.page.reviewing import pieces
 
 NUMBERS = {name: number for number, name in enumerate((FROZEN, SLIPPED, LATE, SOUND), start=1)}
 SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribolab.app.file_info import file_lines
-from tribolab.draft.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.dialects.find import load_dialect

@@ -5,7 +5,7 @@ import pytest
 from dialects import dialect_of
 
 import tribolab as tl
-from tribolab.draft.header import is_unit
+from tribolab.draft.file.header import is_unit
 from tribolab.errors import ConfigError, ReadError, TribolabError, UnitError
 from tribolab.quantities import QUANTITIES, dictionary, quantity, unit_conversion
 from tribolab.rubber.modulus import read_modulus

@@ -22,7 +22,7 @@ from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.records.parts import beyond_limits
 from tribolab.records.wording import validity_of
-from tribolab.report.templating import environment
+from tribolab.report.page.templating import environment
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026

@@ -80,9 +80,9 @@ def words_of_the_field():
 # Modules whose strings are programs, pages or files, not sentences.
 NO_SENTENCES = {
     "campaign/store/catalogue.py",
-    "draft/show.py",
+    "draft/dialect/show.py",
     "io/seal.py",
-    "plot/style.py",
+    "plot/look/style.py",
     "report/live/axes.py",
     "report/live/marks.py",
     "report/live/still.py",

@@ -23,7 +23,7 @@ from tribolab.version import __version__
 _PUBLIC = {
     "read": "tribolab.draft.read",
     "variables": "tribolab.variables",
-    "draft_dialect": "tribolab.draft.draft",
+    "draft_dialect": "tribolab.draft.dialect.draft",
     "read_netcdf": "tribolab.io.netcdf",
     "write_netcdf": "tribolab.io.netcdf",
     "find_segments": "tribolab.friction.segments.find",
@@ -205,7 +205,7 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.deposit.pack import pack
-    from tribolab.draft.draft import draft_dialect
+    from tribolab.draft.dialect.draft import draft_dialect
     from tribolab.draft.read import read
     from tribolab.draft.scans import read_scans
     from tribolab.errors import TribolabError

@@ -364,9 +364,9 @@ def dialect(
     with reported(debug):
         from tribolab.app.dialect import ask_about, try_on
         from tribolab.app.terminal import console
-        from tribolab.draft.draft import check_target, save_draft
-        from tribolab.draft.examples import draft_of_examples
-        from tribolab.draft.show import print_draft, print_next, print_signals
+        from tribolab.draft.dialect.draft import check_target, save_draft
+        from tribolab.draft.dialect.examples import draft_of_examples
+        from tribolab.draft.dialect.show import print_draft, print_next, print_signals
 
         draft = draft_of_examples(files, name)
         target = output or Path(f"{draft.name}.toml")

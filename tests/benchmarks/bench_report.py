@@ -27,7 +27,7 @@ from tribolab.records.part_records import CurveRecord  # noqa: E402 - as above
 from tribolab.records.traces import page_trace, trace_size  # noqa: E402 - as above
 from tribolab.report.live.curves import Friction, card_figures  # noqa: E402 - as above
 from tribolab.report.live.shown import shown  # noqa: E402 - as above
-from tribolab.report.page import write_page  # noqa: E402 - as above
+from tribolab.report.page.page import write_page  # noqa: E402 - as above
 
 _PAINTED = (
     "new Promise(done => requestAnimationFrame(() => requestAnimationFrame("

@@ -39,7 +39,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 from mutations import MADE, mutate
 
-from tribolab.draft.draft import draft_dialect
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.report.document import versions
-from tribolab.report.sections import Section
-from tribolab.report.templating import data_address, framed
+from tribolab.report.document.document import versions
+from tribolab.report.page.sections import Section
+from tribolab.report.page.templating import data_address, framed
 from tribolab.words import aligned
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Picture:
     @property
     def address(self) -> str:
         """The figure as an address that holds it."""
-        from tribolab.plot.style import svg
+        from tribolab.plot.look.style import svg
 
         return data_address(svg(self.figure))
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tribolab.app.run import run_campaign
-from tribolab.app.truth import Comparison, compare_with_truth
-from tribolab.app.truth_shear_stress import compare_shear_stress
-from tribolab.app.truth_surfaces import compare_surfaces
+from tribolab.app.truth.friction import Comparison, compare_with_truth
+from tribolab.app.truth.shear_stress import compare_shear_stress
+from tribolab.app.truth.surfaces import compare_surfaces
 from tribolab.campaign.engine.executor import workers
 from tribolab.report import tables
 from tribolab.rig import simulate_campaign

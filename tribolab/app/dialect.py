@@ -8,9 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from tribolab.draft.answers import column_of, corrected, fits, written
-from tribolab.draft.draft import Draft
-from tribolab.draft.follows import SAYS_SPEED
+from tribolab.draft.columns.follows import SAYS_SPEED
+from tribolab.draft.dialect.answers import column_of, corrected, fits, written
+from tribolab.draft.dialect.draft import Draft
 from tribolab.draft.model import DraftColumn, other_units
 from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
@@ -62,7 +62,7 @@ def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
 
 def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     """Ask for what the speed follows from, if that is all that is missing."""
-    from tribolab.draft.follows import what_follows
+    from tribolab.draft.columns.follows import what_follows
 
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:

@@ -19,7 +19,7 @@ from tribolab.campaign.store.staging import resolved, staged
 from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.errors import ConfigError
 from tribolab.report.code import code_of_page
-from tribolab.report.figure_choice import wanted
+from tribolab.report.figures.choice import wanted
 
 
 def run_campaign(

@@ -18,7 +18,7 @@ from tribolab.io.logs import PathLike
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.draft.draft import Draft
+    from tribolab.draft.dialect.draft import Draft
 
 DRAFTED = "drafted from the file"
 
@@ -87,7 +87,7 @@ def holds_run(path: Path, *, by_name: bool = True) -> bool:
 
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
-    from tribolab.draft.questions import GuessedError, questions
+    from tribolab.draft.dialect.questions import GuessedError, questions
 
     draft = draft_of(path)
     if draft is None or draft.kind == "table":
@@ -114,12 +114,12 @@ def draft_of(path: Path) -> Draft | None:
 
 @functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
 def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
-    from tribolab.draft.draft import draft_dialect
+    from tribolab.draft.dialect.draft import draft_dialect
 
     return draft_dialect(path)
 
 
 def _told(path: Path) -> dict[str, str]:
-    from tribolab.draft.questions import how_to_keep
+    from tribolab.draft.dialect.questions import how_to_keep
 
     return {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}

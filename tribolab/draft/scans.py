@@ -11,9 +11,9 @@ from typing import Literal, overload
 
 import xarray as xr
 
-from tribolab.draft.draft import holds_heights
+from tribolab.draft.dialect.draft import holds_heights
+from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
 from tribolab.draft.on_the_fly import DRAFTED, draft_of
-from tribolab.draft.questions import GuessedError, how_to_keep, questions
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument

@@ -12,7 +12,7 @@ import numpy as np
 from tribolab.io.netcdf import read_netcdf
 from tribolab.paper.work import data_file
 from tribolab.plot import Trace
-from tribolab.report.curve_figures import read_curve
+from tribolab.report.figures.curves import read_curve
 from tribolab.studies import xu2026
 from tribolab.words import speed_text
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from tribolab.plot.stick_slip import Trace
+    from tribolab.plot.slip.stick_slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
 # Several figures show the same data, and none of them changes it.

@@ -15,8 +15,8 @@ from tribolab.paper.hurst import steep_spectra
 from tribolab.paper.laboratory import Laboratory
 from tribolab.records.frames import rows_of
 from tribolab.records.wording import plain_value
-from tribolab.report.document import versions
-from tribolab.report.sections import Section
+from tribolab.report.document.document import versions
+from tribolab.report.page.sections import Section
 from tribolab.studies import xu2026
 from tribolab.studies.published import Published
 from tribolab.studies.tally import STATUSES, count_statuses, tell_statuses

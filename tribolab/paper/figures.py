@@ -10,8 +10,8 @@ from typing import Any
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import Drawn
-from tribolab.report.figure_files import Drawn as Picture
-from tribolab.report.figure_files import save_figure
+from tribolab.report.figures.files import Drawn as Picture
+from tribolab.report.figures.files import save_figure
 from tribolab.untyped import Json
 
 COMPUTED, SIMULATED = "computed here", "simulated"

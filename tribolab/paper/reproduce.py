@@ -21,7 +21,7 @@ from tribolab.paper.figures import FIGURES, DrawTask, draw
 from tribolab.paper.work import Task, compute
 from tribolab.records.parts import Row
 from tribolab.report import tables
-from tribolab.report.templating import framed
+from tribolab.report.page.templating import framed
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:

@@ -6,9 +6,32 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribolab.plot.budget import uncertainty_budget
-    from tribolab.plot.compared import differences, forest
-    from tribolab.plot.contact import (
+    from tribolab.plot.friction.curves import half_loop, stribeck
+    from tribolab.plot.friction.spread import friction_spread
+    from tribolab.plot.look.knobs import knobs
+    from tribolab.plot.look.style import figure_data, paper_style, save, svg
+    from tribolab.plot.metrology.budget import uncertainty_budget
+    from tribolab.plot.metrology.compared import differences, forest
+    from tribolab.plot.metrology.over_time import control
+    from tribolab.plot.metrology.planned import runs_needed
+    from tribolab.plot.metrology.repeats import precision
+    from tribolab.plot.model.film import film_profiles, lubrication_factors
+    from tribolab.plot.model.joint import joint_fit
+    from tribolab.plot.model.mixed import (
+        friction_factor_effect,
+        mixed_curve,
+        shear_stress,
+        shear_stress_over_speed,
+    )
+    from tribolab.plot.model.sensitivity import model_sensitivity
+    from tribolab.plot.runs.reduce import envelope
+    from tribolab.plot.runs.starts import cycles, static_friction
+    from tribolab.plot.runs.strokes import strokes
+    from tribolab.plot.runs.trace import trace
+    from tribolab.plot.slip.spectra import slip_spectra
+    from tribolab.plot.slip.spectrogram import slip_spectrogram
+    from tribolab.plot.slip.stick_slip import Trace, slip_events, slip_traces, waveform_map
+    from tribolab.plot.surface.contact import (
         adhesive_area,
         contact_area,
         contact_separation,
@@ -16,75 +39,52 @@ if TYPE_CHECKING:
         gaps,
         line_pressure,
     )
-    from tribolab.plot.curves import half_loop, stribeck
-    from tribolab.plot.film import film_profiles, lubrication_factors
-    from tribolab.plot.joint import joint_fit
-    from tribolab.plot.knobs import knobs
-    from tribolab.plot.mixed import (
-        friction_factor_effect,
-        mixed_curve,
-        shear_stress,
-        shear_stress_over_speed,
-    )
-    from tribolab.plot.over_time import control
-    from tribolab.plot.panels import strokes
-    from tribolab.plot.planned import runs_needed
-    from tribolab.plot.reduce import envelope
-    from tribolab.plot.repeats import precision
-    from tribolab.plot.runs import trace
-    from tribolab.plot.sensitivity import model_sensitivity
-    from tribolab.plot.slip_spectra import slip_spectra
-    from tribolab.plot.spectrogram import slip_spectrogram
-    from tribolab.plot.spread import friction_spread
-    from tribolab.plot.starts import cycles, static_friction
-    from tribolab.plot.stick_slip import Trace, slip_events, slip_traces, waveform_map
-    from tribolab.plot.style import figure_data, paper_style, save, svg
-    from tribolab.plot.surfaces import modulus, spectra, viscoelastic
+    from tribolab.plot.surface.spectra import modulus, spectra, viscoelastic
 
 # Loaded when first used: whoever wants a label waits for no matplotlib.
 _HOMES = {
-    "Trace": "tribolab.plot.stick_slip",
-    "adhesive_area": "tribolab.plot.contact",
-    "contact_area": "tribolab.plot.contact",
-    "contact_separation": "tribolab.plot.contact",
-    "effective_work": "tribolab.plot.contact",
-    "control": "tribolab.plot.over_time",
-    "cycles": "tribolab.plot.starts",
-    "differences": "tribolab.plot.compared",
-    "envelope": "tribolab.plot.reduce",
-    "figure_data": "tribolab.plot.style",
-    "film_profiles": "tribolab.plot.film",
-    "forest": "tribolab.plot.compared",
-    "friction_factor_effect": "tribolab.plot.mixed",
-    "friction_spread": "tribolab.plot.spread",
-    "gaps": "tribolab.plot.contact",
-    "half_loop": "tribolab.plot.curves",
-    "joint_fit": "tribolab.plot.joint",
-    "knobs": "tribolab.plot.knobs",
-    "line_pressure": "tribolab.plot.contact",
-    "lubrication_factors": "tribolab.plot.film",
-    "mixed_curve": "tribolab.plot.mixed",
-    "model_sensitivity": "tribolab.plot.sensitivity",
-    "modulus": "tribolab.plot.surfaces",
-    "paper_style": "tribolab.plot.style",
-    "precision": "tribolab.plot.repeats",
-    "runs_needed": "tribolab.plot.planned",
-    "save": "tribolab.plot.style",
-    "shear_stress": "tribolab.plot.mixed",
-    "shear_stress_over_speed": "tribolab.plot.mixed",
-    "slip_events": "tribolab.plot.stick_slip",
-    "slip_spectra": "tribolab.plot.slip_spectra",
-    "slip_spectrogram": "tribolab.plot.spectrogram",
-    "slip_traces": "tribolab.plot.stick_slip",
-    "spectra": "tribolab.plot.surfaces",
-    "static_friction": "tribolab.plot.starts",
-    "stribeck": "tribolab.plot.curves",
-    "strokes": "tribolab.plot.panels",
-    "svg": "tribolab.plot.style",
-    "trace": "tribolab.plot.runs",
-    "uncertainty_budget": "tribolab.plot.budget",
-    "viscoelastic": "tribolab.plot.surfaces",
-    "waveform_map": "tribolab.plot.stick_slip",
+    "Trace": "tribolab.plot.slip.stick_slip",
+    "adhesive_area": "tribolab.plot.surface.contact",
+    "contact_area": "tribolab.plot.surface.contact",
+    "contact_separation": "tribolab.plot.surface.contact",
+    "effective_work": "tribolab.plot.surface.contact",
+    "control": "tribolab.plot.metrology.over_time",
+    "cycles": "tribolab.plot.runs.starts",
+    "differences": "tribolab.plot.metrology.compared",
+    "envelope": "tribolab.plot.runs.reduce",
+    "figure_data": "tribolab.plot.look.style",
+    "film_profiles": "tribolab.plot.model.film",
+    "forest": "tribolab.plot.metrology.compared",
+    "friction_factor_effect": "tribolab.plot.model.mixed",
+    "friction_spread": "tribolab.plot.friction.spread",
+    "gaps": "tribolab.plot.surface.contact",
+    "half_loop": "tribolab.plot.friction.curves",
+    "joint_fit": "tribolab.plot.model.joint",
+    "knobs": "tribolab.plot.look.knobs",
+    "line_pressure": "tribolab.plot.surface.contact",
+    "lubrication_factors": "tribolab.plot.model.film",
+    "mixed_curve": "tribolab.plot.model.mixed",
+    "model_sensitivity": "tribolab.plot.model.sensitivity",
+    "modulus": "tribolab.plot.surface.spectra",
+    "paper_style": "tribolab.plot.look.style",
+    "precision": "tribolab.plot.metrology.repeats",
+    "runs_needed": "tribolab.plot.metrology.planned",
+    "save": "tribolab.plot.look.style",
+    "shear_stress": "tribolab.plot.model.mixed",
+    "shear_stress_over_speed": "tribolab.plot.model.mixed",
+    "slip_events": "tribolab.plot.slip.stick_slip",
+    "slip_spectra": "tribolab.plot.slip.spectra",
+    "slip_spectrogram": "tribolab.plot.slip.spectrogram",
+    "slip_traces": "tribolab.plot.slip.stick_slip",
+    "spectra": "tribolab.plot.surface.spectra",
+    "static_friction": "tribolab.plot.runs.starts",
+    "stribeck": "tribolab.plot.friction.curves",
+    "strokes": "tribolab.plot.runs.strokes",
+    "svg": "tribolab.plot.look.style",
+    "trace": "tribolab.plot.runs.trace",
+    "uncertainty_budget": "tribolab.plot.metrology.budget",
+    "viscoelastic": "tribolab.plot.surface.spectra",
+    "waveform_map": "tribolab.plot.slip.stick_slip",
 }
 
 __all__ = [

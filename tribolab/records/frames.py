@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.friction.coefficient.steadiness import WORDS
-from tribolab.plot.labels import column
+from tribolab.plot.look.labels import column
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value
 

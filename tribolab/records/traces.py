@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.pieces import one_by_one
-from tribolab.plot.reduce import envelope_index
-from tribolab.plot.signals import Signal, main_signal
+from tribolab.plot.runs.reduce import envelope_index
+from tribolab.plot.runs.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points

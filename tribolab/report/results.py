@@ -22,26 +22,40 @@ from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord
 from tribolab.records.parts import Notice, Row
 from tribolab.records.run_record import RunRecord
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.report import decisions, model_records, tables
-from tribolab.report.curve_figures import draw_curves, plan_figures
-from tribolab.report.document import brief_run, labels, report_document, report_head, write_json
-from tribolab.report.figure_choice import Wanted
-from tribolab.report.figures import Figures, FigureTask, planned
-from tribolab.report.live.gather import live_figures
-from tribolab.report.live.points import RunPoint, run_points
-from tribolab.report.model_figures import draw_model, plan_model_figures
-from tribolab.report.page import write_page
-from tribolab.report.reported import (
+from tribolab.report import tables
+from tribolab.report.document import decisions
+from tribolab.report.document.document import (
+    brief_run,
+    labels,
+    report_document,
+    report_head,
+    write_json,
+)
+from tribolab.report.document.models import (
+    ModelRow,
+    curve_table,
+    model_rows_of,
+    sensitivity_table,
+    shear_stress_table,
+)
+from tribolab.report.document.parts import (
     reported_curve,
     reported_mode,
     reported_model,
     reported_surface,
     run_document,
 )
-from tribolab.report.reviewing import review_data
-from tribolab.report.sliding_figures import draw_sliding, plan_sliding_figures
-from tribolab.report.surface_figures import draw_surfaces, plan_surface_figures
-from tribolab.report.surface_records import table
+from tribolab.report.document.surfaces import table
+from tribolab.report.figures.choice import Wanted
+from tribolab.report.figures.curves import draw_curves, plan_figures
+from tribolab.report.figures.models import draw_model, plan_model_figures
+from tribolab.report.figures.sliding import draw_sliding, plan_sliding_figures
+from tribolab.report.figures.stage import Figures, FigureTask, planned
+from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
+from tribolab.report.live.gather import live_figures
+from tribolab.report.live.points import RunPoint, run_points
+from tribolab.report.page.page import write_page
+from tribolab.report.page.reviewing import review_data
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
@@ -105,7 +119,7 @@ def write_report(
     ]
     fitted = [joint for joint in joints if joint.done]
 
-    rows = model_records.model_rows_of(models)
+    rows = model_rows_of(models)
     live, undrawn = live_figures(outcome, shown, points, rows, modes, fitted, executor)
     findings += undrawn
     tasks: list[FigureTask] = []
@@ -251,7 +265,7 @@ def _write_tables(
     outcome: Outcome,
     curves: Sequence[CurveRecord],
     surfaces: Sequence[SurfaceRecord],
-    models: Mapping[str, model_records.ModelRow],
+    models: Mapping[str, ModelRow],
     joints: Sequence[JointRecord],
     findings: Sequence[Notice],
 ) -> None:
@@ -316,9 +330,9 @@ def _write_tables(
     if outcome.models:
         every = list(models.values())
         for name, made in (
-            ("shear_stress", model_records.shear_stress_table(every)),
-            ("stribeck_model", model_records.curve_table(every)),
-            ("model_sensitivity", model_records.sensitivity_table(every)),
+            ("shear_stress", shear_stress_table(every)),
+            ("stribeck_model", curve_table(every)),
+            ("model_sensitivity", sensitivity_table(every)),
         ):
             tables.write(made, folder / f"{name}.csv")
     if joints:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.wording import with_error
+from tribolab.report.document.models import ModelRow
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told
 from tribolab.report.live.record import Band, Missed
-from tribolab.report.model_records import ModelRow
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import is_dry, many, number, span, speeds
 

@@ -13,6 +13,7 @@ from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 from tribolab.records.run_record import RunRecord
+from tribolab.report.document.models import ModelRow
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import Friction, card_figures, model_figures
 from tribolab.report.live.joint import record_of_joint_fits
@@ -22,7 +23,6 @@ from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask,
 from tribolab.report.live.shown import ShownFigure, shown
 from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
-from tribolab.report.model_records import ModelRow
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome

@@ -10,6 +10,7 @@ import numpy as np
 
 from tribolab.records.model_words import stress_interval
 from tribolab.records.wording import with_error
+from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import (
     Axis,
@@ -23,7 +24,6 @@ from tribolab.report.live.figure import (
 )
 from tribolab.report.live.record import Band, LiveRecord, Missed
 from tribolab.report.live.shown import shown
-from tribolab.report.model_records import ModelRow
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, percent
 

@@ -187,7 +187,7 @@ class _Open(NamedTuple):
 
 def _opened(one: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     from tribolab.io.netcdf import read_groups
-    from tribolab.plot.signals import LOOKED_AT
+    from tribolab.plot.runs.signals import LOOKED_AT
 
     assert one.slow is not None
     wanted = ("run", "segments", "friction", "stick_slip")
@@ -206,8 +206,8 @@ def _trace(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return friction over sliding distance [um] of the middle of a segment."""
-    from tribolab.plot.reduce import envelope_index
-    from tribolab.plot.signals import main_signal
+    from tribolab.plot.runs.reduce import envelope_index
+    from tribolab.plot.runs.signals import main_signal
 
     time = np.asarray(run["time"], float)
     start, stop = (float(segments[f"trimmed_{end}"][number]) for end in ("start", "stop"))

@@ -1,0 +1,1 @@
+"""Results of a simulated campaign beside what the rig was given."""

@@ -1,0 +1,244 @@
+"""Which column holds which quantity, where several names may mean it or one may mean several."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.draft.columns.words import SURE, Match, is_axis
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
+from tribolab.errors import shown
+from tribolab.quantities import QUANTITIES, quantity
+
+Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
+SIGNALS = {
+    "friction_force",
+    "normal_force",
+    "friction_coefficient",
+    "sliding_velocity",
+    "position",
+    "shear_stress",
+    "film_thickness",
+}
+_CHANNELS = {"friction_force", "normal_force", "friction_coefficient"}
+# beside friction: which of several such columns is taken changes no coefficient of friction
+_ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
+
+
+class _Proposal(NamedTuple):
+    """A column for a quantity; of several the one of the highest rank is taken."""
+
+    rank: tuple[float, bool, int]
+    place: int
+    option: Match
+
+
+def assigned(
+    columns: list[DraftColumn],
+    bare: list[Bare],
+    matched: list[list[Match]],
+    numbers: np.ndarray,
+    kind: Kind,
+) -> list[DraftColumn]:
+    """Give each quantity to the column whose name fits best.
+
+    Parameters
+    ----------
+    columns, bare
+        The columns, and their names without units.
+    matched
+        For each the quantities that its name may stand for, the likeliest first.
+    numbers
+        Their numbers (rows, columns) as written.
+    kind
+        What the file is.
+    """
+    matched = _without_axes(bare, matched)
+    has_units = any(unit is not None for _, unit, _ in bare)
+    filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
+    proposals: dict[str, list[_Proposal]] = {}
+    for index, options in enumerate(matched):
+        option = _preferred(options, bare[index][1], numbers[:, index], has_units)
+        if option:
+            # of names used twice the later counts: exporters repeat first what was plotted
+            rank = (option.score, bool(filled[index]), index)
+            proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
+    _give_way(proposals, matched)
+    result = list(columns)
+    for index, column in enumerate(columns):
+        if not column.label:
+            continue
+        unit = bare[index][1]
+        if unit is not None and not matched[index]:
+            same = [q for q in SIGNALS if _told_by(unit, quantity(q).unit)]
+            hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
+            result[index] = column._replace(note=hint or UNKNOWN_NAME)
+        elif not matched[index]:
+            result[index] = column._replace(note=UNKNOWN_NAME)
+    for rivals in proposals.values():
+        alike = _alike(rivals)
+        for rival in rivals:
+            place = rival.place
+            if rival in alike and _is_spare(rivals):
+                result[place] = _spare(columns, bare[place], rival, numbers[:, place], kind, rivals)
+            elif rival is not max(rivals):
+                name, best = rival.option.quantity, max(rivals).place + 1
+                note = f"also looks like {name}; column {best} is used"
+                result[place] = columns[place]._replace(quantity=name, note=note)
+            else:
+                column = _column(
+                    columns[place],
+                    bare[place],
+                    rival.option,
+                    numbers[:, place],
+                    kind,
+                    several=len(alike) > 1,
+                )
+                result[place] = _with_options(column, rival, rivals, matched[place])
+    return result
+
+
+def _alike(rivals: list[_Proposal]) -> list[_Proposal]:
+    """Return those of several columns whose names suit a quantity about as well as the best."""
+    return [rival for rival in rivals if rival.rank[0] > max(rivals).rank[0] - 0.05]
+
+
+def _is_spare(rivals: list[_Proposal]) -> bool:
+    """Whether just one of the columns for a force is filled; in another file it may be another."""
+    alike = _alike(rivals)
+    filled = sum(rival.rank[1] for rival in alike)
+    return len(alike) > 1 and filled == 1 and rivals[0].option.quantity in _CHANNELS
+
+
+def _spare(
+    columns: list[DraftColumn],
+    bare: Bare,
+    rival: _Proposal,
+    values: np.ndarray,
+    kind: Kind,
+    rivals: list[_Proposal],
+) -> DraftColumn:
+    """Fill in one of several columns for a force: the first that is filled will be taken."""
+    column = _column(columns[rival.place], bare, rival.option, values, kind, several=False)
+    best = max(rivals).place
+    note = "" if rival.place == best else f"nothing but zeros here; column {best + 1} is filled"
+    return column._replace(optional=True, note=note)
+
+
+def _with_options(
+    column: DraftColumn, rival: _Proposal, rivals: list[_Proposal], matched: list[Match]
+) -> DraftColumn:
+    """Add what a column may hold instead, and which other column may hold this."""
+    options = column.options
+    if len(_alike(rivals)) > 1:
+        others = sorted(r.place for r in rivals if r is not rival)
+        options = (*options, *(f"column {place + 1}" for place in others))
+    if rival.option.score < SURE:
+        others_named = (o.quantity for o in matched if o.quantity != rival.option.quantity)
+        options = (*options, *others_named, "not used")
+    return column._replace(options=options)
+
+
+def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]]) -> None:
+    """Let a vague name mean what nothing else is called, where a better one has its quantity."""
+    for rivals in list(proposals.values()):
+        best = max(rivals)
+        for rival in [r for r in rivals if r is not best and r.option.score < SURE]:
+            others = [o for o in matched[rival.place] if o.score >= rival.option.score - 0.05]
+            free = [o for o in others if o.quantity not in proposals]
+            if free and best.option.score >= SURE:
+                rivals.remove(rival)
+                proposals[free[0].quantity] = [rival._replace(option=free[0])]
+
+
+def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Where something turns, the axes of the machine's stage are no sliding position."""
+    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
+        return matched
+    return [
+        [option for option in options if option.quantity != "position"]
+        if is_axis(name) and options and options[0].quantity == "position"
+        else options
+        for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
+
+
+def _told_by(unit: str, si_unit: str) -> bool:
+    """Whether a unit tells something of the quantity: a number without a unit may be anything."""
+    return si_unit != "1" and converts(unit, si_unit)
+
+
+def _preferred(
+    options: list[Match], unit: str | None, values: np.ndarray, has_units: bool
+) -> Match | None:
+    """Of several quantities that a name may stand for, the one that suits unit and numbers."""
+    if not options or unit is not None:
+        return options[0] if options else None
+    top = [option for option in options if option.score > options[0].score - 0.05]
+    if len(top) > 1:
+        ratio = next((o for o in top if QUANTITIES[o.quantity].unit == "1"), None)
+        sizes = np.abs(values[np.isfinite(values)])
+        if ratio and (has_units or (sizes.size and np.median(sizes) < 2)):
+            return ratio
+        steps = np.diff(values)
+        if top[0].quantity == "time" and not (steps >= 0).all():
+            return top[1]
+    return options[0]
+
+
+def _column(
+    column: DraftColumn,
+    bare: Bare,
+    option: Match,
+    values: np.ndarray,
+    kind: Kind,
+    several: bool,
+) -> DraftColumn:
+    """Fill in a column that holds a quantity."""
+    _, unit, say_unit = bare
+    si_unit = quantity(option.quantity).unit
+    guessed = []
+    options: tuple[str, ...] = ()
+    if option.score < SURE:
+        guessed.append(f"the name means {quantity(option.quantity).long_name}")
+    if several and option.quantity not in _ASIDE:
+        guessed.append(f"of several columns for {option.quantity} it is the one meant")
+    written = unit if say_unit else None
+    if option.unit:
+        written = option.unit
+        guessed.append(f"'{shown(unit)}' means {option.unit}")
+    fill_in = ""
+    if unit is None and si_unit not in ("", "1"):
+        if option.quantity == "time":
+            written = time_unit(values)
+            guessed.append(f"time is in {written}")
+            options = other_units("s", written)
+        elif kind == "scan":
+            written = "mm" if option.quantity in ("x", "y") else "um"
+            guessed.append(f"{option.quantity} is in {written}")
+            options = other_units("m", written)
+        else:
+            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
+            options = other_units(si_unit)
+    finite = values[np.isfinite(values)]
+    sign = 1
+    if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():
+        sign = -1
+        guessed.append("the normal force is counted negative")
+        options = (*options, "counted positive")
+    used, note = not fill_in, ""
+    if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
+        used, note, fill_in = False, "it stands still", ""
+    return column._replace(
+        quantity=option.quantity,
+        unit=written,
+        sign=sign,
+        optional=not finite.size and option.quantity != "time",
+        used=used and (bool(finite.size) or option.quantity != "time"),
+        guessed=tuple(guessed),
+        options=options,
+        note=note or ("" if finite.size else "no value in this file"),
+        fill_in=fill_in,
+    )

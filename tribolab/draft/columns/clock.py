@@ -1,0 +1,81 @@
+"""What a drafted dialect has to say of the clock: it starts anew, and what single rows become."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from tribolab.draft.columns.words import squeezed
+from tribolab.io.clocks.faults import find_faults, rows_at_fault
+from tribolab.io.dialects.headers import split_name
+from tribolab.quantities import unit_conversion
+
+if TYPE_CHECKING:
+    from tribolab.draft.file.layout import Layout
+    from tribolab.draft.model import DraftColumn
+
+_DAY = 86400.0  # [s]
+_INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
+OnRepeat = Literal["", "drop", "interpolate"]
+
+
+def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
+    """Sum a column of time that holds intervals by its name and its numbers; whether it does.
+
+    Parameters
+    ----------
+    columns
+        The columns.
+    numbers
+        Their numbers (rows, columns); changed in place.
+    """
+    column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
+    if column is None or squeezed(split_name(column.label)[0]) not in _INTERVALS:
+        return False
+    passed = numbers[:, column.place - 1]
+    if len(passed) < 2 or not (passed >= 0).all() or (np.diff(passed) > 0).all():
+        return False
+    numbers[:, column.place - 1] = np.cumsum(passed)
+    return True
+
+
+def find_clock(
+    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
+) -> tuple[OnRepeat, bool, list[DraftColumn]]:
+    """Find out what has to be said for time to increase: of single rows, and of new starts.
+
+    Rows are left out only where nothing is lost with them: the row before says the same, or they
+    are empty.
+    """
+    column = next((c for c in columns if c.used and c.quantity == "time"), None)
+    if column is None:
+        return "", False, columns
+    time = numbers[:, column.place - 1] * unit_conversion(column.read_unit or "s", "time")[0]
+    edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
+    parts = list(zip(edges[:-1], edges[1:], strict=True))
+    ends = [(time[b - 1], time[b]) for b in edges[1:-1]]
+    restart = any(not later > earlier for earlier, later in ends)
+    bad, notes = np.zeros(len(time), dtype=bool), []
+    for first, last in parts:
+        faults = find_faults(time[first:last])
+        # a time of day begins anew at midnight
+        starts = [s for s in faults.starts if not (column.form and s.period == _DAY)]
+        restart |= bool(starts)
+        bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
+        periods = {start.period for start in starts if start.period}
+        notes += [f"its counter wraps every {period:.9g} s" for period in sorted(periods)]
+    on_repeat: OnRepeat = ""
+    if bad.any():
+        others = np.delete(numbers, column.place - 1, axis=1)
+        twin = np.zeros(len(time), dtype=bool)
+        twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
+        lossless = (twin | np.isnan(others).all(axis=1))[bad].all()
+        on_repeat = "drop" if lossless else "interpolate"
+        told = f"{int(bad.sum())} rows whose time is not later than before"
+        if lossless:  # no guess: nothing else could be done with them
+            column = column._replace(note=f"{told} are left out: they say nothing new")
+        else:
+            notes.append(f"{told} get times between the others'")
+    column = column._replace(guessed=(*column.guessed, *dict.fromkeys(notes)))
+    return on_repeat, restart, [column if c.place == column.place else c for c in columns]

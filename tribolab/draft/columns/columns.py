@@ -1,0 +1,246 @@
+"""What the columns of an unknown table hold: by their names and units, else by their numbers."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pandas as pd
+
+from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
+from tribolab.draft.columns.values import find_pitch, find_rate
+from tribolab.draft.columns.words import matches, split_unit
+from tribolab.draft.file.header import is_unit
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.lvm import units_above
+from tribolab.draft.model import DraftColumn, Kind, Understood, other_units
+from tribolab.errors import ReadError, brief, shown
+from tribolab.io.content.model import LARGEST
+from tribolab.io.dialects.dates import seconds
+from tribolab.io.dialects.headers import split_name, split_row
+
+
+def understand(layout: Layout) -> Understood:
+    """Tell what the columns of a file hold.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    numbers, text, missing = _numbers(layout)
+    columns = _labelled(layout)
+    pitch = find_pitch(layout)
+    guesses: list[str] = []
+    if _say_something(columns):
+        kind, columns = _by_name(columns, numbers, placed=pitch is not None)
+    elif pitch is not None and layout.width == 1:
+        kind, columns = "scan", [_heights(columns[0])]
+    else:
+        from tribolab.draft.columns.behaviour import by_behaviour
+
+        kind, columns, guesses = by_behaviour(columns, numbers)
+    columns = _dated(columns, layout, numbers, text)
+    columns = [
+        column._replace(
+            used=False,
+            guessed=(),
+            fill_in="",
+            note=f"not a number: '{shown(text[column.place - 1])}'",
+        )
+        if text[column.place - 1] and not column.form
+        else column
+        for column in columns
+    ]
+    from tribolab.draft.columns.clock import find_clock, summed
+
+    period = summed(columns, numbers)
+    on_repeat, restart, columns = find_clock(layout, columns, numbers)
+    used = [column.place - 1 for column in columns if column.used]
+    words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
+    placed = any(c.used and c.quantity == "x" for c in columns)
+    if kind == "scan" and pitch is not None and not placed:
+        return Understood(
+            kind,
+            tuple(columns),
+            numbers,
+            tuple(words),
+            "",
+            False,
+            tuple(guesses),
+            pitch_pattern=pitch.pattern,
+            pitch_unit=pitch.unit or "m",
+        )
+    if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
+        # time alone is a run only if something can be filled in
+        kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
+    result = Understood(
+        kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
+    )
+    timed = any(column.used and column.quantity == "time" for column in columns)
+    rate = None if timed or kind != "run" else find_rate(layout)
+    if rate is None:
+        return result
+    return result._replace(rate_pattern=rate.pattern, rate_unit=rate.unit or "Hz")
+
+
+def _dated(
+    columns: list[DraftColumn], layout: Layout, numbers: np.ndarray, text: list[str]
+) -> list[DraftColumn]:
+    """Where no column of numbers is time, take the first of dates, and put its numbers in."""
+    timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
+    if timed or not any(text):
+        return columns
+    from tribolab.draft.columns.dates import find_form
+
+    rows = [split_row(line, layout.delimiter) for line in layout.rows()]
+    for column in columns:
+        index = column.place - 1
+        if not text[index]:
+            continue
+        cells = [row[index] if index < len(row) else "" for row in rows]
+        form, other = find_form(cells)
+        if not form:
+            continue
+        numbers[:, index] = seconds(cells, form)
+        dated = column._replace(
+            quantity="time",
+            unit=None,
+            form=form,
+            used=True,
+            guessed=(f"dates are written {form}",) if other else (),
+            options=(other,) if other else (),
+            note="",
+            fill_in="",
+        )
+        return [
+            dated
+            if c is column
+            else c._replace(quantity=None, used=False)
+            if c.quantity == "time"
+            else c
+            for c in columns
+        ]
+    return columns
+
+
+def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
+    """Numbers of all rows; for each column a text that is no number, and its words for no value."""
+    blank = layout.delimiter == "whitespace"
+    try:
+        frame = pd.read_csv(
+            io.StringIO("\n".join(layout.rows())),
+            sep=r"\s+" if blank else layout.delimiter,
+            header=None,
+            names=range(layout.width),
+            decimal=layout.decimal,
+            index_col=False,
+            keep_default_na=False,
+            na_values=[""],
+            skipinitialspace=True,
+            on_bad_lines="skip",
+            low_memory=False,
+        )
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise ReadError(
+            f"{layout.file.path}: the table cannot be read: {brief(error, 100)}; is a quotation "
+            "mark left open in it?"
+        ) from error
+    numbers = np.full(frame.shape, np.nan)
+    text = [""] * layout.width
+    missing: list[list[str]] = [[] for _ in range(layout.width)]
+    understood = np.array([dtype.kind in "fiu" for dtype in frame.dtypes], dtype=bool)
+    numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
+    for index in np.flatnonzero(~understood).tolist():
+        column = frame[index]
+        values = pd.to_numeric(column, errors="coerce")
+        numbers[:, index] = values.to_numpy(dtype=float)
+        odd = column[values.isna() & column.notna()].astype(str).str.strip()
+        odd = odd[~odd.str.lower().isin(["nan", ""])]
+        if len(odd) > 0.5 * column.notna().sum():
+            text[index] = odd.iloc[0][:30]
+        else:
+            missing[index] = odd.unique()[:10].tolist()
+    numbers[np.abs(numbers) > LARGEST] = np.nan
+    return numbers, text, missing
+
+
+def _labelled(layout: Layout) -> list[DraftColumn]:
+    """Columns with their names and units as the header says them."""
+    heading = layout.heading
+    cells = list(heading.cells if heading else ())[: layout.width]
+    cells += [""] * (layout.width - len(cells))
+    row = list(heading.unit_cells if heading else ()) + [""] * layout.width
+    columns: list[DraftColumn] = []
+    above = units_above(layout)
+    seen: dict[str, int] = {}
+    for place, cell in enumerate(cells, start=1):
+        name, unit = split_name(cell)
+        if unit is not None and not is_unit(unit):
+            unit = None  # brackets around something else
+        if heading and heading.units is not None:
+            name, unit = cell, row[place - 1].strip("[]() ") or None
+        seen[name] = seen.get(name, 0) + 1
+        known = name if name and heading and heading.aligned else None
+        columns.append(
+            DraftColumn(
+                place,
+                cell,
+                known,
+                seen[name] if known else 1,
+                file_unit=unit,
+                unit=above.get(place) if unit is None else None,
+            )
+        )
+    return columns
+
+
+def _bare(column: DraftColumn) -> Bare:
+    """Name without its unit, the unit, and whether the dialect has to say it."""
+    name = split_name(column.label)[0] if column.name is None else column.name
+    if column.unit is not None:
+        return name, column.unit, True
+    if column.file_unit is not None:
+        return name, column.file_unit, column.name is None
+    name, unit = split_unit(name)
+    return name, unit, unit is not None
+
+
+def _say_something(columns: list[DraftColumn]) -> bool:
+    """Whether the header says more than 'Channel 1, Channel 2'."""
+    bare = [_bare(column)[:2] for column in columns if column.label]
+    return any(unit is not None or matches(name, unit) for name, unit in bare)
+
+
+def _heights(column: DraftColumn) -> DraftColumn:
+    """Take a column without a known name for heights: what a pitch before it is of."""
+    unit = column.file_unit or column.unit
+    guess = "it is the height" + ("" if unit else " in um")
+    return column._replace(
+        quantity="height",
+        unit=column.unit if unit else "um",
+        used=True,
+        guessed=(guess,),
+        options=() if unit else other_units("m", "um"),
+    )
+
+
+def _by_name(
+    columns: list[DraftColumn], numbers: np.ndarray, *, placed: bool = False
+) -> tuple[Kind, list[DraftColumn]]:
+    bare = [_bare(column) for column in columns]
+    run = [matches(name, unit) for name, unit, _ in bare]
+    scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
+    best = {options[0].quantity for options in run if options}
+    profile = {options[0].quantity for options in scan if options}
+    if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
+        {"x", "height"} <= profile or (placed and "height" in profile)
+    ):
+        return "scan", assigned(columns, bare, scan, numbers, "scan")
+    kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
+    return kind, assigned(columns, bare, run, numbers, kind)
+
+
+def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
+    """Cells of the first rows as they stand in the file."""
+    return [split_row(line, layout.delimiter) for line in layout.rows()[:number]]

@@ -1,0 +1,141 @@
+"""Which quantities the name of a column may stand for."""
+
+from __future__ import annotations
+
+import functools
+import re
+import unicodedata
+from typing import NamedTuple
+
+from tribolab.draft.file.header import converts, is_unit
+from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, Word
+from tribolab.quantities import quantity
+
+_SPELT = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "µ": "mu", "μ": "mu"}
+_SPELT |= {"τ": "tau", "ω": "omega", "η": "eta", "θ": "theta", "ϑ": "theta", "σ": "sigma"}
+_LETTERS = str.maketrans(_SPELT)
+_ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
+_VAGUE = 0.6  # of the score of a word that names this quantity alone
+_OF_DEVICE = 0.98
+SURE = 0.7  # a name of which so much is a known word is no guess
+# "Stage.X", "DAQ.Fz": letters on both sides of the last point
+_DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
+_AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
+_WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
+# what a unit means for a quantity in this SI unit: weights for forces
+_MEANT = {"N": {"g": "gf", "kg": "kgf"}}
+
+
+class Match(NamedTuple):
+    """A quantity that a name may stand for; the higher the score, the surer."""
+
+    quantity: str
+    score: float
+    unit: str | None  # if it has to be read otherwise than it is written: g as gf
+
+
+def squeezed(name: str) -> str:
+    """Return a name without blanks, signs, capitals, umlauts and accents.
+
+    >>> squeezed("# Höhe_1"), squeezed("Déplacement (x)"), squeezed("摩擦係数 ①")
+    ('hoehe1', 'deplacementx', '摩擦係数1')
+    """
+    text = unicodedata.normalize("NFKC", name).lower().translate(_LETTERS)
+    text = _ACCENTS.sub("", unicodedata.normalize("NFD", text))
+    return "".join(filter(str.isalnum, unicodedata.normalize("NFC", text)))
+
+
+def device_of(name: str) -> tuple[str, str]:
+    """Separate the device that some programs put before a point from a channel's own name.
+
+    >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
+    (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
+    """
+    parts = _DEVICE.match(name.strip())
+    return (parts["device"], parts["name"]) if parts else ("", name)
+
+
+def is_axis(name: str) -> bool:
+    """Whether a name says that it is a place of a machine's axis: 'Stage.X', 'X axis position'.
+
+    >>> is_axis("XYStage.X"), is_axis("Position")
+    (True, False)
+    """
+    device, own = device_of(name)
+    return bool(_AXIS.search(squeezed(device or own)))
+
+
+def split_unit(label: str) -> tuple[str, str | None]:
+    """Separate a unit at the end of a name that has no brackets: 'Lateral um', 'Force/N'.
+
+    >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
+    (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
+    >>> split_unit("时间（s）")
+    ('时间', 's')
+    """
+    wide = _WIDE_BRACKETS.match(label.strip())
+    if wide and is_unit(wide["unit"].strip()):
+        return wide["name"], wide["unit"].strip()
+    known = {symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols}
+    if squeezed(label) in known:
+        return label, None
+    for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
+        name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
+        for text in (unit, unit.lower() if len(unit) > 3 else unit):
+            # what has no dimension is part of the name: the N/N of F_N/N
+            unitless = converts(text, "1") and text != "%"
+            if name and not unitless and is_unit(text):
+                return name, text
+    return label, None
+
+
+def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
+    """Return the quantities that a column may hold, the likeliest first.
+
+    Parameters
+    ----------
+    name
+        Name of the column without its unit.
+    unit
+        Its unit; None if it has none. A quantity of another dimension is left out.
+    scan
+        Whether the file holds a profile and not a run.
+
+    Examples
+    --------
+    >>> matches("Reibkraft", "N")[0].quantity, matches("T", "degC")[0].quantity
+    ('friction_force', 'temperature')
+    """
+    text = squeezed(name)
+    own = squeezed(device_of(name)[1]) if "." in name else ""
+    if not text:
+        return []
+    options = []
+    alone = unit is not None and not scan and _kinds(unit) == 1
+    for word in SCAN_WORDS if scan else RUN_WORDS:
+        score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
+        known = quantity(word.quantity)
+        read_as = _MEANT.get(known.unit, {}).get(unit or "")
+        if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
+            # what only this quantity is measured in tells it, whatever else the name says
+            score = SURE + (1 - SURE) * score if alone else score
+            options.append(Match(word.quantity, score, read_as))
+    return sorted(options, key=lambda match: -match.score)
+
+
+@functools.lru_cache(maxsize=256)
+def _kinds(unit: str) -> int:
+    """Return the number of quantities of a run that are measured in a unit."""
+    known = [quantity(word.quantity) for word in RUN_WORDS]
+    return sum(converts(unit, one.unit, one.bare) for one in known)
+
+
+def _score(text: str, word: Word) -> float:
+    if text in word.symbols:
+        return 1.0 - 0.01 * word.symbols.index(text)
+    return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
+
+
+def _share(text: str, stems: tuple[str, ...]) -> float:
+    """Part of a name that the longest stem in it makes up."""
+    return max((len(stem) for stem in stems if stem in text), default=0) / len(text)

@@ -1,0 +1,1 @@
+"""The dialect that is drafted: shown, asked about, written down."""

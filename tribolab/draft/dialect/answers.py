@@ -1,0 +1,108 @@
+"""A draft as a person corrects it: which column is what, in which unit, counted how."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from tribolab.draft.columns.clock import find_clock
+from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.dialect.toml import dialect_toml
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import DraftColumn, Understood
+from tribolab.errors import ReadError
+from tribolab.quantities import quantity
+
+if TYPE_CHECKING:
+    from tribolab.draft.file.layout import Layout
+
+AnyDraft = TypeVar("AnyDraft", bound=Drafted)
+
+
+def column_of(draft: Drafted, name: str) -> DraftColumn | None:
+    """Return the column that holds a quantity, or would if its unit were known."""
+    columns = draft.understood.columns if draft.understood else ()
+    held = [c for c in columns if c.quantity == name and (c.used or c.fill_in)]
+    return held[0] if held else None
+
+
+def fits(unit: str, name: str) -> bool:
+    """Whether a quantity can be written in a unit."""
+    known = quantity(name)
+    return converts(unit, known.unit, known.bare)
+
+
+def corrected(
+    draft: AnyDraft, name: str, place: int | None, unit: str | None = None, sign: int = 1
+) -> AnyDraft:
+    """Return a draft in which a person has said which column holds a quantity.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    name
+        The quantity.
+    place
+        Number of its column, from 1; None if no column holds it.
+    unit
+        What its numbers are written in; None if the file says it.
+    sign
+        -1 if it is counted the other way round.
+
+    Raises
+    ------
+    ReadError
+        If there is no such column, or its unit is neither given nor said in the file.
+    """
+    layout, before = draft.layout, draft.understood
+    if layout is None or before is None:
+        raise ReadError("there is no table to correct", where=draft.path)
+    if place is not None and not 1 <= place <= len(before.columns):
+        raise ReadError(f"there are columns 1 to {len(before.columns)}", where=draft.path)
+    columns = []
+    for column in before.columns:
+        if column.place == place:
+            columns.append(_said(column, name, unit, sign, draft))
+        elif column.quantity == name:
+            note = "not this quantity, as was said"
+            columns.append(
+                column._replace(
+                    quantity=None, used=False, guessed=(), fill_in="", unit=None, sign=1, note=note
+                )
+            )
+        else:
+            columns.append(column)
+    kind = "run" if before.kind == "table" and place is not None else before.kind
+    understood = before._replace(kind=kind, columns=tuple(columns))
+    if name == "time":
+        on_repeat, restart, timed = find_clock(layout, columns, before.numbers)
+        understood = understood._replace(columns=tuple(timed), on_repeat=on_repeat, restart=restart)
+    return written(draft, layout, understood)
+
+
+def written(draft: AnyDraft, layout: Layout, understood: Understood) -> AnyDraft:
+    """Return a draft that says what was understood anew."""
+    toml = dialect_toml(draft.name, layout, understood) if understood.kind != "table" else ""
+    return draft._replace(kind=understood.kind, understood=understood, toml=toml)
+
+
+def _said(
+    column: DraftColumn, name: str, unit: str | None, sign: int, draft: Drafted
+) -> DraftColumn:
+    """Return a column as a person describes it: nothing of it is a guess."""
+    si_unit = quantity(name).unit
+    read = unit or column.file_unit
+    if not (read and fits(read, name)) and si_unit != "1":
+        raise ReadError(
+            f"column {column.place} needs a unit of {name}, e.g. '{si_unit}'", where=draft.path
+        )
+    return column._replace(
+        quantity=name,
+        unit=unit if unit != column.file_unit or column.name is None else None,
+        sign=sign,
+        used=True,
+        guessed=(),
+        options=(),
+        fill_in="",
+        note="",
+    )

@@ -1,0 +1,102 @@
+"""What was understood of an unknown file, as plain data."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.draft.dialect.toml import FILL_IN
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import Kind, Understood
+from tribolab.errors import shown
+from tribolab.io.dialects.model import Dialect
+from tribolab.quantities import unit_conversion
+
+SHOWN = 10  # rows shown as understood
+
+
+class Drafted(NamedTuple):
+    """What was understood of a file.
+
+    Attributes
+    ----------
+    path, name
+        The file, and the name of the dialect.
+    kind
+        ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
+    layout, understood
+        How the file is written and what its columns hold; None for a file of results.
+    toml
+        The dialect as TOML; empty for a table.
+    answer
+        For a table: what the file is, and what reads it.
+    cells
+        The first rows as they stand in the file.
+    known
+        The known instrument that reads the file already; empty if there is none.
+    """
+
+    path: Path
+    name: str
+    kind: Kind
+    layout: Layout | None
+    understood: Understood | None
+    toml: str
+    answer: str
+    cells: tuple[tuple[str, ...], ...]
+    known: str
+
+    @property
+    def dialect(self) -> Dialect | None:
+        """The dialect; None for a table."""
+        return Dialect.model_validate(tomllib.loads(self.toml)) if self.toml else None
+
+    @property
+    def named(self) -> bool:
+        """Whether names in a header, and not the numbers alone, say what the columns hold."""
+        columns = self.understood.columns if self.understood else ()
+        return any(column.label and column.quantity for column in columns)
+
+    @property
+    def guesses(self) -> tuple[str, ...]:
+        """What was guessed, in the order of the file."""
+        if self.layout is None or self.understood is None:
+            return ()
+        columns = [
+            f"column {column.place}"
+            + (f" '{shown(column.label)}': " if column.label else ": ")
+            + guess
+            for column in self.understood.columns
+            for guess in column.guessed
+        ]
+        return (
+            *self.layout.notes,
+            *self.layout.guesses,
+            *self.understood.guesses,
+            *columns,
+        )
+
+    @property
+    def to_fill_in(self) -> Mapping[int, str]:
+        """Lines of the TOML that want to be filled in, and with what."""
+        return {
+            number: line.split(f"{FILL_IN}: ", 1)[1].removesuffix(", then remove the '#' below")
+            for number, line in enumerate(self.toml.splitlines(), start=1)
+            if FILL_IN in line
+        }
+
+    def first_rows(self, number: int = SHOWN) -> dict[str, np.ndarray]:
+        """Return the first rows in SI, by quantity."""
+        if self.understood is None:
+            return {}
+        rows = {}
+        for column in self.understood.columns:
+            if column.used and column.quantity:
+                scale, offset = unit_conversion(column.read_unit or "", column.quantity)
+                values = self.understood.numbers[:number, column.place - 1]
+                rows[column.quantity] = column.sign * scale * values + offset
+        return rows

@@ -1,0 +1,127 @@
+"""What a file of an unknown instrument leaves open: guesses, and what else may be meant."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.draft.columns.follows import Follows, what_follows
+from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.model import DraftColumn, Understood
+from tribolab.errors import ReadError, shown
+from tribolab.io import cures
+
+_OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+_TOLD = 12  # questions of one file that are told
+_RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
+
+
+class Question(NamedTuple):
+    """One thing that the file does not say: about what, the guess, what else it may be."""
+
+    about: str
+    guess: str
+    options: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """All of it in a line."""
+        others = f" (or {', '.join(self.options)})" if self.options else ""
+        return f"{self.about}: {self.guess}{others}"
+
+
+def questions(draft: Drafted) -> list[Question]:
+    """Return what had to be guessed of a file, or is missing; none if its header says it all.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    """
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return []
+    asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
+    if layout.skip_lines:
+        asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
+    if (
+        understood.kind == "run"
+        and not understood.rate_pattern
+        and not any(c.used and c.quantity == "time" for c in understood.columns)
+    ):
+        asked.append(Question("time", "rows are counted as seconds", _RATE))
+    follows = what_follows(layout, understood)
+    asked += _of_roles(understood, follows)
+    for column in understood.columns:
+        if column.guessed or column.fill_in:
+            asked.append(_of_column(column))
+    return asked
+
+
+def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
+    """Ask what drives the motion, and for the friction where a column of unknown name may be it."""
+    asked = []
+    if follows.speed is not None and follows.speed.guess:
+        asked.append(Question("speed", follows.speed.guess, follows.speed.options))
+    names = {column.quantity for column in understood.columns}
+    names |= {formula.quantity for formula in follows.formulas}
+    unknown = [c for c in understood.columns if c.note and not c.quantity and c.label]
+    if understood.kind == "run" and unknown and not names & _OF_FRICTION:
+        options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
+        asked.append(Question("friction", "no column is known to hold it", options))
+    return asked
+
+
+def _of_column(column: DraftColumn) -> Question:
+    about = f"column {column.place}" + (f" '{shown(column.label, 30)}'" if column.label else "")
+    guess = "; ".join(column.guessed)
+    if column.fill_in:
+        unsaid = f"{column.quantity}, in which unit?"
+        guess = f"{guess}; {unsaid}" if guess else unsaid
+    return Question(about, guess, tuple(dict.fromkeys(column.options)))
+
+
+class GuessedError(ReadError):
+    """A file could be read only by guessing; all guesses stand in the message.
+
+    In a campaign they stand in one line, else in a table.
+    """
+
+    def __init__(self, path: Path, asked: Sequence[Question], table: str = cures.RUN) -> None:
+        what = "no known instrument writes such a file, and it does not say all itself"
+        super().__init__(what, where=path, cure=cures.unknown_instrument(path, table))
+        self.args = (path, tuple(asked), table)
+        self.asked = tuple(asked)
+
+    def told(self, audience: str) -> str:
+        """Return the message for an audience."""
+        listed = [question.line for question in self.asked[:_TOLD]]
+        if len(self.asked) > _TOLD:
+            listed.append(f"and {len(self.asked) - _TOLD} more")
+        cure = self.cure if isinstance(self.cure, str) else self.cure.told(audience)
+        if audience == "campaign":
+            return f"{self.where}: {self.what}; guessed: {'; '.join(listed)}; {cure}"
+        rows = _aligned(self.asked[:_TOLD]) + listed[_TOLD:]
+        return "\n".join([f"{self.where}: {self.what}. Guesses:", *rows, cure])
+
+
+def _aligned(asked: Sequence[Question]) -> list[str]:
+    """Return lines of a table: about what, the guess, what else it may be."""
+    first = max((len(question.about) for question in asked), default=0)
+    second = max((len(question.guess) for question in asked), default=0)
+    lines = []
+    for about, guess, options in asked:
+        others = f"  or: {', '.join(options)}" if options else ""
+        lines.append(f"  {about:<{first}}  {guess:<{second}}{others}".rstrip())
+    return lines
+
+
+def how_to_keep(path: Path) -> str:
+    """Return the command that writes down what is drafted from a file.
+
+    >>> how_to_keep(Path("raw/odd one.csv"))
+    "tribolab dialect 'odd one.csv'"
+    """
+    return f"tribolab dialect {shlex.quote(path.name)}"

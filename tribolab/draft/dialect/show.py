@@ -1,0 +1,190 @@
+"""Show on the terminal how an unknown file was understood, and what to do next."""
+
+from __future__ import annotations
+
+import io
+import shlex
+from pathlib import Path
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.dialect.sparks import BLOCKS, PLAIN, sparks
+from tribolab.draft.model import DraftColumn
+from tribolab.errors import shown as cut
+from tribolab.quantities import quantity
+
+_PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
+_COLUMNS = 12  # of raw cells that are shown side by side
+_WIDE = 40  # of a signal that is shown as a line of them
+_ABREAST = 5  # quantities side by side
+_LISTED = 60  # columns that are not used and shown all the same
+
+
+def print_draft(draft: Drafted, console: Console) -> None:
+    """Print what was understood of a file, its first rows, and what was guessed.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    console
+        Where to.
+    """
+    kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
+    console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
+    for line in _written(draft):
+        console.print(f"  {escape(line)}", soft_wrap=True)
+    if draft.known:
+        console.print(f"  the known instrument '{draft.known}' reads it already")
+    if draft.understood is not None and draft.toml:
+        console.print(_columns_table(draft))
+        print_signals(draft, console)
+    else:
+        console.print(_cells_table(draft))
+    if draft.toml and draft.guesses:
+        console.print("guessed, so look at it:")
+        for guess in draft.guesses:
+            console.print(f"  - {escape(guess)}", soft_wrap=True)
+
+
+def print_signals(draft: Drafted, console: Console) -> None:
+    """Print the first rows in SI as they were understood, and each signal as a line of blocks."""
+    for table in _rows_tables(draft):
+        console.print(table)
+    if draft.understood is None or not draft.toml:
+        return
+    table = _table("signals", "", "from", "to")
+    blocks = BLOCKS if console.encoding.startswith("utf") else PLAIN
+    table.columns[1].no_wrap = True
+    for name, values in draft.first_rows(len(draft.understood.numbers)).items():
+        known = values[np.isfinite(values)]
+        ends = (f"{known.min():.4g}", f"{known.max():.4g}") if known.size else ("", "")
+        table.add_row(_with_unit(name), sparks(values, _WIDE, blocks), *ends)
+    console.print(table)
+
+
+def draft_html(draft: Drafted) -> str:
+    """Return what `print_draft` prints, and what is to be filled in, for a notebook."""
+    page = Console(record=True, file=io.StringIO(), width=110, force_jupyter=False, highlight=False)
+    print_draft(draft, page)
+    for line, what in draft.to_fill_in.items():
+        page.print(f"fill in line {line} of the TOML: {escape(what)}", soft_wrap=True)
+    return page.export_html(inline_styles=True, code_format=_PRE)
+
+
+def print_next(draft: Drafted, written: Path, console: Console) -> None:
+    """Print where the dialect was written, which lines to fill in, and the command to type next."""
+    for line, what in draft.to_fill_in.items():
+        console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
+    console.print(f"written: {escape(str(written))}", soft_wrap=True)
+    file, toml = shlex.quote(str(draft.path)), shlex.quote(str(written))
+    console.print(
+        f"next:  tribolab info {escape(file)} --instrument {escape(toml)}", soft_wrap=True
+    )
+
+
+def _written(draft: Drafted) -> list[str]:
+    layout = draft.layout
+    if layout is None:
+        return []
+    rows = sum(len(block.rows) for block in layout.blocks)
+    if layout.held is not None:
+        sheet = f", sheet '{layout.held.sheet}'" if layout.held.sheet else ""
+        return [f"the first {rows} rows of {layout.width} columns ({layout.held.form}{sheet})"]
+    more = "" if layout.whole else ", and more: only the first megabyte was looked at"
+    tables = f" in {len(layout.blocks)} tables" if len(layout.blocks) > 1 else ""
+    if layout.others:
+        tables += f"; {layout.others} more in the file, which are not read"
+    marks = f"numbers parted by {layout.delimiter_name}, decimal "
+    marks += "comma" if layout.decimal == "," else "point"
+    if layout.heading is None:
+        header = "no header" + (f", {layout.skip} lines before the numbers" if layout.skip else "")
+    else:
+        header = f"header in line {layout.heading.names + 1}"
+        header += f", units in line {layout.heading.units + 1}" if layout.heading.units else ""
+        header += ", repeated" if layout.repeats and len(layout.blocks) > 1 else ""
+    bom = " with BOM" if layout.file.head.startswith(b"\xef\xbb\xbf") else ""
+    return [
+        f"{rows} rows of {layout.width} columns{tables}{more}",
+        f"{layout.encoding}{bom}, lines end in {layout.line_ends}; {marks}; {header}",
+    ]
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold")
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    return table
+
+
+def _columns_table(draft: Drafted) -> Table:
+    """One row per column; the unnamed and empty ones are left out."""
+    table = _table("column", "name in the file", "unit", "quantity", "remark")
+    if draft.understood is None:
+        return table
+    filled = np.isfinite(draft.understood.numbers).any(axis=0)
+    named = [c for c in draft.understood.columns if c.label or filled[c.place - 1]]
+    for number, column in enumerate(named):
+        if number < _LISTED or column.quantity:
+            meaning = escape(column.quantity or "") if column.used else ""
+            unit = column.read_unit or ""
+            table.add_row(
+                str(column.place),
+                escape(cut(column.label)),
+                escape(unit),
+                meaning,
+                escape(_remark(column)),
+            )
+    left = sum(1 for column in named[_LISTED:] if not column.quantity)
+    if left:
+        table.add_row("", f"... and {left} more", "", "", "not used")
+    return table
+
+
+def _remark(column: DraftColumn) -> str:
+    if column.used:
+        return "guessed" if column.guessed else column.note
+    return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
+
+
+def _rows_tables(draft: Drafted) -> list[Table]:
+    """First rows in SI, a column for each quantity; a handful of them side by side."""
+    rows = draft.first_rows()
+    names = list(rows)
+    tables = []
+    for start in range(0, len(names), _ABREAST):
+        part = names[start : start + _ABREAST]
+        table = _table("row", *(_with_unit(name) for name in part))
+        for number in range(max(len(rows[name]) for name in part)):
+            cells = [rows[name][number] for name in part]
+            table.add_row(
+                str(number + 1), *("" if np.isnan(value) else f"{value:.6g}" for value in cells)
+            )
+        tables.append(table)
+    return tables
+
+
+def _with_unit(name: str) -> str:
+    unit = quantity(name).unit
+    return name if unit == "1" else f"{name} {unit}"
+
+
+def _cells_table(draft: Drafted) -> Table:
+    """Return the first rows as they stand in the file, under its header if there is one."""
+    width = min(max((len(row) for row in draft.cells), default=0), _COLUMNS)
+    heading = draft.layout.heading if draft.layout else None
+    cells = list(heading.cells if heading else ()) + [""] * width
+    units = list(heading.unit_cells if heading else ()) + [""] * width
+    labels = [
+        f"{cell} [{unit}]" if unit else cell for cell, unit in zip(cells, units, strict=False)
+    ]
+    table = _table(*(escape(cut(label)) for label in labels[:width]))
+    table.show_header = heading is not None
+    for row in draft.cells:
+        table.add_row(*(escape(cut(cell)) for cell in row[:width]))
+    return table

@@ -1,0 +1,1 @@
+"""How an unknown file is written: its lines, its header, its tables."""

@@ -1,0 +1,145 @@
+"""The header above a table of numbers: which line it is, names, units."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.errors import TribolabError
+from tribolab.turns import Counted
+from tribolab.units import conversion
+
+if TYPE_CHECKING:
+    from tribolab.draft.file.lines import Grammar
+
+_ABOVE = 8  # lines above the first row that are looked at
+_TELLING = 200  # cells that tell whether a row is one of units
+_SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
+# A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
+# look for it, a long line without brackets would be gone through once for each of its words
+_BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
+# SI units of what an instrument records: a text that converts to one of them is a unit
+DIMENSIONS = (
+    *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
+    *("m/s**2", "N m"),
+)
+_UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
+
+
+class Heading(NamedTuple):
+    """A header: index of its line, that of the row of units, and what they say.
+
+    `aligned` is False where the delimiter does not part the names as it parts the numbers; they
+    are then given by position.
+    """
+
+    names: int
+    units: int | None
+    cells: tuple[str, ...]
+    unit_cells: tuple[str, ...]
+    aligned: bool
+
+
+def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int) -> Heading | None:
+    """Find the header of the table whose first row is line `start` (from 0).
+
+    Parameters
+    ----------
+    lines
+        Lines of the file.
+    start
+        Index of the first row of numbers.
+    grammar
+        How cells are parted.
+    width
+        Number of cells of a row of numbers.
+    """
+    above: list[int] = []
+    for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
+        if grammar.width(lines[index]):
+            break
+        if lines[index].strip():
+            above.append(index)
+    split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
+    fitting = {i: c for i, c in split.items() if _fits(lines[i], c[0], grammar, width)}
+    for index, (cells, aligned) in fitting.items():
+        if _are_units(cells) and index - 1 in fitting:
+            names, named = fitting[index - 1]
+            return Heading(index - 1, index, names, cells, aligned and named)
+    if not fitting:
+        return None
+    index, (cells, aligned) = next(iter(fitting.items()))
+    return Heading(index, None, cells, (), aligned)
+
+
+def first_cells(line: str, delimiter: str) -> str:
+    """Return the start of a line up to the end of its second cell."""
+    if delimiter == "whitespace":
+        return line.strip()
+    cells = line.split(delimiter)
+    return delimiter.join(cells[:2]) + (delimiter if len(cells) > 2 else "")
+
+
+def escaped(text: str) -> str:
+    """Return text as a pattern that people can read: blanks stay blanks."""
+    return _SPECIAL.sub(r"\\\1", text).replace("\t", r"\t")
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of something that an instrument records.
+
+    >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
+    (True, True, False, False)
+    """
+    return text in _UNITS or any(converts(text, dimension) for dimension in DIMENSIONS)
+
+
+@functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
+def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
+    """Whether a text is a unit that can be turned into an SI unit (`bare`: see `conversion`)."""
+    if not text or re.fullmatch(r"[\d.,+]+", text):
+        return False
+    try:
+        conversion(text, si_unit, bare)
+    except TribolabError:
+        return False
+    return True
+
+
+def _cells(line: str, grammar: Grammar, width: int) -> tuple[tuple[str, ...], bool]:
+    """Cells of a header, and whether the reader will find the same ones."""
+    cells = tuple(grammar.cells(line))
+    if grammar.delimiter != "whitespace" or len(cells) == width:
+        return cells, True
+    bare = line.strip().lstrip("#%/ ").strip()
+    for parts in (bare.split(), re.split(r"\t+|\s{2,}", bare), _BRACKETED.findall(bare)):
+        if len(parts) == width:
+            return tuple(part.strip().strip('"') for part in parts), False
+    return cells, False
+
+
+def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool:
+    """Whether a line can be the header of a table of a given width."""
+    filled = [cell for cell in cells if cell]
+    words = [cell for cell in filled if not grammar.is_number(cell)]
+    if not filled or len(words) < 0.7 * len(filled):
+        return False
+    if re.match(r"\s*(#|%|//|;)", line) and re.search(r"[:=]", line):
+        return False  # a comment that says something: "# rate: 10 Hz"
+    # "Interval data:" may stand before the names of all columns, "Operator:" before a name
+    first = 1 if len(cells) == width and len(filled) > 3 else 0
+    if any(cell.endswith((":", "=")) for cell in filled[first:]) or not re.search(r"\w", line):
+        return False
+    if grammar.delimiter == "whitespace" and len(cells) != width:
+        return False
+    if width == 1:
+        return len(filled) == 1 and len(line) < 60 and not re.search(r"[:=]\s*\S", line)
+    return len(filled) >= 2 and 0.5 * width <= len(cells) <= 1.5 * width + 2
+
+
+def _are_units(cells: Sequence[str]) -> bool:
+    filled = [cell.strip("[]() ") for cell in cells if cell][:_TELLING]
+    units = sum(1 for cell in filled if is_unit(cell) or cell == "-")
+    return units >= 0.6 * len(filled)

@@ -1,0 +1,1 @@
+"""The look of all figures: sizes, colours, words, ticks, and the axes that they share."""

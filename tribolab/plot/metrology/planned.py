@@ -1,0 +1,74 @@
+"""How many runs a precision takes, over how long each of them slides."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tribolab.errors import AnalysisError
+from tribolab.plot.look.decades import few_ticks
+from tribolab.plot.look.labels import label, plain
+from tribolab.plot.look.panel import one_panel
+from tribolab.plot.look.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, keep
+
+_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+_MARKERS = "os^DvP"
+
+
+def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> Figure:
+    """Draw how many runs reach a precision at each speed.
+
+    Parameters
+    ----------
+    table
+        As in `tribolab.across.planning.MeasuringPlan`: ``condition``, ``sliding_speed_m_s``,
+        ``runs`` and ``cheapest_runs``.
+    title
+        Text above.
+    ax
+        Axes to draw in; without them a figure is made.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time.
+
+    Raises
+    ------
+    AnalysisError
+        If there are no points.
+
+    Examples
+    --------
+    >>> from tribolab.plot import figure_data
+    >>> table = pd.DataFrame({"condition": ["dry"], "sliding_speed_m_s": [1e-3], "runs": [7.0]})
+    >>> figure_data(runs_needed(table.assign(cheapest_runs=5.0))).cheapest_runs.tolist()
+    [5.0]
+    """
+    if table.empty:
+        raise AnalysisError("there is nothing to draw: the plan has no points")
+    with one_panel(ax, title) as (figure, axes):
+        for number, (condition, rows) in enumerate(table.groupby("condition", sort=False)):
+            colour, marker = _COLOURS[number % 6], _MARKERS[number % 6]
+            speed = rows["sliding_speed_m_s"].to_numpy(dtype=float)
+            own = {name: rows[name].to_numpy(dtype=float) for name in ("runs", "cheapest_runs")}
+            axes.plot(
+                speed, own["runs"], f"{marker}-", color=colour, markersize=4,
+                label=plain(str(condition)),
+            )  # fmt: skip
+            axes.plot(
+                speed, own["cheapest_runs"], f"{marker}:", color=colour, markersize=4,
+                markerfacecolor="white",
+            )  # fmt: skip
+            keep(figure, "runs", str(condition), sliding_speed_m_s=speed, **own)
+        axes.set_xscale("log")
+        low, high = axes.dataLim.intervalx
+        axes.set_xlim(low / 1.8, high * 1.8)
+        few_ticks(axes.xaxis, low / 1.8, high * 1.8, decades=9)
+        top = float(np.nanmax(table[["runs", "cheapest_runs"]].to_numpy(dtype=float), initial=2.0))
+        axes.set_ylim(0.0, 1.15 * top)
+        axes.set_xlabel(label("sliding_speed"))
+        axes.set_ylabel("runs")
+    return figure

@@ -1,0 +1,1 @@
+"""Figures of mixed lubrication: beside the measurement, across the film, fitted jointly."""

@@ -1,0 +1,1 @@
+"""Figures of one run: its trace, its strokes, the start of sliding."""

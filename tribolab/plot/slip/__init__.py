@@ -1,0 +1,1 @@
+"""Figures of stick-slip: traces, events, spectra, and what oscillates when."""

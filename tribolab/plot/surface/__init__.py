@@ -1,0 +1,1 @@
+"""Figures of rough surfaces and of their contact."""

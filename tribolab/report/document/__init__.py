@@ -1,0 +1,1 @@
+"""report.json: its types, and what fills them."""

@@ -1,0 +1,243 @@
+"""Everything that the report says, as plain data: report.json, and what the page is made from."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import TypeAdapter
+
+from tribolab.provenance import sha256_of_file
+from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
+from tribolab.records.parts import Row
+from tribolab.records.wording import SYMBOLS, UNITS, plain_value
+from tribolab.report.document.schema import (
+    CampaignFile,
+    CampaignVerdict,
+    Extent,
+    ReportedCurve,
+    ReportedFinding,
+    ReportedMode,
+    ReportedModel,
+    ReportedSurface,
+    ReportHead,
+    SourceFile,
+)
+from tribolab.untyped import Json
+from tribolab.words import many, span
+
+if TYPE_CHECKING:
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.store.outcome import Outcome
+    from tribolab.records.joint_record import JointRecord
+    from tribolab.records.part_records import FigureRecord
+    from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
+
+BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
+_HEAD = TypeAdapter(ReportHead)
+_LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
+
+
+def labels(what: RunOutcome | CurveOutcome) -> Row:
+    """Return surface, medium and nominal load, as every table and record names them."""
+    return {
+        "surface": what.surface,
+        "medium": what.medium,
+        "nominal_normal_force_N": what.normal_force,
+    }
+
+
+def report_document(head: ReportHead) -> Json:
+    """Return what stands first in the report, as plain data, ready for JSON."""
+    return plain_value(_HEAD.dump_python(head, by_alias=True))
+
+
+def report_head(
+    outcome: Outcome,
+    runs: Sequence[Mapping[str, Any]],
+    findings: Sequence[Notice],
+    *,
+    curves: Iterable[ReportedCurve],
+    surfaces: Iterable[ReportedSurface],
+    modes: Iterable[ReportedMode],
+    models: Iterable[ReportedModel],
+    joints: Iterable[JointRecord],
+    figures: Mapping[str, Sequence[FigureRecord]],
+) -> ReportHead:
+    """Return all of the report but its runs.
+
+    Parameters
+    ----------
+    outcome
+        What the campaign came to.
+    runs
+        Of each run what `brief_run` says.
+    findings
+        All findings, gravest first.
+    curves, surfaces, modes, models, joints
+        As they are reported.
+    figures
+        By their section.
+    """
+    rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
+    return ReportHead(
+        made_at=dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        campaign=_campaign(outcome.campaign),
+        verdict=verdict(runs, rejected, len(outcome.lost_decisions))
+        if outcome.campaign.run
+        else _of_surfaces(outcome.surfaces, rejected),
+        thresholds=THRESHOLDS,
+        findings=tuple(ReportedFinding(*finding) for finding in findings),
+        sources=tuple(SourceFile(*source) for source in outcome.sources),
+        versions=versions(),
+        curves=tuple(curves),
+        surfaces=tuple(surfaces),
+        sliding_mode=tuple(modes),
+        models=tuple(models),
+        joint_fits=tuple(joints),
+        figures=tuple(figures["figures"]),
+        surface_figures=tuple(figures["surface_figures"]),
+        model_figures=tuple(figures["model_figures"]),
+        sliding_figures=tuple(figures["sliding_figures"]),
+    )
+
+
+def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
+    """Return what came of a campaign that measured surfaces only."""
+    scanned = [surface for surface in surfaces if surface.files]
+    done = sum(surface.done for surface in scanned)
+    text = f"{done} of {many(len(scanned), 'surface')}"
+    if rejected:
+        text += f"; scans of {', '.join(rejected)} rejected"
+    status = "complete" if done == len(scanned) and not rejected else "incomplete"
+    return replace(verdict((), rejected), status=status if done else "nothing", text=text)
+
+
+def verdict(
+    runs: Sequence[Mapping[str, Any]],
+    rejected_scans: Sequence[str] = (),
+    lost_decisions: int = 0,
+) -> CampaignVerdict:
+    """Return what came of the campaign in one sentence and its numbers.
+
+    Parameters
+    ----------
+    runs
+        As in report.json.
+    rejected_scans
+        Surfaces whose scans failed their checks.
+    lost_decisions
+        How many decisions are on runs that there are not.
+    """
+    done = [run for run in runs if run["status"] == "done"]
+    failed = len(runs) - len(done)
+    sound = [run for run in done if not is_bad(run)]
+    by_hand = {word: sum(run["quality"] == word for run in done) for word in BY_HAND}
+    rejected = len(done) - len(sound) - by_hand["rejected"]
+    segments = sum(run["segments_found"] for run in done)
+    segments_rejected = sum(run["segments_rejected"] for run in done)
+    quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
+    kept = sum(bool(run.get("kept")) for run in done)
+    status = "incomplete" if done else "nothing"
+    if done and not (failed or rejected or rejected_scans or kept or lost_decisions):
+        status = "complete"
+    doubtful = sum(status_word(run) == "suspect" for run in runs)
+    parts = [
+        f"{len(sound)} of {many(len(runs), 'run')} done" + f" ({doubtful} suspect)" * bool(doubtful)
+    ]
+    if failed:
+        parts.append(f"{failed} failed")
+    if kept:
+        parts.append(f"{kept} kept from before")
+    if rejected:
+        parts.append(f"{rejected} rejected by {'its' if rejected == 1 else 'their'} checks")
+    if rejected_scans:
+        parts.append(f"scans of {', '.join(rejected_scans)} rejected")
+    parts += [f"{count} {word} by hand" for word, count in by_hand.items() if count]
+    if lost_decisions:
+        parts.append(f"{many(lost_decisions, 'decision')} on no run")
+    out = f" ({segments_rejected} rejected by hand)" if segments_rejected else ""
+    parts.append(f"{many(segments, 'segment')}{out}")
+    ranges = {}
+    for name in ("friction_coefficient", "half_loop", "friction_force"):
+        if name in quantities:
+            mine = [run for run in sound if run["quantity"] == name]
+            bounds = [run[key] for run in mine for key in ("value_min", "value_max")]
+            known = [b for b in bounds if b is not None]
+            ranges[name] = Extent(min(known), max(known))
+            parts.append(f"{SYMBOLS[name]} from {span(known, UNITS[name])}")
+    return CampaignVerdict(
+        status=status,
+        text="; ".join(parts),
+        runs=len(runs),
+        done=len(done),
+        failed=failed,
+        rejected=rejected,
+        rejected_by_hand=by_hand["rejected"],
+        accepted_by_hand=by_hand["accepted"],
+        kept=kept,
+        reused=sum(run["reused"] for run in runs),
+        segments=segments,
+        segments_rejected=segments_rejected,
+        ranges=ranges,
+    )
+
+
+_BAD = ("fail", "error")
+
+
+def brief_run(run: Mapping[str, Any]) -> Json:
+    """Return what the table of runs shows of a run: all but what is long."""
+    brief = {key: value for key, value in run.items() if key not in _LONG}
+    objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
+    return brief | {"checks": objections}
+
+
+_LONG = ("segments", "flagged", "history", "signals", "files", "checks", "columns_not_used")
+
+
+def _campaign(campaign: Campaign) -> CampaignFile:
+    file = Path(campaign.file)
+    there = file.is_file()
+    return CampaignFile(
+        name=campaign.name,
+        file=file.name,
+        sha256=sha256_of_file(file) if there else "",
+        text=file.read_text(encoding="utf-8-sig") if there else "",
+    )
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python, of tribolab and of what computes for it."""
+    from tribolab.version import __version__
+
+    found = {"tribolab": __version__, "python": platform.python_version()}
+    for name in _LIBRARIES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:  # e.g. in a bundle without package metadata
+            found[name] = "unknown"
+    return found
+
+
+def write_json(document: Mapping[str, Any], runs: Iterable[Mapping[str, Any]], path: Path) -> None:
+    """Write the report as strict JSON: UTF-8, no NaN; the runs one by one, a line each."""
+
+    def text(value: Any, indent: int | None = 1) -> str:
+        return json.dumps(value, ensure_ascii=False, indent=indent, allow_nan=False)
+
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("{\n")
+        for key, value in document.items():
+            file.write(f"{text(key)}: {text(value)},\n")
+        file.write('"runs": [')
+        for number, run in enumerate(runs):
+            file.write(",\n" if number else "\n")
+            file.write(text(run, None))
+        file.write("\n]\n}\n")

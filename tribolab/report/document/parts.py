@@ -1,0 +1,106 @@
+"""Records of runs, curves, surfaces, models and sliding modes, as report.json has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pydantic import TypeAdapter
+
+from tribolab.report.document.schema import (
+    ReportedCurve,
+    ReportedMode,
+    ReportedModel,
+    ReportedRun,
+    ReportedSurface,
+)
+
+if TYPE_CHECKING:
+    from tribolab.records.mode_record import ModeRecord
+    from tribolab.records.part_records import CurveRecord, SurfaceRows
+    from tribolab.records.parts import ModelOutcome, PartOutcome, SurfaceOutcome
+    from tribolab.records.run_record import RunRecord
+    from tribolab.report.document.models import ModelRow
+    from tribolab.untyped import Arguments, Json
+
+_PART = ("name", "status", "reason", "error", "data_file", "reused", "kept", "seconds")
+_RUN = TypeAdapter(ReportedRun)
+
+
+def run_document(record: RunRecord) -> Json:
+    """Return a run as report.json has it, as plain data."""
+    run = record.outcome
+    reported = ReportedRun(
+        **_part(run),
+        surface=run.surface,
+        medium=run.medium,
+        nominal_normal_force_N=run.normal_force,
+        files=run.files,
+        segments_found=len(record.facts.segments),
+        segments_rejected=run.segments_rejected,
+        quality_as_found=run.quality_as_found,
+        **vars(record.facts),
+    )
+    plain: Json = _RUN.dump_python(reported, mode="json", by_alias=True)
+    return plain
+
+
+def reported_curve(curve: CurveRecord) -> ReportedCurve:
+    """Return a curve for report.json."""
+    outcome = curve.outcome
+    return ReportedCurve(
+        outcome.name,
+        outcome.surface,
+        outcome.medium,
+        outcome.normal_force,
+        outcome.run_names,
+        curve.points,
+        curve.points_as_found,
+        curve.budget,
+        curve.uncertainty_says,
+    )
+
+
+def reported_surface(surface: SurfaceOutcome, rows: SurfaceRows | None) -> ReportedSurface:
+    """Return a surface for report.json."""
+    return ReportedSurface(
+        **_part(surface),
+        quality=surface.quality,
+        checks=surface.checks,
+        files=surface.files,
+        roughness=rows.roughness if rows else None,
+        contact=rows.contact if rows else (),
+        adhesion=rows.adhesion if rows else (),
+        modulus=rows.modulus if rows else "",
+        validity=rows.validity if rows else "",
+    )
+
+
+def reported_model(model: ModelOutcome, rows: ModelRow | None) -> ReportedModel:
+    """Return a model for report.json."""
+    return ReportedModel(
+        **_part(model),
+        curve=model.curve,
+        surface=model.surface,
+        medium=model.medium,
+        normal_force_N=model.normal_force,
+        fit=rows.fit if rows else None,
+        sensitivity=rows.sensitivity if rows else (),
+        not_varied=rows.not_varied if rows else "",
+        validity=rows.validity if rows else "",
+    )
+
+
+def reported_mode(mode: ModeRecord, curve: CurveRecord) -> ReportedMode:
+    """Return the sliding mode of a curve for report.json."""
+    outcome = curve.outcome
+    shown = {name: value for name, value in vars(mode).items() if name != "moves"}
+    return ReportedMode(
+        **shown,
+        surface=outcome.surface,
+        medium=outcome.medium,
+        nominal_normal_force_N=outcome.normal_force,
+    )
+
+
+def _part(outcome: PartOutcome) -> Arguments:
+    return {name: getattr(outcome, name) for name in _PART}

@@ -1,0 +1,295 @@
+"""What report.json holds, as types: the report is made of them, and its schema from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
+
+from tribolab.campaign.modes import SPEED_COLUMNS
+from tribolab.mode.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN
+from tribolab.qc.register import STATUSES
+from tribolab.records.annotations import Columns, Natural, means, one_of
+from tribolab.records.joint_record import JointRecord
+from tribolab.records.judgement import Limits
+from tribolab.records.mode_record import EvidenceRow
+from tribolab.records.model_rows import FITTED
+from tribolab.records.part_records import BudgetRow, FigureRecord, Point
+from tribolab.records.parts import Row
+from tribolab.records.run_record import RunFacts
+from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.wording import UNITS
+from tribolab.report.document.models import BESIDE_FIT, SENSITIVE
+from tribolab.report.tables import SEVERITIES
+from tribolab.untyped import Json
+
+SCHEMA_FILE = "report.schema.json"
+_DESCRIPTION = (
+    "report.json: everything that report.html says. Numbers are in SI units, which stand in the "
+    "names; what is not a number is null."
+)
+_FIT_TEXTS = ("area", "other_area", "interval_says", "judgement", "spectrum_error_from", "ratio_to")
+_CHECK = ("scan", "check", "status", "variable", "message", "value", "unit", "where")
+_VALIDITY = "limits of the theory that the results leave, and what to do; empty if none"
+_QUALITY = "gravest finding of the checks on the scans that were used; empty if there are none"
+_ROUGHNESS = (
+    "a row of tables/roughness.csv: ISO parameters are means over the scans, rms_* moments of the "
+    "extrapolated spectrum"
+)
+_CONTACT = (
+    "a row of tables/contact.csv: without adhesion, at one load; at one pressure where no load is "
+    "known"
+)
+_ADHESION = "a row of tables/adhesion.csv: in one medium, at one load"
+
+Seconds = Annotated[float, Field(ge=0)]
+Status = Annotated[str, one_of("done", "failed", "skipped")]
+Load = Annotated[float | None, means("set-point of the normal force")]
+RoughnessRow = Annotated[Row, Columns(ROUGHNESS, row=_ROUGHNESS)]
+ContactRow = Annotated[Row, Columns(CONTACT, row=_CONTACT)]
+AdhesionRow = Annotated[Row, Columns(ADHESION, texts=("medium",), row=_ADHESION)]
+ScanCheckRow = Annotated[
+    Row, Columns(_CHECK, texts={*_CHECK} - {"value"}, values={"status": STATUSES})
+]
+FitRow = Annotated[
+    Row, Columns(FITTED | BESIDE_FIT, texts=_FIT_TEXTS, counts=("degrees_of_freedom",))
+]
+SensitivityRow = Annotated[Row, Columns(SENSITIVE, texts=("variation", "low", "high", "reason"))]
+SpeedRow = Annotated[
+    Row,
+    Columns(
+        ("sliding_speed_m_s",),
+        SPEED_COLUMNS,
+        known=("sliding_speed_m_s",),
+        texts=("regime", "model_regime", "waveform", "regularity"),
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportedPart:
+    """What is said of every run, surface and model."""
+
+    name: str
+    status: Status
+    reason: Annotated[str, means("why it failed, else empty")]
+    error: Annotated[str, means("class of the error, else empty")]
+    data_file: str
+    reused: bool
+    kept: str
+    seconds: Seconds
+
+
+@dataclass(frozen=True, kw_only=True)
+class _RunHead(ReportedPart):
+    """What of a run's outcome stands before its numbers."""
+
+    surface: str
+    medium: str
+    nominal_normal_force_N: Load
+    files: tuple[str, ...]
+    segments_found: Natural
+    segments_rejected: Annotated[Natural, means("how many of them a person rejected")]
+    quality_as_found: Annotated[
+        str, means("quality without a person's decisions; empty where nobody decided")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportedRun(RunFacts, _RunHead):
+    """A run with its numbers; one that failed has none."""
+
+    status: Annotated[str, one_of("done", "failed")]
+
+
+@dataclass(frozen=True)
+class ReportedCurve:
+    """A measured curve: runs of one surface, medium and load together."""
+
+    name: str
+    surface: str
+    medium: str
+    nominal_normal_force_N: Load
+    runs: tuple[str, ...]
+    points: tuple[Point, ...]
+    points_as_found: Annotated[
+        tuple[Point, ...],
+        means("what points would be without a person's decisions; none where that is the same"),
+    ]
+    budget: Annotated[tuple[BudgetRow, ...], means("the parts of the points' uncertainty")]
+    uncertainty_says: Annotated[
+        str, means("what the points' uncertainty does not hold; empty where it holds all")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportedSurface(ReportedPart):
+    """A surface: the rows of the tables of roughness, contact and adhesion that are of it."""
+
+    quality: Annotated[str, one_of("", *STATUSES, meaning=_QUALITY)]
+    checks: Annotated[tuple[ScanCheckRow, ...], means("what each check said of each scan")]
+    files: tuple[str, ...]
+    roughness: RoughnessRow | None
+    contact: tuple[ContactRow, ...]
+    adhesion: tuple[AdhesionRow, ...]
+    modulus: Annotated[str, means("where the modulus of the rubber comes from")]
+    validity: Annotated[str, means(_VALIDITY)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportedModel(ReportedPart):
+    """The mixed-lubrication model beside a measured curve in a fluid."""
+
+    curve: Annotated[str, means("the measured curve beside which it is computed")]
+    surface: str
+    medium: str
+    normal_force_N: float | None
+    fit: FitRow | None
+    sensitivity: tuple[SensitivityRow, ...]
+    not_varied: str
+    validity: Annotated[str, means(_VALIDITY)]
+
+
+@dataclass(frozen=True)
+class ReportedMode:
+    """How a measured curve's contact slides: verdict, evidence, and what would decide."""
+
+    curve: str
+    condition: str
+    surface: str
+    medium: str
+    nominal_normal_force_N: Load
+    verdict: Annotated[str, one_of(NO_STICK_SLIP, LOCAL, SUSPECTED, UNEXPLAINED, UNKNOWN)]
+    text: str
+    paragraph: str
+    evidence: Annotated[
+        tuple[EvidenceRow, ...], means("for and against an adhesion-controlled mode")
+    ]
+    decide: tuple[str, ...]
+    numbers: dict[str, float | None]
+    segments: Natural
+    segments_oscillating: Natural
+    scaling: str
+    scaling_exponent: float | None
+    scaling_error: float | None
+    speeds: tuple[SpeedRow, ...]
+
+
+@dataclass(frozen=True)
+class CampaignFile:
+    """The campaign file as it was."""
+
+    name: str
+    file: str
+    sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")]
+    text: str
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Least and greatest value."""
+
+    min: float
+    max: float
+
+
+@dataclass(frozen=True)
+class CampaignVerdict:
+    """What came of the campaign in one sentence and its numbers."""
+
+    status: Annotated[str, one_of("complete", "incomplete", "nothing")]
+    text: str
+    runs: Natural
+    done: Natural
+    failed: Natural
+    rejected: Natural
+    rejected_by_hand: Annotated[Natural, means("runs that a person rejected")]
+    accepted_by_hand: Annotated[
+        Natural, means("runs that a person accepted in spite of their checks")
+    ]
+    kept: Natural
+    reused: Natural
+    segments: Natural
+    segments_rejected: Annotated[Natural, means("how many of them a person rejected")]
+    ranges: dict[Annotated[str, one_of(*UNITS)], Extent]
+
+
+@dataclass(frozen=True)
+class ReportedFinding:
+    """Something that a reader should know: how grave, of which runs, where, and what."""
+
+    severity: Annotated[str, one_of(*SEVERITIES)]
+    run: str
+    where: str
+    message: str
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """A file that was read."""
+
+    file: str
+    sha256: Annotated[str, means("empty if the file could not be read")]
+    bytes: Natural
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportHead:
+    """Everything in report.json but the runs, which are written one by one."""
+
+    schema_version: Literal["2.0"] = "2.0"
+    made_at: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")]
+    campaign: CampaignFile
+    verdict: CampaignVerdict
+    thresholds: Annotated[
+        dict[str, Limits],
+        means("from which share on the table of runs marks a number as suspect and as beyond it"),
+    ]
+    findings: tuple[ReportedFinding, ...]
+    sources: tuple[SourceFile, ...]
+    versions: dict[str, str]
+    curves: tuple[ReportedCurve, ...]
+    surfaces: tuple[ReportedSurface, ...]
+    sliding_mode: tuple[ReportedMode, ...]
+    models: tuple[ReportedModel, ...]
+    joint_fits: Annotated[tuple[JointRecord, ...], means("all loads of a surface in one fit")]
+    figures: tuple[FigureRecord, ...]
+    surface_figures: tuple[FigureRecord, ...]
+    model_figures: tuple[FigureRecord, ...]
+    sliding_figures: tuple[FigureRecord, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report(ReportHead):
+    """The whole of report.json."""
+
+    runs: tuple[ReportedRun, ...]
+
+
+class _Closed(GenerateJsonSchema):
+    """A schema without titles, whose objects have every field and no other."""
+
+    def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
+        made = super().dataclass_schema(schema)
+        first, _, _ = made.get("description", "").partition("\n")
+        return {**made, "description": first, "additionalProperties": False}
+
+    def field_is_required(self, field: Any, total: bool) -> bool:
+        return True
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+
+def report_schema() -> Json:
+    """Return the JSON Schema (2020-12) of report.json."""
+    made = TypeAdapter(Report).json_schema(mode="serialization", schema_generator=_Closed)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **made,
+        "title": "tribolab report",
+        "description": _DESCRIPTION,
+    }

@@ -1,0 +1,1 @@
+"""Figures for papers: drawn by workers, kept while what they show is the same."""

@@ -1,0 +1,66 @@
+"""The sections of the report page, in the order in which it has them.
+
+To add one: write ``templates/sections/<name>.html.j2`` (the body only: heading and place in the
+contents are made from the entry below; the whole report is its context, the helpers come with
+``{% import "parts.html.j2" as part with context %}``), put what it shows into the document under
+one key (`tribolab.report.results.write_report` and
+`tribolab.report.document.schema.ReportHead`), and add an entry here. A section with a `key`
+appears once the document has something under that key.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of the page.
+
+    Parameters
+    ----------
+    id
+        Its address on the page: links to ``#id`` lead here.
+    title
+        Heading, and what the contents say.
+    template
+        Path of its template under ``templates/``.
+    key
+        Key of the document without which the section is left out; "" is always there.
+    """
+
+    id: str
+    title: str
+    template: str
+    key: str = ""
+
+
+SECTIONS = (
+    Section("answer", "What was found", "sections/answer.html.j2", "runs"),
+    Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
+    Section("uncertainty", "Uncertainty and its parts", "sections/uncertainty.html.j2", "curves"),
+    Section("model", "Model beside measurement", "sections/model.html.j2", "models"),
+    Section(
+        "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
+    ),
+    Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
+    Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
+    Section("runs", "Runs", "sections/runs.html.j2", "runs"),
+    Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
+    Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
+    Section("methods", "Methods and words", "sections/methods.html.j2"),
+    Section("provenance", "Where it comes from", "sections/provenance.html.j2"),
+)
+
+
+def shown_sections(document: Mapping[str, Any]) -> list[Section]:
+    """Return the sections that have something to say about a report.
+
+    Examples
+    --------
+    >>> [section.id for section in shown_sections({"runs": ["one"]})]
+    ['answer', 'surfaces', 'runs', 'details', 'findings', 'methods', 'provenance']
+    """
+    return [one for one in SECTIONS if not one.key or document.get(one.key)]

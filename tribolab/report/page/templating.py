@@ -1,0 +1,180 @@
+"""What every page is made with: templates, scripts, styles, and the policy that guards it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import jinja2
+from markupsafe import Markup
+
+from tribolab import words
+from tribolab.records import judgement, wording
+from tribolab.records.hurst_words import hurst_verdict, is_steep
+from tribolab.records.model_words import is_described, stress_interval
+from tribolab.records.packed import deflated
+from tribolab.report.live.points import run_error
+from tribolab.report.page.answer import conditions, oscillating
+from tribolab.report.page.glossary import GLOSSARY, HEADS
+from tribolab.report.page.sections import Section
+from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
+from tribolab.untyped import Json
+from tribolab.words import aligned, force_text, number
+
+_PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
+# Everything that may stand in a data address inside a quoted HTML attribute.
+_SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
+_STYLES = ("report.css", "still.css", "review.css")
+_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "asked.js", "start.js")
+_REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
+_DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
+_LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
+
+
+def framed(
+    template: str, context: Mapping[str, Any], sections: Sequence[Section], folder: Path
+) -> str:
+    """Return a page made from a template that extends ``frame.html.j2``.
+
+    Parameters
+    ----------
+    template
+        Its path under ``templates/``.
+    context
+        What the template and its sections show; of it the frame itself takes ``versions`` and the
+        ``status`` of the ``verdict``, the banner's colour.
+    sections
+        What the page has, in order.
+    folder
+        Folder in which the figures lie.
+    """
+    page, frame = framing(template, sections, folder, draws=False)
+    return page.render(dict(context) | frame)
+
+
+def framing(
+    template: str, sections: Sequence[Section], folder: Path, *, draws: bool
+) -> tuple[jinja2.Template, Json]:
+    """Return a template, and what the frame of a page wants to know.
+
+    Parameters
+    ----------
+    template, sections, folder
+        As for `framed`.
+    draws
+        Whether the page draws figures, and so needs the library for it.
+
+    Notes
+    -----
+    Scripts and styles are allowed by their checksums alone, the library too, which is unpacked from
+    the page. It makes an empty style element, whose checksum is allowed as well, and fills it by
+    script.
+    """
+    style = "".join(asset(name) for name in _STYLES)
+    names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
+    scripts = [asset(name) for name in names]
+    started = [*scripts, asset(_LIBRARY)] if draws else scripts
+    hashes = " ".join(f"'{fingerprint(script)}'" for script in started)
+    styles = " ".join(f"'{fingerprint(text)}'" for text in ((style, "") if draws else (style,)))
+    policy = (
+        "default-src 'none'; img-src data: blob: 'self' file:; connect-src 'none'; "
+        f"base-uri 'none'; form-action 'none'; style-src {styles}; "
+        f"script-src {hashes}"
+    )
+    frame = {"style": style, "scripts": scripts, "sections": sections, "policy": policy}
+    frame["library"] = library() if draws else ""
+    frame["licence"] = asset(_LICENCE) if draws else ""
+    return environment(folder).get_template(template), frame
+
+
+@cache
+def library() -> str:
+    """Return the library that draws, compressed, as text."""
+    return deflated(asset(_LIBRARY).encode())
+
+
+def environment(folder: Path) -> jinja2.Environment:
+    """Return what fills the templates of pages whose figures lie in a folder."""
+    jinja = jinja2.Environment(
+        loader=jinja2.PackageLoader("tribolab.report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    jinja.filters |= {
+        "number": lambda value, digits=3: "–" if value is None else number(value, digits),
+        "aligned": lambda value, digits=3: "–" if value is None else aligned(value, digits),
+        "scaled": lambda value, factor, digits=3: (
+            "–" if value is None else aligned(value * factor, digits)
+        ),
+        "speed": plain_speed,
+        "plain": plain_speeds,
+        "without_exponents": without_exponents,
+        "force": lambda value: "–" if value is None else force_text(value),
+        "duration": words.duration,
+        "percent": words.percent,
+        "many": words.many,
+        "size": words.size,
+        "breakable": breakable,
+        "is_bad": judgement.is_bad,
+        "status_word": judgement.status_word,
+        "why": judgement.why,
+        "check": judgement.check_words,
+        "stem": lambda file: Path(file).stem,
+        "deflated": lambda text: deflated(str(text).encode()),
+        "numbers": lambda file: deflated((folder / file).read_bytes()),
+        "figure": lambda file: data_address((folder / file).read_text(encoding="utf-8")),
+    }
+    jinja.tests["is_bad"] = judgement.is_bad
+    jinja.globals |= {
+        "with_error": wording.with_error,
+        "span": words.span,
+        "judge": judgement.judge,
+        "trend_texts": judgement.trend_texts,
+        "stress_interval": stress_interval,
+        "conditions": conditions,
+        "oscillating": oscillating,
+        "is_described": is_described,
+        "is_steep": is_steep,
+        "hurst_verdict": hurst_verdict,
+        "run_error": run_error,
+        "HEADS": HEADS,
+        "GLOSSARY": GLOSSARY,
+        "UNITS": wording.UNITS,
+        "SYMBOLS": wording.SYMBOLS,
+    }
+    return jinja
+
+
+def asset(name: str) -> str:
+    """Return the text of one of the page's own files."""
+    return (files("tribolab.report") / "assets" / name).read_text(encoding="utf-8")
+
+
+def fingerprint(text: str) -> str:
+    """Return what a content security policy calls a piece of inline code."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return "sha256-" + base64.b64encode(digest).decode()
+
+
+def data_address(svg: str) -> Markup:
+    """Return a figure as an address that holds the figure itself.
+
+    As an image it is shut off from the page: its ids meet no others, and nothing in it can run.
+    """
+    body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
+    # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
+    return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
+
+
+def breakable(name: str) -> Markup:
+    """Return a name that a narrow column may break after ``_`` or ``-``, else as it is."""
+    return Markup("<wbr>").join(re.findall(r"[^_-]+[_-]*|[_-]+", name))
