@@ -323,3 +323,57 @@ def test_the_model_of_a_table_is_frozen():
     stated = StatedUncertainty.model_validate({"value": "1 %", "as": "standard"})
     with pytest.raises(ValueError, match="frozen"):
         stated.value = "2 %"
+
+
+def by_instrument(*names, gain="1 %"):
+    """Runs that agree to the last digit, each of its own instrument."""
+    stated = {"friction_gain": {"value": gain, "as": "standard"}}
+    known = Uncertainty.model_validate(stated).plain()
+    speed = {"sliding_speed": 1e-3, "friction_coefficient_sem": 1e-5}
+    run = one_segment(0.1, 50.0, **speed)
+    return [run.assign_attrs(instrument=name, uncertainty=known) for name in names]
+
+
+def test_runs_of_one_instrument_share_its_gain_and_those_of_several_do_not():
+    def gains(runs):
+        data = tl.uncertainty_budget(runs).data
+        rows = data.uncertainty_part.sel(part=[n for n in data.part.values if "gain" in n])
+        return dict(zip(rows.part.values.tolist(), rows.values[:, 0].round(7), strict=True))
+
+    assert gains(by_instrument("a", "a", "a")) == {"friction_gain": pytest.approx(0.001)}
+    mixed = gains(by_instrument("a", "a", "a", "b"))
+    assert mixed == {"friction_gain, a": 0.00075, "friction_gain, b": 0.00025}
+    # where every run has an instrument of its own, the runs' scatter shows the gains
+    assert set(gains(by_instrument("a", "b")).values()) == {0.0}
+
+
+def test_each_run_of_a_curve_has_the_uncertainty_that_is_stated_of_it():
+    first, second = by_instrument("a", gain="1 %"), by_instrument("b", gain="3 %")
+    runs = [*first, *first, *second, *second]
+    budget = tl.uncertainty_budget(runs)
+    parts = budget.data.uncertainty_part.sel(part=["friction_gain, a", "friction_gain, b"])
+    np.testing.assert_allclose(parts.values[:, 0], [0.0005, 0.0015])
+    assert budget.table().loc["friction gain, b", "u"] == pytest.approx(0.03)
+    assert budget.says == ""
+    bare = [run.drop_attrs().assign_attrs(instrument="c") for run in first]
+    assert tl.uncertainty_budget([*runs, *bare]).says == "calibration of c not stated"
+
+
+def test_a_recalibrated_instrument_has_two_gains():
+    runs = [*by_instrument("a", "a", gain="1 %"), *by_instrument("a", "a", gain="2 %")]
+    names = tl.uncertainty_budget(runs).data.part.values.tolist()
+    assert names == ["between runs", "friction_gain, a 1", "friction_gain, a 2"]
+
+
+def test_a_stated_zero_counts_once_in_a_curve_of_one_run():
+    zero = {"friction_zero": {"value": "0.1 N", "as": "standard"}}
+    noise, by_zero = 1e-4, 0.1 / 50
+    sem = np.hypot(noise, by_zero)
+    run = one_segment(0.1, 50.0, sliding_speed=1e-3, friction_coefficient_sem=sem)
+    run = run.assign_attrs(zero_stated=0.1)
+    for given in (run, [run]):
+        data = tl.uncertainty_budget(given, zero).data
+        assert float(data.friction_coefficient_u[0]) == pytest.approx(sem, rel=1e-6)
+        assert float(data.uncertainty_part.sel(part="noise within the run")[0]) == (
+            pytest.approx(noise, rel=1e-6)
+        )

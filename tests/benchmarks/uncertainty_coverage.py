@@ -76,9 +76,8 @@ def signals_of(run) -> xr.Dataset:
     return stamp(run.force_log.merge(motion), source=run.name)
 
 
-def friction_of(run: xr.Dataset, offset: str, mount: str) -> xr.Dataset:
+def friction_of(run: xr.Dataset, segments: xr.Dataset, offset: str, mount: str) -> xr.Dataset:
     """Friction of all segments, or of the forward ones alone without a zero taken off."""
-    segments = tl.find_segments(run)
     if offset == "none":
         segments = segments.isel(segment=np.flatnonzero(segments.direction.values > 0))
         segments = segments.drop_dims("omitted", errors="ignore")
@@ -105,7 +104,7 @@ def from_files(run, offset: str, memory: xr.Dataset) -> float:
     with tempfile.TemporaryDirectory() as folder:
         files = write_run(run, Path(folder))
         read = tl.read(files[0])
-        again = friction_of(read, offset, "")
+        again = friction_of(read, tl.find_segments(read), offset, "")
     error = memory.friction_coefficient_sem.values
     apart = again.friction_coefficient.values - memory.friction_coefficient.values
     return float(np.max(np.abs(apart) / error))
@@ -121,18 +120,22 @@ def campaign(seed: int, with_files: bool, counts: dict) -> float:
         given = {"rig": RIG, "law": LAW, "slip": NO_SLIP, "calibration": calibration}
         runs.append(simulate_run("Sb-S", "glycerol", LOAD, number + 1, seed=rng, **given))
     apart, known = 0.0, stated()
+    signals = [signals_of(run) for run in runs]
+    found_in = [tl.find_segments(run) for run in signals]
     for way, offset in (("one direction", "none"), ("reversal", "half loop")):
         frictions = [
-            friction_of(signals_of(run), offset, f"mount {i}") for i, run in enumerate(runs)
+            friction_of(run, strokes, offset, f"mount {i}")
+            for i, (run, strokes) in enumerate(zip(signals, found_in, strict=True))
         ]
+        budgets = [tl.uncertainty_budget(friction, known).data for friction in frictions]
+        truths = [of_run(data, run.segments) for data, run in zip(budgets, runs, strict=True)]
+        holds = [held(data, truth) for data, truth in zip(budgets, truths, strict=True)]
         if with_files:
             apart = max(apart, from_files(runs[0], offset, frictions[0]))
         for repeats in REPEATS:
             segments = counts.setdefault((way, "segments", repeats), [])
             points = counts.setdefault((way, "curve points", repeats), [])
-            for run, friction in zip(runs[:repeats], frictions, strict=False):
-                budget = tl.uncertainty_budget(friction, known).data
-                segments += held(budget, of_run(friction, run.segments))
+            segments += sum(holds[:repeats], [])
             curve = tl.uncertainty_budget(frictions[:repeats], known).data
             truth = LAW(curve.sliding_speed.values)
             if repeats == 1:

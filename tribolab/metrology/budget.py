@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -19,6 +19,7 @@ from tribolab.metrology.budget_parts import NOISE, Scatter, combined
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 
+OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
 Stated = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
 
@@ -34,7 +35,8 @@ def uncertainty_budget(
     ----------
     friction
         From `friction_coefficient`: the budget of each segment. A list of such results, of repeated
-        runs of one system: the budget of each point of their curve.
+        runs of one system: the budget of each point of their curve. Runs of one instrument share
+        what is stated of it, those of several are independent.
     uncertainty
         What is stated of the calibration, by the names of `tribolab.io.uncertainty.NAMES`, each
         with the keys of a table [uncertainty.NAME] of the campaign file: ``{"tilt": {"value":
@@ -77,9 +79,13 @@ def uncertainty_budget(
     if isinstance(friction, xr.Dataset):
         known = known_uncertainties(friction, uncertainty)
         return UncertaintyBudget(with_uncertainty(friction, known), known)
-    known = known_uncertainties(friction[0] if len(friction) else xr.Dataset(), uncertainty)
     curve = measured_stribeck_curve(friction, speed_tolerance)
-    return UncertaintyBudget(with_curve_uncertainty(curve, friction, known), known)
+    alone = [zero_apart(run, known_uncertainties(run, uncertainty)) for run in friction]
+    if any(part.friction is not run for part, run in zip(alone, friction, strict=True)):
+        own = measured_stribeck_curve([part.friction for part in alone], speed_tolerance)
+        curve = curve.assign({name: own[name] for name in OWN})
+    stated = [part.known for part in alone]
+    return UncertaintyBudget(*with_curve_uncertainty(curve, friction, stated))
 
 
 def known_uncertainties(friction: xr.Dataset, stated: Stated | None = None) -> dict[str, Known]:
@@ -144,18 +150,40 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
             "no 'friction_coefficient': a run without normal force has forces only",
             function="uncertainty_budget",
         )
-    parts = contributions(readings_of(friction), known)
-    noise = friction["friction_coefficient_sem"].values.astype(float)
-    by_zero = known["friction_zero"].standard if "friction_zero" in known else 0.0
-    if "zero_stated" in friction.attrs and by_zero:
-        # the standard error holds the zero as it was stated; it is a part of its own here
-        zero = float(friction.attrs["zero_stated"])
-        per_load = parts["friction_zero"] / by_zero
-        noise = np.sqrt(np.maximum(noise**2 - (zero * per_load) ** 2, 0.0))
-        parts["friction_zero"] = zero * per_load
+    alone = zero_apart(friction, known)
+    parts = contributions(readings_of(friction), alone.known)
+    noise = alone.friction["friction_coefficient_sem"].values.astype(float)
     widening, dof = _freedom(friction)
     scatter = [Scatter(noise / widening, dof, NOISE)]
     return combined(friction, "segment", scatter, parts, known)
+
+
+class ZeroApart(NamedTuple):
+    """A friction result whose errors do not hold the stated zero, and the inputs that do."""
+
+    friction: xr.Dataset
+    known: Mapping[str, Known]
+
+
+def zero_apart(friction: xr.Dataset, known: Mapping[str, Known]) -> ZeroApart:
+    """Take the zero that was stated out of the standard errors: it is a part of its own.
+
+    Parameters
+    ----------
+    friction
+        From `friction_coefficient` (segment).
+    known
+        Standard uncertainties by name; without a ``friction_zero`` nothing is taken out.
+    """
+    entry, stated = known.get("friction_zero"), friction.attrs.get("zero_stated")
+    if entry is None or stated is None or "normal_force" not in friction:
+        return ZeroApart(friction, known)
+    inputs = dict(known) | {"friction_zero": entry._replace(standard=float(stated))}
+    part = np.nan_to_num(contributions(readings_of(friction), inputs)["friction_zero"])
+    error = friction["friction_coefficient_sem"]
+    noise = np.sqrt(np.maximum(error.values.astype(float) ** 2 - part**2, 0.0))
+    alone = friction.assign(friction_coefficient_sem=error.copy(data=noise))
+    return ZeroApart(alone, inputs)
 
 
 def _freedom(friction: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

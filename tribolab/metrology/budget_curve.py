@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from tribolab.friction.decisions.rejected import kept
 from tribolab.io.uncertainty import Known
-from tribolab.metrology.budget_parts import BETWEEN, NOISE, Scatter, combined
+from tribolab.metrology.budget_parts import BETWEEN, NOISE, Scatter, combined, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 
 MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
+_ALONE = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own
+
+
+class CurveUncertainty(NamedTuple):
+    """A measured curve with its uncertainty, and what was stated of its parts.
+
+    Parameters
+    ----------
+    curve
+        See `tribolab.metrology.budget_parts.combined`.
+    known
+        By the names of the parts: of several instruments, those of each.
+    """
+
+    curve: xr.Dataset
+    known: dict[str, Known]
+
+
+class _Part(NamedTuple):
+    """One input of one calibration: runs that have it share its error."""
+
+    name: str
+    instrument: str
+    known: Known | None
 
 
 def with_curve_uncertainty(
-    curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Mapping[str, Known]
-) -> xr.Dataset:
+    curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Sequence[Mapping[str, Known]]
+) -> CurveUncertainty:
     """Return a measured curve with the uncertainty of each point and its parts.
 
     Parameters
@@ -26,44 +51,77 @@ def with_curve_uncertainty(
         From `tribolab.measured_stribeck_curve` of these runs (sliding_speed).
     frictions
         Results of `tribolab.friction_coefficient`. The attribute ``mount``, where all of them
-        have one, tells how often the sample was mounted.
+        have one, tells how often the sample was mounted; the attribute ``instrument``, by which.
     known
-        Standard uncertainties by name.
+        Standard uncertainties by name, of each run.
 
     Notes
     -----
-    What all runs share is averaged with its sign and added. What varies with the run is in the
-    spread between runs as soon as there are two of them, what varies with the mount as soon as two
-    mounts are named, what varies with the stroke as soon as a point has two observations: it is
-    not added again.
+    What all runs of an instrument share is averaged with its sign and added; what instruments have
+    is independent. What varies with the run is in the spread between runs as soon as there are two
+    of them, what varies with the mount as soon as two mounts are named, what varies with the stroke
+    as soon as a point has two observations, and a calibration where every run of a point is of
+    another instrument: it is not added again.
     """
     points = np.log(curve["sliding_speed"].values)
     size = points.size
-    names: dict[str, None] = {}
-    sums: dict[str, np.ndarray] = {}
+    sums: dict[_Part, np.ndarray] = {}
     runs, observations = np.zeros(size), np.zeros(size)
-    for part in map(kept, frictions):
+    instruments: dict[str, np.ndarray] = {}
+    unstated: dict[str, bool] = {}
+    for part, stated in zip(map(kept, frictions), known, strict=True):
         place, own, count = _at_points(part, points)
-        met = count > 0
+        met, instrument = count > 0, str(part.attrs.get("instrument", ""))
         runs += met
         observations += count
-        for name, row in contributions(readings_of(part), known).items():
-            names[name] = None
-            mean = np.zeros(size)
-            np.add.at(mean, place, row[own])
-            total = np.bincount(place, minlength=size)
-            sums.setdefault(name, np.zeros(size))[met] += mean[met] / total[met]
-    mounts = _mounts(frictions)
-    parts = {}
-    for name in names:
-        share = sums[name] / np.maximum(runs, 1)
-        parts[name] = np.where(_in_scatter(name, known, runs, mounts, observations), 0.0, share)
+        instruments[instrument] = instruments.get(instrument, np.zeros(size, dtype=bool)) | met
+        inputs = contributions(readings_of(part), stated)
+        unstated[instrument] = unstated.get(instrument, True) and not set(inputs) & set(stated)
+        total = np.bincount(place, minlength=size)
+        for name, row in inputs.items():
+            mean = np.bincount(place, weights=row[own], minlength=size)
+            key = _Part(name, instrument, stated.get(name))
+            sums.setdefault(key, np.zeros(size))[met] += mean[met] / total[met]
+    mounts, apart = _mounts(frictions), np.sum(list(instruments.values()), axis=0)
+    several = {
+        "stroke": observations > 1,
+        "run": runs > 1,
+        "mount": (runs > 1) & (mounts > 1),
+        "calibration": (runs > 1) & (apart == runs),
+    }
+    parts, named = {}, {}
+    for label, key in _labelled(sums).items():
+        varies = "stroke" if key.known is None else key.known.varies
+        parts[label] = np.where(several[varies], 0.0, sums[key] / np.maximum(runs, 1))
+        if key.known is not None:
+            named[label] = key.known
+    left = [name for name, nothing in unstated.items() if nothing and not all(unstated.values())]
+    result = combined(curve, "sliding_speed", _scatter(curve, runs), parts, named, left)
+    return CurveUncertainty(result, named)
+
+
+def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[Scatter]:
+    """Return the noise of points with one run, and the spread between runs of the others."""
     u, dof = (curve[f"friction_coefficient_{end}"].values for end in ("u", "dof"))
     several = runs > 1
     scatter = [Scatter(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
     if several.any():
         scatter.append(Scatter(np.where(several, u, 0.0), dof, BETWEEN))
-    return combined(curve, "sliding_speed", scatter, parts, known)
+    return scatter
+
+
+def _labelled(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
+    """Return what each part is called: by its input, of several calibrations by whose it is."""
+    labels: dict[str, _Part] = {}
+    for key in parts:
+        alike = [other for other in parts if other.name == key.name]
+        own = [other for other in alike if other.instrument == key.instrument]
+        label = key.name
+        if len(alike) > 1:
+            label = f"{key.name}, {key.instrument or 'instrument not named'}"
+            label += f" {own.index(key) + 1}" if len(own) > 1 else ""
+        labels[label] = key
+    return labels
 
 
 def _at_points(
@@ -87,20 +145,6 @@ def _mounts(frictions: Sequence[xr.Dataset]) -> int:
     return len(set(labels)) if all(labels) else 1
 
 
-def _in_scatter(
-    name: str, known: Mapping[str, Known], runs: np.ndarray, mounts: int, observations: np.ndarray
-) -> np.ndarray:
-    """Return at which points a part is in the scatter already (point)."""
-    varies = "stroke" if name == AMBIGUOUS else known[name].varies
-    several = {
-        "stroke": observations > 1,
-        "run": runs > 1,
-        "mount": (runs > 1) & (mounts > 1),
-        "calibration": np.zeros(runs.size, dtype=bool),
-    }
-    return several[varies]
-
-
 def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
     """Give the parts of a curve's uncertainty that its points share, by name (sliding_speed).
 
@@ -112,5 +156,5 @@ def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
     if "uncertainty_part" not in curve:
         return
     for name in curve["part"].values.astype(str).tolist():
-        if name not in (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift"):
+        if part_name(name) not in _ALONE:
             yield name, curve["uncertainty_part"].sel(part=name).values

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -81,6 +81,7 @@ def combined(
     scatter: list[Scatter],
     parts: Mapping[str, np.ndarray],
     known: Mapping[str, Known],
+    unstated: Sequence[str] = (),
 ) -> xr.Dataset:
     """Return the values with their uncertainty, degrees of freedom, U95 and parts.
 
@@ -96,6 +97,8 @@ def combined(
         Signed contribution of each input [1] (dim); NaN where it could not be computed.
     known
         What is stated of the inputs.
+    unstated
+        Instruments of which nothing is stated, where it is of others.
 
     Returns
     -------
@@ -129,14 +132,21 @@ def combined(
         uncertainty_part=(("part", dim), counted),
         uncertainty_part_dof=(("part", dim), dof),
     ).assign_coords(part=np.array(names, dtype=str))
-    return stamp(result, uncertainty_says=_says(known, names, counted, missing))
+    return stamp(result, uncertainty_says=_says(known, names, counted, missing, unstated))
 
 
 def _says(
-    known: Mapping[str, Known], names: list[str], parts: np.ndarray, missing: list[str]
+    known: Mapping[str, Known],
+    names: list[str],
+    parts: np.ndarray,
+    missing: list[str],
+    unstated: Sequence[str],
 ) -> str:
     """Say what an uncertainty does not hold, or holds too widely."""
     said = [] if any(name in known for name in names) else [NOT_STATED]
+    said += [
+        f"calibration of {name or 'an instrument without a name'} not stated" for name in unstated
+    ]
     if missing:
         left = ", ".join(part_words(name) for name in missing)
         said.append(f"not counted, because no normal force was recorded: {left}")
@@ -149,6 +159,17 @@ def _says(
     return "; ".join(said)
 
 
+def part_name(part: str) -> str:
+    """Return of which input a part is, without the instrument that it is of.
+
+    Examples
+    --------
+    >>> part_name("friction_gain, linear_slider"), part_name("tilt")
+    ('friction_gain', 'tilt')
+    """
+    return part.partition(", ")[0]
+
+
 def part_words(name: str) -> str:
     """Return what a part of the uncertainty is called in words.
 
@@ -157,4 +178,5 @@ def part_words(name: str) -> str:
     >>> part_words("cross_talk_friction_from_normal"), part_words("noise within the run")
     ('cross-talk friction from normal', 'noise within the run')
     """
-    return name.replace("cross_talk", "cross-talk").replace("_", " ")
+    of, comma, whose = name.partition(", ")
+    return of.replace("cross_talk", "cross-talk").replace("_", " ") + comma + whose

@@ -11,7 +11,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.io.uncertainty import NAMES, Known
-from tribolab.metrology.budget_parts import coverage_factor, part_words
+from tribolab.metrology.budget_parts import coverage_factor, part_name, part_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,7 +80,7 @@ class UncertaintyBudget:
                 {
                     "part": part_words(name),
                     "u": entry.standard if entry else abs(size),
-                    "unit": NAMES[name][0] if entry else "1",
+                    "unit": NAMES[part_name(name)][0] if entry else "1",
                     "stated": entry.distribution if entry else "from the data",
                     "varies": entry.varies if entry else "",
                     "dof": float(dof[i]),
