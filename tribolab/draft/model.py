@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 UNKNOWN_NAME = "the name is not known"
+NO_NUMBERS = "not a number: "  # what stands in a column of text is told behind it
 
 Kind = Literal["run", "scan", "table"]
 

@@ -35,9 +35,10 @@ RUN_WORDS = (
     ),
     Word(
         "friction_force",
-        _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs"),
+        _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs fh"),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
+            "horizontalforce horizontalload "
             "tractionforce shearforce "
             "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung "
             "forcex xforce sledforce pullforce pullingforce zugkraft "
@@ -50,9 +51,10 @@ RUN_WORDS = (
     ),
     Word(
         "normal_force",
-        _words("fn fz fnorm fnormal w l nf"),
+        _words("fn fz fnorm fnormal w l nf fv"),
         _words(
-            "normalforce normalload axialforce axialload verticalforce balload ballload "
+            "normalforce normalload axialforce axialload verticalforce verticalload "
+            "balload ballload "
             "appliedload contactforce normalkraft axialkraft anpresskraft auflast normallast "
             "load last belastung forcez zforce forcenormale effortnormal charge "
             "fuerzanormal carga forzanormale carico "
@@ -88,6 +90,7 @@ RUN_WORDS = (
         "position",
         _words("x s pos xpos enc disp"),
         _words(
+            "horizontaldisplacement horizontalposition "
             "position displacement displ extension crosshead stroke slidingdistance "
             "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
             "travel encoder "
@@ -156,6 +159,7 @@ RUN_WORDS = (
         "height_displacement",
         ("z",),
         _words(
+            "verticaldisplacement verticalposition axialdisplacement axialposition "
             "height wear verschleiss depth hoehe usure desgaste usura penetration eindringtiefe "
             "磨损 磨損 摩耗"
         ),

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.words import SURE, Match, is_axis
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
-from tribolab.quantities import QUANTITIES, quantity
+from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 SIGNALS = {
@@ -23,6 +24,13 @@ SIGNALS = {
     "film_thickness",
 }
 _CHANNELS = {"friction_force", "normal_force", "friction_coefficient"}
+_DECIDING = _CHANNELS | {"sliding_velocity", "rotation_speed"}
+# of two columns for a quantity the measured one counts, and what was set or worked out gives way
+_WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5}
+_NEAR = 0.05  # scores of names that suit a quantity about as well
+_STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
+_NOISE = 0.1  # of the highest load, what a sensor without a load shows
+_APART = 0.01  # relative difference of two columns that do not hold the same
 # beside friction: which of several such columns is taken changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
 
@@ -63,9 +71,14 @@ def assigned(
         option = _preferred(options, bare[index][1], numbers[:, index], has_units)
         if option:
             # of names used twice the later counts: exporters repeat first what was plotted
-            rank = (option.score, bool(filled[index]), index)
+            weight = _WEIGHT[role_of(bare[index][0])] if kind == "run" else 1.0
+            if option.quantity in _CHANNELS and np.ptp(numbers[:, index]) == 0:
+                weight *= _STILL
+            rank = (option.score * weight, bool(filled[index]), index)
             proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
     _give_way(proposals, matched)
+    for name in _DECIDING & set(proposals):
+        proposals[name] = _contested(proposals[name], numbers, bare)
     result = list(columns)
     for index, column in enumerate(columns):
         if not column.label:
@@ -102,7 +115,36 @@ def assigned(
 
 def _alike(rivals: list[_Proposal]) -> list[_Proposal]:
     """Return those of several columns whose names suit a quantity about as well as the best."""
-    return [rival for rival in rivals if rival.rank[0] > max(rivals).rank[0] - 0.05]
+    return [rival for rival in rivals if rival.rank[0] > max(rivals).rank[0] - _NEAR]
+
+
+def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -> list[_Proposal]:
+    """Let a column that is surely named for a quantity, but says otherwise, rival the best."""
+    best = max(rivals)
+    if role_of(bare[best.place][0]) == "measured":
+        return rivals
+
+    def size(rival: _Proposal) -> float:
+        unit, si_unit = bare[rival.place][1], quantity(rival.option.quantity).unit
+        scale = unit_conversion(rival.option.unit or unit or si_unit, rival.option.quantity)[0]
+        values = np.abs(numbers[:, rival.place])
+        moving = values[np.isfinite(values) & (values > 0)]
+        return float(scale * np.median(moving)) if moving.size else 0.0
+
+    def is_rival(rival: _Proposal) -> bool:
+        plain = not role_of(bare[rival.place][0])
+        here = rival is not best and plain and rival.option.score >= SURE
+        return here and size(rival) > 0 and abs(size(rival) / size(best) - 1) > _APART
+
+    if not size(best):
+        return rivals
+    top = best.rank[0] - 0.5 * _NEAR
+    return [
+        rival._replace(rank=(max(top, rival.rank[0]), *rival.rank[1:]))
+        if is_rival(rival)
+        else rival
+        for rival in rivals
+    ]
 
 
 def _is_spare(rivals: list[_Proposal]) -> bool:
@@ -224,7 +266,9 @@ def _column(
             options = other_units(si_unit)
     finite = values[np.isfinite(values)]
     sign = 1
-    if option.quantity == "normal_force" and finite.size and finite.max() <= 0 > finite.min():
+    # noise about zero before the contact is loaded may have the other sign
+    pressed = finite.size and finite.min() < 0 and finite.max() < _NOISE * -finite.min()
+    if option.quantity == "normal_force" and pressed:
         sign = -1
         guessed.append("the normal force is counted negative")
         options = (*options, "counted positive")

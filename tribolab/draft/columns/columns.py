@@ -13,7 +13,7 @@ from tribolab.draft.columns.words import matches, split_unit
 from tribolab.draft.file.header import is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
-from tribolab.draft.model import DraftColumn, Kind, Understood, other_units
+from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.dates import seconds
@@ -46,7 +46,7 @@ def understand(layout: Layout) -> Understood:
             used=False,
             guessed=(),
             fill_in="",
-            note=f"not a number: '{shown(text[column.place - 1])}'",
+            note=f"{NO_NUMBERS}'{shown(text[column.place - 1])}'",
         )
         if text[column.place - 1] and not column.form
         else column

@@ -7,6 +7,7 @@ import re
 import unicodedata
 from typing import NamedTuple
 
+from tribolab.draft.columns.roles import role_of, without_role
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, Word
 from tribolab.quantities import quantity
@@ -24,6 +25,7 @@ _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|moto
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": {"g": "gf", "kg": "kgf"}}
+_AS_SET = {"sliding_velocity": "set_speed"}  # a speed that was set is not how fast it slid
 
 
 class Match(NamedTuple):
@@ -112,15 +114,22 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         return []
     options = []
     alone = unit is not None and not scan and _kinds(unit) == 1
+    role = "" if scan else role_of(name)
+    plain = squeezed(without_role(name)) if role in ("set", "measured") else ""
     for word in SCAN_WORDS if scan else RUN_WORDS:
         score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
+        score = max(score, _score(plain, word) if plain else 0.0)
         known = quantity(word.quantity)
         read_as = _MEANT.get(known.unit, {}).get(unit or "")
         if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
             # what only this quantity is measured in tells it, whatever else the name says
             score = SURE + (1 - SURE) * score if alone else score
-            options.append(Match(word.quantity, score, read_as))
-    return sorted(options, key=lambda match: -match.score)
+            held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
+            options.append(Match(held, score, read_as))
+    best: dict[str, Match] = {}
+    for match in sorted(options, key=lambda match: -match.score):
+        best.setdefault(match.quantity, match)
+    return list(best.values())
 
 
 @functools.lru_cache(maxsize=256)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,11 +10,13 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.follows import Follows, what_follows
 from tribolab.draft.dialect.drafted import Drafted
-from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+_WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
+_LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
 _TOLD = 12  # questions of one file that are told
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
@@ -52,11 +55,26 @@ def questions(draft: Drafted) -> list[Question]:
         and not any(c.used and c.quantity == "time" for c in understood.columns)
     ):
         asked.append(Question("time", "rows are counted as seconds", _RATE))
+    asked += _of_texts(understood)
     follows = what_follows(layout, understood)
     asked += _of_roles(understood, follows)
     for column in understood.columns:
         if column.guessed or column.fill_in:
             asked.append(_of_column(column))
+    return asked
+
+
+def _of_texts(understood: Understood) -> list[Question]:
+    """Ask for what is written where numbers should stand: nothing of it is lost in silence."""
+    asked = []
+    held = {column.quantity for column in understood.columns if column.used}
+    for column in understood.columns:
+        if column.note.startswith(NO_NUMBERS) and column.quantity in _WANTED - held:
+            about = f"column {column.place} '{shown(column.label, 30)}'"
+            asked.append(Question(about, f"left out, {column.note}"))
+    if understood.kind == "run":
+        odd = [word for word in understood.missing if _LIKE_NUMBER.fullmatch(word)]
+        asked += [Question("cells", f"'{shown(word, 20)}' is taken for no value") for word in odd]
     return asked
 
 

@@ -87,6 +87,8 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.insert(1, f"encoding = {_text(layout.encoding)}")
     if layout.decimal != ".":
         lines.append(f"decimal = {_text(layout.decimal)}")
+    if layout.thousands:
+        lines.append(f"thousands = {_text(layout.thousands)}")
     if understood.missing:
         lines.append("missing = [" + ", ".join(map(_text, understood.missing)) + "]")
     if layout.end:

@@ -22,8 +22,10 @@ from tribolab.draft.file.marks import Block, without_marks
 from tribolab.errors import ReadError
 from tribolab.io.dialects.headers import line_feeds, split_row
 from tribolab.io.dialects.signature import HEAD, File
+from tribolab.io.dialects.thousands import Mark, find_thousands, without_thousands
 
 _TAIL = 1 << 14
+_FEW = 20  # lines at the end that tell what parts cells
 _TRIED = 20  # patterns of a step's number
 _MOST_COLUMNS = 20_000
 
@@ -61,6 +63,7 @@ class Layout(NamedTuple):
     notes: tuple[str, ...]
     guesses: tuple[str, ...]
     held: Held | None = None
+    thousands: Mark = ""
 
     @property
     def delimiter_name(self) -> str:
@@ -106,6 +109,9 @@ def find_layout(file: File) -> Layout:
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
     lines = tuple(line_feeds(text).split("\n"))
+    if thousands := find_thousands(lines):
+        apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
+        lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -161,6 +167,7 @@ def find_layout(file: File) -> Layout:
         whole=file.size <= HEAD,
         notes=tuple(notes),
         guesses=tuple(guesses),
+        thousands=thousands,
     )
 
 

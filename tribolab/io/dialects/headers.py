@@ -15,6 +15,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import Guarded
 from tribolab.io.dialects.signature import File, peek
+from tribolab.io.dialects.thousands import without_thousands
 
 _BOM = b"\xef\xbb\xbf"
 # one class of letters: a repeated group would take sixty bytes of memory for each line
@@ -91,6 +92,8 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
     memory = _mended(file, dialect, head_only)
     if not head_only:
         memory = _without_lines(file, memory, dialect)
+    if dialect.text.thousands:
+        memory = _without_marks(file, memory, dialect, head_only)
     if memory is not None:
         return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
     if head_only or not dialect.header.repeats:
@@ -169,6 +172,20 @@ def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes
         for number, line in enumerate(content.split(b"\n"))
         if number < first or number in kept or not pattern.search(line)
     )
+
+
+def _without_marks(file: File, content: bytes | None, dialect: Dialect, head_only: bool) -> bytes:
+    """Content whose table has no marks between thousands; the text before it stays."""
+    if content is None:
+        try:
+            content = file.head if head_only else file.path.read_bytes()
+        except OSError as error:
+            raise ReadError("the file cannot be read", where=file.path) from error
+    start = _header_starts(file, content, dialect)[0]
+    encoding, text = _encoding(dialect), dialect.text
+    table = content[start:].decode(encoding, errors="surrogateescape")
+    table = without_thousands(table, text.thousands, text.delimiter)
+    return content[:start] + table.encode(encoding, errors="surrogateescape")
 
 
 def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[Table]:

@@ -28,6 +28,9 @@ class Text(Strict):
     encoding: Encoding = Field("utf-8", description="utf-8 (a BOM is ignored), latin-1, ...")
     delimiter: str = Field(",", description="one character, or 'whitespace'")
     decimal: Literal[".", ","] = Field(".", description="decimal mark")
+    thousands: Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"] = Field(
+        "", description="mark between the thousands of a number, as the comma of '1,234.5'"
+    )
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
     end: Pattern | None = Field(None, description="a line matching this ends the table")
     skip_lines: Pattern | None = Field(
@@ -40,6 +43,8 @@ class Text(Strict):
             raise ValueError("delimiter is one character, or the word 'whitespace'")
         if self.delimiter == self.decimal:
             raise ValueError(f"delimiter and decimal mark are both '{self.decimal}'")
+        if self.thousands == self.decimal:
+            raise ValueError(f"decimal mark and mark of thousands are both '{self.decimal}'")
         return self
 
 

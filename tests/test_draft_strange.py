@@ -1,0 +1,127 @@
+"""Files as a stranger's laboratory writes them: what could be taken wrongly is right, or asked."""
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+
+N = 600
+T = np.arange(N) / 20
+SPEED = np.where(T < 15, 2.0, 5.0)  # mm/s
+LOAD = 1500 + np.sin(T)  # mN
+FRICTION = 0.25 * LOAD + 1e-3
+
+
+def written(path, header, *columns, delimiter=",", number="{:.4f}", encoding="utf-8", end="\n"):
+    """Write a table; `number` writes a float, or is a text with a place for it."""
+    form = number if callable(number) else number.format
+    rows = zip(*(np.broadcast_to(c, N) for c in columns), strict=True)
+    cells = ([c if isinstance(c, str) else form(c) for c in row] for row in rows)
+    body = "".join(delimiter.join(row) + end for row in cells)
+    path.write_bytes(f"{header}\n{body}".encode(encoding))
+    return path
+
+
+def asked(path):
+    with pytest.raises(tl.TribolabError, match="does not say all itself") as told:
+        tl.read(path)
+    return str(told.value)
+
+
+def german(x):
+    return f"{x:,.3f}".replace(",", "_").replace(".", ",").replace("_", ".")
+
+
+@pytest.mark.parametrize(
+    ("number", "delimiter", "encoding"),
+    [
+        (german, ";", "utf-8"),
+        (german, "\t", "utf-16"),
+        (lambda x: f"{x:,.3f}".replace(",", "\u00a0").replace(".", ","), ";", "latin-1"),
+        (lambda x: f"{x:,.3f}".replace(",", "'"), ";", "utf-8"),
+        (lambda x: f'"{x:,.3f}"', ",", "utf-8"),
+    ],
+)
+def test_marks_between_thousands_are_no_decimal_marks_and_no_lost_values(
+    number, delimiter, encoding, tmp_path
+):
+    """Half of the friction is above a thousand: left out, it would be a lower friction."""
+    head = delimiter.join(["Time [s]", "Friction force [mN]", "Normal force [mN]", "Speed [mm/s]"])
+    friction = 4 * FRICTION - 500  # 996 to 1004 mN
+    file = written(
+        tmp_path / "a.csv", head, T, friction, 4 * LOAD, SPEED,
+        delimiter=delimiter, number=number, encoding=encoding,
+    )  # fmt: skip
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * friction, atol=1e-6)
+    np.testing.assert_allclose(run.normal_force, 4e-3 * LOAD, atol=1e-6)
+
+
+def test_text_before_the_table_keeps_its_points_where_the_table_has_them_between_thousands(
+    tmp_path,
+):
+    head = "Track radius: 1.500 mm\nZeit [s];Reibkraft [mN];Normalkraft [mN];Drehzahl [1/min]"
+    file = written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60, delimiter=";", number=german)
+    np.testing.assert_allclose(tl.read(file).sliding_velocity, 2 * np.pi * 1.5e-3, rtol=1e-6)
+
+
+@pytest.mark.parametrize("cell", ["{:.3f} N", "<{:.3f}", "~{:.2f}"])
+def test_numbers_with_something_about_them_are_not_left_out_in_silence(cell, tmp_path):
+    file = tmp_path / "a.csv"
+    force = [cell.format(f) if n > 450 else f"{f:.3f}" for n, f in enumerate(1e-3 * FRICTION)]
+    written(file, "Time [s];Friction force [N];Load [N];Speed [mm/s]", T, force, 1e-3 * LOAD, SPEED,
+            delimiter=";")  # fmt: skip
+    assert "is taken for no value" in asked(file)
+    written(file, "Time [s];Friction force;Load [N];Speed [mm/s]", T,
+            [cell.format(f) for f in FRICTION], 1e-3 * LOAD, SPEED, delimiter=";")  # fmt: skip
+    assert "'Friction force'" in asked(file) and "not a number" in asked(file)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("Velocity", "Measured velocity"),
+        ("Velocity setpoint", "Velocity"),
+        ("Commanded speed", "Actual speed"),
+        ("Sollgeschwindigkeit", "Istgeschwindigkeit"),
+        ("TargetSpeed", "Speed"),
+    ],
+)
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_speed_that_was_measured_counts_and_not_the_one_that_was_set(names, turned, tmp_path):
+    columns = [(names[0], 1.1 * SPEED), (names[1], SPEED)][:: -1 if turned else 1]
+    head = "Time [s],Friction [mN],Load [mN]," + ",".join(f"{n} [mm/s]" for n, _ in columns)
+    file = written(tmp_path / "a.csv", head, T, FRICTION, LOAD, *(c for _, c in columns))
+    np.testing.assert_allclose(tl.read(file).sliding_velocity, 1e-3 * SPEED)
+
+
+def test_a_load_that_stands_still_gives_way_to_one_that_moves(tmp_path):
+    head = "Time [s],Friction [mN],Load setpoint [mN],Load [mN],Speed [mm/s]"
+    file = written(tmp_path / "a.csv", head, T, FRICTION, 1700, LOAD, SPEED)
+    np.testing.assert_allclose(tl.read(file).normal_force, 1e-3 * LOAD, atol=1e-6)
+    head = "Time [s],Friction [mN],Applied load [g],Normal force [mN],Speed [mm/s]"
+    told = asked(written(tmp_path / "b.csv", head, T, FRICTION, 100, LOAD, SPEED))
+    assert "column 4 'Normal force [mN]'" in told and "column 3" in told
+
+
+def test_two_columns_that_name_the_same_and_say_otherwise_are_asked_about(tmp_path):
+    head = "Time [s],Friction force [mN],Tangential force [mN],Load [mN],Speed [mm/s]"
+    told = asked(written(tmp_path / "a.csv", head, T, FRICTION, 1.3 * FRICTION, LOAD, SPEED))
+    assert "of several columns for friction_force" in told
+
+
+def test_a_load_counted_negative_is_told_by_its_size_where_noise_surrounds_zero(tmp_path):
+    load = np.where(T < 3, 20 * np.cos(9 * T), -LOAD)
+    head = "Time [s],Fx [mN],Fz [mN],Speed [mm/s]"
+    assert "counted negative" in asked(written(tmp_path / "a.csv", head, T, FRICTION, load, SPEED))
+
+
+def test_what_is_horizontal_slides_and_what_is_vertical_does_not(tmp_path):
+    head = (
+        "Time [s],Vertical displacement [mm],Horizontal displacement [mm],Vertical force [mN],"
+        "Horizontal force [mN]"
+    )
+    file = written(tmp_path / "a.csv", head, T, 0.01 * T, 2 * T, LOAD, FRICTION)
+    run = tl.read(file)
+    np.testing.assert_allclose(run.position, 2e-3 * T, atol=1e-9)
+    np.testing.assert_allclose(run.friction_force / run.normal_force, FRICTION / LOAD, rtol=1e-3)

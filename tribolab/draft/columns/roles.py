@@ -1,0 +1,54 @@
+"""Words of a name that say how a number came about: it was set, measured, or worked out."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+Role = Literal["", "set", "measured", "derived"]
+_TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
+_SET = frozenset(
+    "set setpoint setp sp soll sollwert target nominal nom command commanded cmd demand demanded "
+    "desired programmed prescribed requested consigne nominale objetivo nennwert".split()
+)
+_MEASURED = frozenset(
+    "actual act measured meas ist istwert real current gemessen gemessene mesuré mesurée réel "
+    "réelle medida medido misurata misurato feedback".split()
+)
+_DERIVED = frozenset(
+    "filtered filt smoothed average averaged avg mean max min maximum minimum peak std stdev rms "
+    "median gefiltert mittel mittelwert filtré filtrée moyenne media".split()
+)
+_ROLES: tuple[tuple[Role, frozenset[str], re.Pattern[str]], ...] = (
+    ("set", _SET, re.compile(r"^(?:soll|nenn)\w{3}|设定|設定|目标|目標|指令")),
+    (
+        "measured",
+        _MEASURED,
+        re.compile(r"^ist(?:kraft|last|wert|geschw|dreh|moment)|实际|实测|実測"),
+    ),
+    ("derived", _DERIVED, re.compile(r"平均|最大|最小")),
+)
+
+
+def role_of(name: str) -> Role:
+    """Tell by a column's name how its numbers came about.
+
+    >>> role_of("Velocity setpoint"), role_of("ActualSpeed"), role_of("Mean COF"), role_of("Offset")
+    ('set', 'measured', 'derived', '')
+    """
+    tokens = [token.lower() for token in _TOKENS.findall(name)]
+    for role, words, compound in _ROLES:
+        if any(token in words or compound.search(token) for token in tokens):
+            return role
+    return ""
+
+
+def without_role(name: str) -> str:
+    """Return a name without the words that say that its numbers were set or measured.
+
+    >>> without_role("Actual velocity"), without_role("Set Speed"), without_role("Ist")
+    ('velocity', 'Speed', 'Ist')
+    """
+    words = _SET | _MEASURED
+    kept = [token for token in _TOKENS.findall(name) if token.lower() not in words]
+    return " ".join(kept) or name

@@ -1,0 +1,72 @@
+"""Marks between the thousands of a number: 1.234,5 or "1,234.5" or 1 234,5."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Sequence
+from typing import Literal
+
+Mark = Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"]
+MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
+_ROWS = 4000  # lines that are looked at
+_APART = "\t;"  # delimiters that part numbers whatever marks stand in them
+
+
+def find_thousands(lines: Sequence[str]) -> Mark:
+    """Return the mark between thousands; "" if no number shows one and a decimal mark, too.
+
+    Parameters
+    ----------
+    lines
+        Lines of a file. Commas that part columns are no such marks: numbers in quotes only are
+        looked at where no tab or semicolon stands in a line.
+
+    Examples
+    --------
+    >>> find_thousands(["1.234,5;2"]), find_thousands(["1,234.5,2"])
+    ('.', '')
+    >>> find_thousands(['"1,234.5",2'])
+    ','
+    """
+    for line in lines[:_ROWS]:
+        apart = any(mark in line for mark in _APART)
+        if not apart and '"' not in line:
+            continue
+        for mark in MARKS:
+            decimal = "," if mark == "." else r"\." if mark == "," else "[.,]"
+            number = rf"\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+{decimal}\d+"
+            if re.search(rf'(?:^|[\t;"])\s*[+-]?{number}\s*(?:$|[\t;"])', line):
+                return mark
+    return ""
+
+
+def without_thousands(text: str, mark: Mark, delimiter: str) -> str:
+    """Return text whose numbers have no mark between their thousands.
+
+    Parameters
+    ----------
+    text
+        Lines of a table.
+    mark
+        The mark.
+    delimiter
+        What parts cells. Where it is the mark, only numbers in quotes are numbers of thousands.
+
+    Examples
+    --------
+    >>> without_thousands("1.234,5;00:00.123", ".", ";")
+    '1234,5;00:00.123'
+    >>> without_thousands('1,234,"1,234.5"', ",", ",")
+    '1,234,"1234.5"'
+    """
+    return _numbers(mark, delimiter).sub(lambda told: told[0].replace(mark, ""), text)
+
+
+@functools.lru_cache(maxsize=16)
+def _numbers(mark: str, delimiter: str) -> re.Pattern[str]:
+    number = rf"[+-]?\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+"
+    if mark == delimiter:
+        return re.compile(rf'(?<="){number}(?=(?:\.\d*)?")')
+    decimal = "[.,]".replace(mark, "")
+    return re.compile(rf"(?<![\w.,:'+-]){number}(?:{decimal}\d*)?(?![\w.,:'])")
