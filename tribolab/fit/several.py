@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
+from tribolab.conditions import Conditions, Labels, condition_text, labels_along
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -24,48 +24,15 @@ if TYPE_CHECKING:
 _OWN = ("sliding_speed", "segment", "wavenumber", "x", "point")  # dims of one curve or spectrum
 
 
-@dataclass(frozen=True, eq=False)
-class ShearStressFits:
-    """Fitted shear stresses of several conditions.
-
-    Parameters
-    ----------
-    fits
-        A `ShearStressFit` for each condition; None where nothing was measured.
-    """
-
-    fits: xr.DataArray
-
-    def sel(self, **labels: object) -> ShearStressFit | ShearStressFits:
-        """Return the fit of one condition, or the fits of some, as `xarray.DataArray.sel` does.
-
-        Raises
-        ------
-        AnalysisError
-            If nothing was measured under this condition.
-        """
-        chosen = self.fits.sel(labels, drop=True)
-        if chosen.dims:
-            return ShearStressFits(chosen)
-        fit = chosen.item()
-        if fit is None:
-            raise AnalysisError(f"nothing was measured at {_words(labels)}, so nothing is fitted")
-        return fit
-
-    def __iter__(self) -> Iterator[tuple[dict[Hashable, Any], ShearStressFit]]:
-        """Give the labels of each condition that was measured, and its fit."""
-        for place in np.ndindex(self.fits.shape):
-            one = self.fits[place]
-            if (fit := one.item()) is not None:
-                yield {dim: one[dim].item() if dim in one.coords else k
-                       for dim, k in zip(self.fits.dims, place, strict=True)}, fit  # fmt: skip
+class ShearStressFits(Conditions[ShearStressFit]):
+    """Fitted shear stresses: a `ShearStressFit` for each condition."""
 
     def to_dataset(self) -> xr.Dataset:
         """Return all numbers of `ShearStressFit.to_dataframe` over the conditions, with units."""
-        tables = np.empty(self.fits.shape, dtype=object)
+        tables = np.empty(self.results.shape, dtype=object)
         about: dict[str, tuple[str, str]] = {}
-        for place in np.ndindex(self.fits.shape):
-            fit: ShearStressFit | None = self.fits[place].item()
+        for place in np.ndindex(self.results.shape):
+            fit: ShearStressFit | None = self.results[place].item()
             table = None if fit is None else fit.to_dataframe()
             tables[place] = {} if table is None else table["value"].to_dict()
             if table is not None:
@@ -73,13 +40,13 @@ class ShearStressFits:
                 about |= {name: (unit, meaning) for name, unit, meaning in rows}
         numbers = {
             name: (
-                self.fits.dims,
+                self.results.dims,
                 np.vectorize(lambda row, name=name: float(row.get(name, np.nan)))(tables),
                 {"units": unit, "long_name": meaning},
             )
             for name, (unit, meaning) in about.items()
         }
-        return xr.Dataset(numbers, self.fits.coords)
+        return xr.Dataset(numbers, self.results.coords)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the same as a table with a row for each condition that was measured."""
@@ -94,13 +61,13 @@ class ShearStressFits:
             for labels, fit in self
         ]
         merged = xr.merge(parts, join="outer", compat="no_conflicts", combine_attrs="drop")
-        order = {dim: self.fits[dim] for dim in self.fits.dims if dim in self.fits.coords}
+        order = {dim: self.results[dim] for dim in self.results.dims if dim in self.results.coords}
         return merged.reindex(order)
 
     def _repr_html_(self) -> str:
         """Shear stress, error and fit of each condition in a row; all numbers folded away."""
         rows = "".join(
-            f"<tr><th>{_words(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
+            f"<tr><th>{condition_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
             f"{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
             f"{fit.degrees_of_freedom}</td><td>{fit.chi_square_p_value:.2g}</td></tr>"
             for labels, fit in self
@@ -166,17 +133,17 @@ def fit_shear_stresses(
             function="fit_shear_stresses",
             cure=Cure(notebook="fit it with fit_shear_stress"),
         )
-    fits = np.empty(tuple(len(values) for values in coords.values()), dtype=object)
-    for place in np.ndindex(fits.shape):
-        labels = {dim: coords[dim][k] for dim, k in zip(coords, place, strict=True)}
+
+    def fitted(labels: Labels) -> ShearStressFit | None:
         mine = {name: _cut(value, labels) for name, value in given.items()}
         if not bool(np.isfinite(mine["measured"]["friction_coefficient"]).any()):
-            continue
+            return None
         try:
-            fits[place] = fit_shear_stress(contact=contact, **mine)
+            return fit_shear_stress(contact=contact, **mine)
         except AnalysisError as error:
-            raise AnalysisError(f"{_words(labels)}: {error}") from error
-    return ShearStressFits(xr.DataArray(fits, coords, tuple(coords)))
+            raise AnalysisError(f"{condition_text(labels)}: {error}") from error
+
+    return ShearStressFits.of(coords, fitted)
 
 
 def _further(given: Mapping[str, object]) -> dict[Hashable, Any]:
@@ -186,8 +153,7 @@ def _further(given: Mapping[str, object]) -> dict[Hashable, Any]:
         holder = _holder(value)
         for dim in getattr(holder, "dims", ()):
             if dim not in _OWN and dim not in coords:
-                known = dim in holder.coords
-                coords[dim] = holder[dim].values if known else np.arange(holder.sizes[dim])
+                coords[dim] = labels_along(holder, dim)
     return coords
 
 
@@ -219,7 +185,3 @@ def _cut(value: Any, labels: Mapping[Hashable, Any]) -> Any:
         over = value["friction_coefficient"].dims[0]
         return value.dropna(over, how="all", subset=["friction_coefficient"])
     return value
-
-
-def _words(labels: Mapping[Any, object]) -> str:
-    return ", ".join(f"{dim} {label}" for dim, label in labels.items())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
+from tribolab.conditions import Conditions, Labels, labels_along
 from tribolab.errors import AnalysisError, Cure
 from tribolab.mode.model import Mode
 from tribolab.mode.verdict import SlidingMode, sliding_mode
@@ -20,39 +21,8 @@ if TYPE_CHECKING:
 _CURVES = ("friction_coefficient", "waveform", "friction_coefficient_low")
 
 
-@dataclass(frozen=True, eq=False)
-class SlidingModes:
-    """How several contacts slide.
-
-    Parameters
-    ----------
-    modes
-        A `SlidingMode` for each condition; None where nothing was measured.
-    """
-
-    modes: xr.DataArray
-
-    def sel(self, **labels: object) -> SlidingMode | SlidingModes:
-        """Return the verdict on one condition, or on some, as `xarray.DataArray.sel` does.
-
-        Raises
-        ------
-        AnalysisError
-            If nothing was measured under this condition.
-        """
-        chosen = self.modes.sel(labels, drop=True)
-        if chosen.dims:
-            return SlidingModes(chosen)
-        if chosen.item() is None:
-            raise AnalysisError(f"nothing was measured at {_words(labels)}")
-        return chosen.item()
-
-    def __iter__(self) -> Iterator[tuple[dict[Hashable, Any], SlidingMode]]:
-        """Give the labels of each condition that was measured, and how it slides."""
-        for place in np.ndindex(self.modes.shape):
-            part = self.modes[place]
-            if part.item() is not None:
-                yield {dim: part[dim].item() for dim in self.modes.dims}, part.item()
+class SlidingModes(Conditions[SlidingMode]):
+    """How several contacts slide: a `SlidingMode` for each condition."""
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a table with a row for each piece of evidence, and for what would decide."""
@@ -66,7 +36,7 @@ class SlidingModes:
                 *(("would decide", text) for text in mode.decide),
             )
         ]
-        return pd.DataFrame(rows, columns=[*self.modes.dims, "verdict", "side", "text"])
+        return pd.DataFrame(rows, columns=[*self.results.dims, "verdict", "side", "text"])
 
     def __repr__(self) -> str:
         """Return each verdict in a sentence, with what speaks for and against it."""
@@ -140,23 +110,20 @@ def sliding_modes(
             function="sliding_modes",
             cure=Cure(notebook="weigh it with sliding_mode"),
         )
-    coords = {
-        dim: holder[dim].values if dim in holder.coords else np.arange(holder.sizes[dim])
-        for dim in dims
-    }
-    modes = np.empty([holder.sizes[dim] for dim in dims], dtype=object)
-    for place in np.ndindex(modes.shape):
-        labels = {dim: coords[dim][k] for dim, k in zip(dims, place, strict=True)}
-        if (curve := _cut(measured, labels)) is not None:
-            modes[place] = sliding_mode(
-                curve,
-                _cut(model, labels),
-                _cut(slip, labels),
-                _known(known or Mode(), adhesion, labels),
-                band=_cut(band, labels),
-                name=_words(labels),
-            )
-    return SlidingModes(xr.DataArray(modes, coords, dims))
+
+    def weighed(labels: Labels) -> SlidingMode | None:
+        if (curve := _cut(measured, labels)) is None:
+            return None
+        return sliding_mode(
+            curve,
+            _cut(model, labels),
+            _cut(slip, labels),
+            _known(known or Mode(), adhesion, labels),
+            band=_cut(band, labels),
+            name=_words(labels),
+        )
+
+    return SlidingModes.of({dim: labels_along(holder, dim) for dim in dims}, weighed)
 
 
 def _known(known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, object]) -> Mode:
