@@ -8,7 +8,7 @@ from pathlib import Path
 from traceback import format_exception
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.settings.plan import distinct, safe_name
@@ -25,7 +25,6 @@ from tribolab.words import explain
 if TYPE_CHECKING:
     import xarray as xr
 
-KIND = "curve"
 SLIP = "stick_slip"  # group of the stick-slip over speed
 AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
@@ -44,8 +43,13 @@ class CurveTask:
     fingerprint: str = ""
     found_files: tuple[str, ...] = ()
 
+    @property
+    def name(self) -> str:
+        """Of the curve."""
+        return self.curve.name
 
-class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
+
+class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
     """The stage of the measured curves.
 
     Parameters
@@ -56,11 +60,13 @@ class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = "curves"
+    kind = "curve"
+    record = CurveRecord
 
     def __init__(self, runs: Iterable[RunCame], store: Store) -> None:
+        super().__init__(store)
         self._runs = runs
-        self._store = store
 
     def plan(self) -> list[CurveTask]:
         """Put together what is stated to be the same: surface, medium and load."""
@@ -105,15 +111,10 @@ class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
             tuple(came.outcome.data_file for came in found),
         )
 
-    def known(self, task: CurveTask, place: int) -> CurveRecord | None:
-        """Take over a curve whose runs are the same."""
-        name = task.curve.name
-        record = self._store.same(KIND, name, task.fingerprint, CurveRecord)
-        if record is None or record.outcome != task.curve:
-            return None
-        data_file = task.curve.data_file
-        taken = self._store.take(KIND, name, place, task.fingerprint, record, data_file)
-        return record if taken else None
+    def linked(self, task: CurveTask, record: CurveRecord) -> bool:
+        """Have the data file among the new ones, if the curve is called and labelled the same."""
+        file = task.curve.data_file
+        return record.outcome == task.curve and self._store.link(self.kind, task.name, file, file)
 
     @staticmethod
     def work(task: CurveTask) -> CurveRecord:
@@ -127,12 +128,6 @@ class Curves(Stage[CurveTask, CurveRecord, CurveRecord]):
         return CurveRecord(
             replace(task.curve, data_file="", status="failed", reason=reason, crash=crash)
         )
-
-    def keep(self, task: CurveTask, place: int, record: CurveRecord) -> CurveRecord:
-        """Write down what came of a curve."""
-        mark = task.fingerprint if record.outcome.done else ""
-        self._store.put(KIND, task.curve.name, place, mark, record)
-        return record
 
 
 def process_curve(task: CurveTask) -> CurveRecord:

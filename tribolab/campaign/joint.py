@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.settings.plan import safe_name
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import read_data, write_data
-from tribolab.errors import OutputError
 from tribolab.provenance import sha256_of
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from tribolab.fit.joint.load_curve import LoadCurve
     from tribolab.fit.joint.priors import JointPriors
 
-KIND = "joint"
 _NORMAL = 1.959963984540054
 ADHESIVE = "adhesive area"
 _CURVE = (
@@ -80,7 +78,7 @@ class JointTask:
         return f"data/{self.name}.nc"
 
 
-class JointFits(Stage[JointTask, JointRecord, JointRecord]):
+class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
     """The stage of the joint fits.
 
     Parameters
@@ -94,6 +92,8 @@ class JointFits(Stage[JointTask, JointRecord, JointRecord]):
     """
 
     name = "joint fits"
+    kind = "joint"
+    record = JointRecord
 
     def __init__(
         self,
@@ -102,7 +102,8 @@ class JointFits(Stage[JointTask, JointRecord, JointRecord]):
         models: Sequence[ModelRecord],
         store: Store,
     ) -> None:
-        self._campaign, self._store = campaign, store
+        super().__init__(store)
+        self._campaign = campaign
         self._files = {c.outcome.name: c.outcome.data_file for c in curves if c.outcome.done}
         self._models = [
             model
@@ -143,38 +144,20 @@ class JointFits(Stage[JointTask, JointRecord, JointRecord]):
             tasks.append(replace(task, fingerprint=fingerprint_of(sha256_of(shaping))))
         return tasks
 
-    def known(self, task: JointTask, place: int) -> JointRecord | None:
-        """Take over a fit of the same curves and models."""
-        record = self._store.same(KIND, task.name, task.fingerprint, JointRecord)
-        if record is None or not self._store.link(KIND, task.name, record.file, record.file):
-            return None
-        self._store.put(KIND, task.name, place, task.fingerprint, record)
-        return record
+    def linked(self, task: JointTask, record: JointRecord) -> bool:
+        """Have the data file among the new ones."""
+        return self._store.link(self.kind, task.name, record.file, record.file)
 
     @staticmethod
     def work(task: JointTask) -> JointRecord:
         """Fit one surface in one liquid."""
-        try:
-            return fitted(task)
-        except OutputError:
-            raise
-        except Exception as error:  # recorded: the single fits stand without it
-            return _failed(task, error)
+        return fitted(task)
 
     def failed(self, task: JointTask, error: BaseException) -> JointRecord:
-        """Return the record of a fit whose worker died."""
-        return _failed(task, error)
-
-    def keep(self, task: JointTask, place: int, record: JointRecord) -> JointRecord:
-        """Write down a fit."""
-        mark = task.fingerprint if record.done else ""
-        self._store.put(KIND, task.name, place, mark, record)
-        return record
-
-
-def _failed(task: JointTask, error: BaseException) -> JointRecord:
-    names = tuple(model.curve for model in task.models)
-    return JointRecord(task.name, task.surface, task.medium, names, "failed", explain(error)[0])
+        """Return the record of a fit that failed: the single fits stand without it."""
+        names = tuple(model.curve for model in task.models)
+        reason = explain(error)[0]
+        return JointRecord(task.name, task.surface, task.medium, names, "failed", reason)
 
 
 def _enhancement(model: ModelRecord) -> float | None:

@@ -10,21 +10,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.campaign.curves import SLIP
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.mode.model import Mode
 from tribolab.provenance import sha256_of
 from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.records.parts import CurveOutcome, Row, number_of
+from tribolab.records.parts import CurveOutcome, Notice, Row, number_of
 from tribolab.records.wording import plain_value
 from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
-KIND = "mode"
 _ROUGH_ENOUGH = 0.0  # J/m2: a surface without macroscopic adhesion slides steadily
 _CURVE = (
     "friction_coefficient",
@@ -53,9 +52,14 @@ class ModeTask:
     folder: Path
     fingerprint: str
 
+    @property
+    def name(self) -> str:
+        """Of the curve, and of the verdict on it."""
+        return self.curve.name
 
-class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
-    """The stage of the sliding modes; what could not be judged is the reason, as text.
+
+class Modes(Recorded[ModeTask, ModeRecord, Notice]):
+    """The stage of the sliding modes.
 
     Parameters
     ----------
@@ -67,7 +71,9 @@ class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = "modes"
+    kind = "mode"
+    record = ModeRecord
 
     def __init__(
         self,
@@ -77,10 +83,10 @@ class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
         models: Sequence[ModelRecord],
         store: Store,
     ) -> None:
+        super().__init__(store)
         self._curves = [c for c in curves if c.outcome.done and _has_friction(c)]
         self._known = _all_known(campaign, self._curves, surfaces, models)
         self._models = {m.outcome.curve: m for m in models if m.outcome.done}
-        self._store = store
 
     def plan(self) -> list[ModeTask]:
         """Return a task for each measured curve."""
@@ -105,28 +111,15 @@ class Modes(Stage[ModeTask, "ModeRecord | str", "ModeRecord | str"]):
             )
         return tasks
 
-    def known(self, task: ModeTask, place: int) -> ModeRecord | None:
-        """Take over the verdict on a curve whose data are the same."""
-        name, mark = task.curve.name, task.fingerprint
-        record = self._store.same(KIND, name, mark, ModeRecord)
-        if record is not None:
-            self._store.put(KIND, name, place, mark, record)
-        return record
-
     @staticmethod
     def work(task: ModeTask) -> ModeRecord:
         """Judge one curve."""
         return judge(task)
 
-    def failed(self, task: ModeTask, error: BaseException) -> str:
+    def failed(self, task: ModeTask, error: BaseException) -> Notice:
         """Return why a curve could not be judged."""
-        return explain(error)[0]
-
-    def keep(self, task: ModeTask, place: int, record: ModeRecord | str) -> ModeRecord | str:
-        """Write down the verdict on a curve."""
-        if isinstance(record, ModeRecord):
-            self._store.put(KIND, task.curve.name, place, task.fingerprint, record)
-        return record
+        members = "; ".join(task.curve.run_names)
+        return Notice("error", members, f"stick-slip {task.name}", explain(error)[0])
 
 
 def judge(task: ModeTask) -> ModeRecord:

@@ -84,6 +84,11 @@ class CurveRecord:
     budget: tuple[BudgetRow, ...] = ()
     uncertainty_says: str = ""
 
+    @property
+    def done(self) -> bool:
+        """Whether there is a curve."""
+        return self.outcome.done
+
 
 @dataclass(frozen=True)
 class ModelRows:

@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Progress, perform, silent
 from tribolab.campaign.joint import JointFits
 from tribolab.campaign.modes import Modes
+from tribolab.campaign.recorded import parted
 from tribolab.records.joint_record import (
     JointRecord,
-    comparison_table_rows,
-    parameter_table_rows,
 )
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
-from tribolab.records.parts import Notice, Row
+from tribolab.records.parts import Notice
 from tribolab.records.run_record import RunRecord
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.report import tables
-from tribolab.report.document import decisions
+from tribolab.report.campaign_tables import write_tables
+from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import (
     brief_run,
-    labels,
     report_document,
     report_head,
     write_json,
 )
 from tribolab.report.document.models import (
     ModelRow,
-    curve_table,
     model_rows_of,
-    sensitivity_table,
-    shear_stress_table,
 )
 from tribolab.report.document.parts import (
     reported_curve,
@@ -45,7 +37,6 @@ from tribolab.report.document.parts import (
     reported_surface,
     run_document,
 )
-from tribolab.report.document.surfaces import table
 from tribolab.report.figures.choice import Wanted
 from tribolab.report.figures.curves import draw_curves, plan_figures
 from tribolab.report.figures.models import draw_model, plan_model_figures
@@ -56,11 +47,12 @@ from tribolab.report.live.gather import live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.page.page import write_page
 from tribolab.report.page.reviewing import review_data
+from tribolab.report.tables import SEVERITIES
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome, Outcome
-    from tribolab.records.parts import RunOutcome
+    from tribolab.records.parts import CurveOutcome, RunOutcome
 
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 
@@ -108,8 +100,10 @@ def write_report(
     findings = _of_parts(outcome, surfaces, models) + said
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
-    findings += [note for curve in shown for note in decisions.curve_notices(curve)]
-    modes, unjudged = _modes(outcome, curves, surfaces, models, executor)
+    findings += [note for curve in shown for note in curve_notices(curve)]
+    stage = Modes(outcome.campaign, curves, surfaces, models, store)
+    judged, unjudged = parted(perform(stage, executor))
+    modes = {mode.curve: mode for mode in judged}
     findings += unjudged
     joints = perform(JointFits(outcome.campaign, curves, models, store), executor)
     findings += [
@@ -122,33 +116,18 @@ def write_report(
     rows = model_rows_of(models)
     live, undrawn = live_figures(outcome, shown, points, rows, modes, fitted, executor)
     findings += undrawn
-    tasks: list[FigureTask] = []
-    if figures != "none":
-        tasks += planned(
-            "figures",
-            plan_figures([curve.outcome for curve in shown]),
-            draw_curves,
-            store,
-            pdf=pdf,
-        )
-    if figures == "all":
-        done = [surface.outcome for surface in surfaces if surface.rows is not None]
-        known = [curve.outcome for curve in shown]
-        surfaced = plan_surface_figures(done)
-        tasks += planned("surface_figures", surfaced, draw_surfaces, store, pdf=pdf)
-        modelled = plan_model_figures(outcome, list(rows.values()), fitted)
-        tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
-        sliding = plan_sliding_figures(known, modes, outcome)
-        tasks += planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
+    known = [curve.outcome for curve in shown]
+    tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
-    for section, record in perform(Figures(tasks, store), executor, tell):
+    figured = perform(Figures(tasks, store), executor, tell)
+    for task, record in zip(tasks, figured, strict=True):
         if isinstance(record, Notice):
             findings.append(record)
         elif record is not None:
-            drawn[section].append(record)
+            drawn[task.section].append(record)
 
-    ordered = sorted(findings, key=lambda finding: tables.SEVERITIES.index(finding.severity))
-    _write_tables(outcome, shown, surfaces, rows, fitted, ordered)
+    ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
+    write_tables(outcome, shown, surfaces, rows, fitted, ordered)
     named = {surface.outcome.name: surface.rows for surface in surfaces}
     head = report_head(
         outcome,
@@ -167,6 +146,32 @@ def write_report(
     write_page(on_page, folder, lambda: _documents(outcome), store, live)
     store.save()
     tell("page", 1, 1)
+
+
+def _figures(
+    outcome: OpenOutcome,
+    curves: Sequence[CurveOutcome],
+    surfaces: Sequence[SurfaceRecord],
+    models: Mapping[str, ModelRow],
+    fitted: Sequence[JointRecord],
+    modes: Mapping[str, ModeRecord],
+    wanted: Wanted,
+    pdf: bool,
+) -> list[FigureTask]:
+    """Return the figures that are to be drawn."""
+    store = outcome.store
+    if wanted == "none":
+        return []
+    tasks = planned("figures", plan_figures(curves), draw_curves, store, pdf=pdf)
+    if wanted == "curves":
+        return tasks
+    done = [surface.outcome for surface in surfaces if surface.rows is not None]
+    surfaced = plan_surface_figures(done)
+    tasks += planned("surface_figures", surfaced, draw_surfaces, store, pdf=pdf)
+    modelled = plan_model_figures(outcome, list(models.values()), fitted)
+    tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
+    sliding = plan_sliding_figures(curves, modes, outcome)
+    return tasks + planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
 
 
 def _documents(outcome: Outcome) -> Iterator[Json]:
@@ -238,104 +243,3 @@ def shown_curves(
         members = "; ".join(outcome.run_names)
         missing.append(Notice(severity, members, outcome.name, f"no measured curve: {reason}"))
     return shown, missing
-
-
-def _modes(
-    outcome: OpenOutcome,
-    curves: Sequence[CurveRecord],
-    surfaces: Sequence[SurfaceRecord],
-    models: Sequence[ModelRecord],
-    executor: Executor | None,
-) -> tuple[dict[str, ModeRecord], list[Notice]]:
-    """Judge how the contacts slide; what could not be judged is a finding."""
-    stage = Modes(outcome.campaign, curves, surfaces, models, outcome.store)
-    answers = perform(stage, executor)
-    modes, findings = {}, []
-    for task, answer in zip(stage.plan(), answers, strict=True):
-        if isinstance(answer, ModeRecord):
-            modes[task.curve.name] = answer
-        else:
-            members = "; ".join(task.curve.run_names)
-            where = f"stick-slip {task.curve.name}"
-            findings.append(Notice("error", members, where, answer))
-    return modes, findings
-
-
-def _write_tables(
-    outcome: Outcome,
-    curves: Sequence[CurveRecord],
-    surfaces: Sequence[SurfaceRecord],
-    models: Mapping[str, ModelRow],
-    joints: Sequence[JointRecord],
-    findings: Sequence[Notice],
-) -> None:
-    folder = Path(outcome.folder) / "tables"
-    store = outcome.store
-    in_curves = {name for curve in curves for name in curve.outcome.run_names}
-
-    def records() -> Iterator[RunRecord]:
-        return (entry.record for entry in store.all("run", RunRecord))
-
-    def labelled(what: str, name: str, part: Any, rows: Iterable[Row]) -> Iterator[Row]:
-        named: Row = {what: name}
-        return (named | labels(part) | row for row in rows)
-
-    def friction() -> Iterator[Row]:
-        for record in records():
-            run = record.outcome
-            yield from labelled("run", run.name, run, record.facts.segments)
-
-    def stick_slip() -> Iterator[Row]:
-        for record in records():
-            run = record.outcome
-            if run.name in in_curves:
-                yield from labelled("run", run.name, run, record.slip)
-
-    def static_friction() -> Iterator[Row]:
-        for record in records():
-            run = record.outcome
-            yield from labelled("run", run.name, run, record.starts)
-
-    def stribeck() -> Iterator[Row]:
-        for curve in curves:
-            yield from labelled("curve", curve.outcome.name, curve.outcome, curve.points)
-
-    def budget() -> Iterator[Row]:
-        for curve in curves:
-            yield from labelled("curve", curve.outcome.name, curve.outcome, curve.budget)
-
-    def checks() -> Iterator[Row]:
-        for record in records():
-            for row in record.facts.checks:
-                columns = ("check", "variable", "status", "value", "unit", "message")
-                yield {"run": record.outcome.name} | {k: getattr(row, k) for k in columns}
-
-    first = [*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient"]
-    tables.write_rows(friction, folder / "friction.csv", ["run", *first])
-    tables.write_rows(stick_slip, folder / "stick_slip.csv", ["run", "segment"])
-    tables.write_rows(static_friction, folder / "static_friction.csv", ["run", "segment"])
-    first = ["curve", *tables.LABELS, "sliding_speed_m_s", "friction_coefficient"]
-    tables.write_rows(stribeck, folder / "stribeck.csv", first)
-    first = ["curve", *tables.LABELS, "sliding_speed_m_s", "part", "contribution", "share", "dof"]
-    tables.write_rows(budget, folder / "uncertainty_budget.csv", first)
-    first = ["run", "check", "variable", "status", "value", "unit", "message"]
-    tables.write_rows(checks, folder / "checks.csv", first)
-    decisions.write_tables(outcome, curves, folder)
-    columns = ["file", "sha256", "bytes"]
-    tables.write(pd.DataFrame(list(outcome.sources), columns=columns), folder / "sources.csv")
-    tables.write(tables.findings_table(findings), folder / "findings.csv")
-    rows = [surface.rows for surface in surfaces if surface.rows is not None]
-    for name, wanted in (("roughness", ROUGHNESS), ("contact", CONTACT), ("adhesion", ADHESION)):
-        tables.write(table(rows, name, wanted), folder / f"{name}.csv")
-    if outcome.models:
-        every = list(models.values())
-        for name, made in (
-            ("shear_stress", shear_stress_table(every)),
-            ("stribeck_model", curve_table(every)),
-            ("model_sensitivity", sensitivity_table(every)),
-        ):
-            tables.write(made, folder / f"{name}.csv")
-    if joints:
-        tables.write(pd.DataFrame(parameter_table_rows(joints)), folder / "joint_fit.csv")
-        compared = pd.DataFrame(comparison_table_rows(joints))
-        tables.write(compared, folder / "model_comparison.csv")

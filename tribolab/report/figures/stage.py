@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
@@ -16,8 +16,6 @@ from tribolab.records.parts import Notice
 from tribolab.report.code import code_of_figures
 from tribolab.report.figures.files import DRAWING, Drawn, save_figure
 from tribolab.words import explain
-
-KIND = "figure"
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,11 @@ class FigureTask:
     pdf: bool = False
     fingerprint: str = ""
 
+    @property
+    def name(self) -> str:
+        """Of its record: that of the picture."""
+        return self.file
+
 
 class Planned(Protocol):
     """What knows a figure before it is drawn: its kinds of figures do, each in its own way."""
@@ -65,11 +68,11 @@ class Planned(Protocol):
         """Data files that it reads."""
 
 
-Figured = FigureRecord | Notice | None  # a figure, why there is none, or nothing to show
+Unfigured = Notice | None  # why there is no figure, or that there is nothing to show
 What = TypeVar("What", bound=Planned)
 
 
-class Figures(Stage[FigureTask, Figured, tuple[str, Figured]]):
+class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
     """The stage of the figures.
 
     Parameters
@@ -80,27 +83,25 @@ class Figures(Stage[FigureTask, Figured, tuple[str, Figured]]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = "figures"
+    kind = "figure"
+    record = FigureRecord
 
     def __init__(self, tasks: Sequence[FigureTask], store: Store) -> None:
+        super().__init__(store)
         self._tasks = tasks
-        self._store = store
 
     def plan(self) -> Sequence[FigureTask]:
         """Return the figures, each with the checksum of what it is drawn from."""
         return self._tasks
 
-    def known(self, task: FigureTask, place: int) -> tuple[str, Figured] | None:
-        """Take over a figure whose data are the same."""
-        record = self._store.same(KIND, task.file, task.fingerprint, FigureRecord)
-        if record is None or not self._store.link(KIND, task.file, record.file, record.file):
-            return None
+    def linked(self, task: FigureTask, record: FigureRecord) -> bool:
+        """Have the picture, its numbers, and its PDF if that is wanted, among the new files."""
+        if not self._store.link(self.kind, task.name, record.file, record.file):
+            return False
         beside = [record.data] if record.data else []
         beside += [str(Path(record.file).with_suffix(".pdf"))] if task.pdf else []
-        if not all(self._store.link_beside(file) for file in beside):
-            return None
-        self._store.put(KIND, task.file, place, task.fingerprint, record)
-        return task.section, record
+        return all(self._store.link_beside(file) for file in beside)
 
     @staticmethod
     def work(task: FigureTask) -> FigureRecord | None:
@@ -110,12 +111,6 @@ class Figures(Stage[FigureTask, Figured, tuple[str, Figured]]):
     def failed(self, task: FigureTask, error: BaseException) -> Notice:
         """Return why a figure could not be drawn."""
         return Notice("error", "", f"figure {task.title}", explain(error)[0])
-
-    def keep(self, task: FigureTask, place: int, record: Figured) -> tuple[str, Figured]:
-        """Write down a figure."""
-        if isinstance(record, FigureRecord):
-            self._store.put(KIND, task.file, place, task.fingerprint, record)
-        return task.section, record
 
 
 def draw(task: FigureTask) -> FigureRecord | None:

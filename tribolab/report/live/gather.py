@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import perform
+from tribolab.campaign.recorded import parted
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
@@ -19,7 +20,7 @@ from tribolab.report.live.curves import Friction, card_figures, model_figures
 from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
-from tribolab.report.live.record import Band, LiveFigures, LiveRecord, LiveTask, Missed, live_task
+from tribolab.report.live.record import Band, LiveFigures, LiveTask, Missed, live_task
 from tribolab.report.live.shown import ShownFigure, shown
 from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
@@ -62,13 +63,7 @@ def live_figures(
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     models = list(rows.values())
     tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
-    records: list[LiveRecord] = []
-    findings: list[Notice] = []
-    for came in perform(LiveFigures(tasks, outcome.store), executor, lambda *_: None):
-        if isinstance(came, Notice):
-            findings.append(came)
-        else:
-            records.append(came)
+    records, findings = parted(perform(LiveFigures(tasks, outcome.store), executor))
     bands: dict[str, Band] = {}
     missed: dict[str, Missed] = {}
     for record in records:

@@ -7,15 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
 from tribolab.provenance import sha256_of
 from tribolab.records.parts import Notice
 from tribolab.report.code import code_of_figures
 from tribolab.report.live.shown import ShownFigure
 from tribolab.words import explain
-
-KIND = "live"
 
 
 class Band(NamedTuple):
@@ -81,7 +79,7 @@ def live_task(
     return LiveTask(name, make, store.folder, fingerprint)
 
 
-class LiveFigures(Stage[LiveTask, "LiveRecord | Notice", "LiveRecord | Notice"]):
+class LiveFigures(Recorded[LiveTask, LiveRecord, Notice]):
     """The stage of the figures that the page draws.
 
     Parameters
@@ -93,34 +91,22 @@ class LiveFigures(Stage[LiveTask, "LiveRecord | Notice", "LiveRecord | Notice"])
     """
 
     name = "page"
+    kind = "live"
+    record = LiveRecord
 
     def __init__(self, tasks: Sequence[LiveTask], store: Store) -> None:
+        super().__init__(store)
         self._tasks = tasks
-        self._store = store
 
     def plan(self) -> Sequence[LiveTask]:
         """Return what is to be made."""
         return self._tasks
 
-    def known(self, task: LiveTask, place: int) -> LiveRecord | Notice | None:
-        """Take over figures whose data are the same."""
-        entry = self._store.before.get(KIND, task.name, LiveRecord)
-        if entry is None or entry.fingerprint != task.fingerprint:
-            return None
-        self._store.put(KIND, task.name, place, task.fingerprint, entry.record)
-        return entry.record
-
     @staticmethod
-    def work(task: LiveTask) -> LiveRecord | Notice:
+    def work(task: LiveTask) -> LiveRecord:
         """Make figures of one kind."""
         return task.make(task.folder)
 
-    def failed(self, task: LiveTask, error: BaseException) -> LiveRecord | Notice:
+    def failed(self, task: LiveTask, error: BaseException) -> Notice:
         """Return why figures could not be made."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])
-
-    def keep(self, task: LiveTask, place: int, record: LiveRecord | Notice) -> LiveRecord | Notice:
-        """Write figures down."""
-        if isinstance(record, LiveRecord):
-            self._store.put(KIND, task.name, place, task.fingerprint, record)
-        return record

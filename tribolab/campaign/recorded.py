@@ -1,0 +1,83 @@
+"""Stages whose records stand in the catalogue as they are, under the name of their task."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar, Generic, Protocol, TypeVar
+
+from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.store.catalogue import Store
+from tribolab.records.parts import Notice
+
+
+class Named(Protocol):
+    """A task with the name of its record and the checksum of all that shapes it."""
+
+    @property
+    def name(self) -> str:
+        """Of its record in the catalogue."""
+
+    @property
+    def fingerprint(self) -> str:
+        """Another one when anything is that the record follows from."""
+
+
+Mine = TypeVar("Mine", bound=Named)
+Record = TypeVar("Record")
+Failure = TypeVar("Failure")
+
+
+class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Record, Failure]):
+    """A stage whose records are taken over where the fingerprint is the same.
+
+    Parameters
+    ----------
+    store
+        What is known, and where it is written down.
+
+    Attributes
+    ----------
+    kind
+        Of its records in the catalogue.
+    record
+        What they are. What came of a task instead is handed on, and written down nowhere.
+    """
+
+    kind: ClassVar[str]
+    record: ClassVar[type]
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def known(self, task: Mine, place: int) -> Record | None:
+        """Take over the record of a task that is made of the same, if its files are there."""
+        record: Record | None = self._store.same(
+            self.kind, task.name, task.fingerprint, self.record
+        )
+        if record is None or not self.linked(task, record):
+            return None
+        self._store.put(self.kind, task.name, place, task.fingerprint, record)
+        return record
+
+    def linked(self, task: Mine, record: Record) -> bool:
+        """Have the files of an earlier record among the new ones; False: it is done anew."""
+        return True
+
+    def keep(self, task: Mine, place: int, record: Record | Failure) -> Record | Failure:
+        """Write a record down; one that says of itself that it failed is done anew next time."""
+        if isinstance(record, self.record):
+            mark = task.fingerprint if getattr(record, "done", True) else ""
+            self._store.put(self.kind, task.name, place, mark, record)
+        return record
+
+
+def parted(came: Iterable[Record | Notice]) -> tuple[list[Record], list[Notice]]:
+    """Return what was done, and why the rest was not."""
+    done: list[Record] = []
+    why: list[Notice] = []
+    for record in came:
+        if isinstance(record, Notice):
+            why.append(record)
+        else:
+            done.append(record)
+    return done, why

@@ -1,0 +1,140 @@
+"""All tables of a campaign: what is in them, in which file, with which columns first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import pandas as pd
+
+from tribolab.records.joint_record import (
+    JointRecord,
+    comparison_table_rows,
+    parameter_table_rows,
+)
+from tribolab.records.part_records import CurveRecord, SurfaceRecord
+from tribolab.records.parts import Notice, Row
+from tribolab.records.run_record import RunRecord
+from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.wording import plain_value
+from tribolab.report import tables
+from tribolab.report.document.decisions import AS_FOUND
+from tribolab.report.document.document import labels
+from tribolab.report.document.models import (
+    ModelRow,
+    curve_table,
+    sensitivity_table,
+    shear_stress_table,
+)
+from tribolab.report.document.surfaces import table
+
+if TYPE_CHECKING:
+    from tribolab.campaign.store.outcome import Outcome
+
+_CHECK = ("check", "variable", "status", "value", "unit", "message")
+_POINT = (*tables.LABELS, "sliding_speed_m_s", "friction_coefficient")
+_PART = (*tables.LABELS, "sliding_speed_m_s", "part", "contribution", "share", "dof")
+_SEGMENT = (*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
+
+
+class _Long(NamedTuple):
+    """A table that is never in memory as a whole.
+
+    Parameters
+    ----------
+    file
+        Its name.
+    rows
+        Gives its rows, as often as it is called.
+    columns
+        What it has without rows; with none of either it is not written.
+    """
+
+    file: str
+    rows: Callable[[], Iterator[Row]]
+    columns: Sequence[str] = ()
+
+
+def write_tables(
+    outcome: Outcome,
+    curves: Sequence[CurveRecord],
+    surfaces: Sequence[SurfaceRecord],
+    models: Mapping[str, ModelRow],
+    joints: Sequence[JointRecord],
+    findings: Iterable[Notice],
+) -> None:
+    """Write all tables of a campaign.
+
+    Parameters
+    ----------
+    outcome
+        Its store has the runs.
+    curves
+        Those that are shown.
+    surfaces, models, joints
+        What is recorded of them; of joint fits those that were done.
+    findings
+        In any order; the gravest come first.
+    """
+    folder = Path(outcome.folder) / "tables"
+    for long in _long_tables(outcome, curves):
+        if long.columns or any(True for _ in long.rows()):
+            tables.write_rows(long.rows, folder / long.file, long.columns)
+    columns = ["file", "sha256", "bytes"]
+    short = {
+        "sources": pd.DataFrame(list(outcome.sources), columns=columns),
+        "findings": tables.findings_table(findings),
+    }
+    rows = [surface.rows for surface in surfaces if surface.rows is not None]
+    for name, wanted in (("roughness", ROUGHNESS), ("contact", CONTACT), ("adhesion", ADHESION)):
+        short[name] = table(rows, name, wanted)
+    if outcome.models:
+        every = list(models.values())
+        short["shear_stress"] = shear_stress_table(every)
+        short["stribeck_model"] = curve_table(every)
+        short["model_sensitivity"] = sensitivity_table(every)
+    if joints:
+        short["joint_fit"] = pd.DataFrame(parameter_table_rows(joints))
+        short["model_comparison"] = pd.DataFrame(comparison_table_rows(joints))
+    for name, made in short.items():
+        tables.write(made, folder / f"{name}.csv")
+
+
+def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_Long]:
+    in_curves = {name for curve in curves for name in curve.outcome.run_names}
+
+    def of_runs(rows: Callable[[RunRecord], Iterable[Row]]) -> Callable[[], Iterator[Row]]:
+        def every() -> Iterator[Row]:
+            for entry in outcome.store.all("run", RunRecord):
+                run = entry.record.outcome
+                named: Row = {"run": run.name, **labels(run)}
+                yield from (named | row for row in rows(entry.record))
+
+        return every
+
+    def of_curves(rows: Callable[[CurveRecord], Iterable[Row]]) -> Callable[[], Iterator[Row]]:
+        def every() -> Iterator[Row]:
+            for curve in curves:
+                named: Row = {"curve": curve.outcome.name, **labels(curve.outcome)}
+                yield from (named | row for row in rows(curve))
+
+        return every
+
+    def checks() -> Iterator[Row]:
+        for entry in outcome.store.all("run", RunRecord):
+            for row in entry.record.facts.checks:
+                yield {"run": entry.record.outcome.name} | {k: getattr(row, k) for k in _CHECK}
+
+    def slip(record: RunRecord) -> Iterable[Row]:
+        return record.slip if record.outcome.name in in_curves else ()
+
+    yield _Long("friction.csv", of_runs(lambda run: run.facts.segments), ("run", *_SEGMENT))
+    yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
+    yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
+    yield _Long("stribeck.csv", of_curves(lambda curve: curve.points), ("curve", *_POINT))
+    yield _Long("uncertainty_budget.csv", of_curves(lambda curve: curve.budget), ("curve", *_PART))
+    yield _Long("checks.csv", checks, ("run", *_CHECK))
+    decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))
+    yield _Long("decisions.csv", decided)
+    yield _Long(AS_FOUND, of_curves(lambda curve: map(plain_value, curve.points_as_found)))
