@@ -13,6 +13,7 @@ import tribolab
 from tribolab.campaign.joint import JointFits
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord
@@ -117,7 +118,10 @@ def test_a_joint_fit_of_the_same_curves_is_taken_over(outcome, campaign, tmp_pat
 def test_a_fit_that_is_not_possible_is_a_note_with_the_reason(outcome, campaign):
     curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
     models = [entry.record for entry in outcome.store.all("model", ModelRecord)]
-    (task,) = JointFits(campaign, curves, models, outcome.store).plan()
+    stage = JointFits(campaign, curves, models, outcome.store)
+    (task,) = stage.plan()
     gone = task.__class__(**vars(task) | {"measured": ("data/none.nc", "data/none.nc")})
-    record = JointFits.work(gone)
+    with pytest.raises(ReadError) as caught:
+        stage.work(gone)
+    record = stage.failed(gone, caught.value)
     assert record.status == "failed" and record.reason and record.parameters == ()

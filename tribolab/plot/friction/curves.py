@@ -12,11 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.decades import few_ticks
+from tribolab.plot.look.frame import speed_axis
 from tribolab.plot.look.labels import column, label, plain
 from tribolab.plot.look.panel import one_panel
 from tribolab.plot.look.style import (
     GREY,
+    LOAD_MARKERS,
     SurfaceStyle,
     keep,
     shade,
@@ -24,7 +25,6 @@ from tribolab.plot.look.style import (
 )
 from tribolab.words import force_text, is_dry
 
-_LOAD_MARKERS = "os^DvP<X"
 _DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first that is known
 # Coordinates of a dataset that holds several curves, and the attributes that say the same of one.
 _SAID = {
@@ -173,7 +173,7 @@ def _look(
     rank = loads.index(_load(curve)) if _load(curve) in loads else 0
     colour = shade(own.colour, rank, len(loads))
     by_load = surfaces == 1 and len(loads) > 1
-    marker = _LOAD_MARKERS[rank % len(_LOAD_MARKERS)] if by_load else own.marker
+    marker = LOAD_MARKERS[rank % len(LOAD_MARKERS)] if by_load else own.marker
     return _Look(colour, marker, is_dry(_attribute(curve, "medium")))
 
 
@@ -283,10 +283,7 @@ def _scales(axes: Axes, name: str, numbered: bool) -> None:
     else:
         low, high = axes.dataLim.intervalx
         room = 1.8 if high / low > 3 else 10.0
-        axes.set_xscale("log")
-        axes.set_xlim(low / room, high * room)
-        few_ticks(axes.xaxis, low / room, high * room, decades=9)
-        axes.set_xlabel(label("sliding_speed"))
+        speed_axis(axes, room=room)
     axes.set_ylabel(label(name, "half loop of the friction force" if name == "half_loop" else None))
     low, high = axes.dataLim.intervaly  # with the error bars
     low = 0.0 if low >= 0 else low

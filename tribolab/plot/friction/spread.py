@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.friction.curves import curve_looks
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.frame import logarithmic
+from tribolab.plot.look.frame import logarithmic, speed_axis
 from tribolab.plot.look.labels import column, label
 from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
 from tribolab.plot.look.style import GREY, SINGLE_MM, PaperFigure, keep, margins, new_figure, tidy
@@ -118,16 +117,13 @@ def _finish(above: Axes, below: Axes) -> None:
     """Set scales and labels, and name what is filled and what is open."""
     low, high = above.dataLim.intervalx
     for panel in (above, below):
-        panel.set_xscale("log")
-        panel.set_xlim(low / 1.8, high * 1.8)
-        few_ticks(panel.xaxis, low / 1.8, high * 1.8, decades=9)
+        speed_axis(panel, (low, high), named=panel is below)
     above.set_ylim(min(0.0, above.dataLim.y0), 1.25 * above.dataLim.y1)
     above.set_ylabel(label("friction_coefficient"))
     bottom, top = below.dataLim.y0, below.dataLim.y1
     logarithmic(below, "y")
     below.set_ylim(bottom / 2, 5 * top)  # room for the letter
     below.set_ylabel(r"error bar of $\mu$")
-    below.set_xlabel(label("sliding_speed"))
     for words, face in (("standard deviation", GREY), ("standard error", "white")):
         below.plot(
             [], [], color=GREY, marker="o", markersize=3.0, markerfacecolor=face, linewidth=0.5,

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.labels import plain
+from tribolab.plot.look.labels import label, plain
 from tribolab.plot.look.style import (
     GREY,
     SINGLE_MM,
@@ -39,6 +39,35 @@ def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:
         getattr(axes, f"set_{name}scale")("log")
         interval = getattr(axes.dataLim, f"interval{name}")
         few_ticks(getattr(axes, f"{name}axis"), *interval, small=small)
+
+
+def speed_axis(
+    axes: Axes,
+    speeds: Sequence[float] | np.ndarray | None = None,
+    *,
+    room: float = 1.8,
+    named: bool = True,
+) -> None:
+    """Make the abscissa a logarithmic axis of sliding speed.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    speeds
+        Of which the lowest and the highest are its ends [m/s]; by default what is drawn.
+    room
+        Factor by which the axis reaches further on both sides.
+    named
+        Whether its label is set.
+    """
+    speeds = axes.dataLim.intervalx if speeds is None else speeds
+    low, high = np.min(speeds), np.max(speeds)
+    axes.set_xscale("log")
+    axes.set_xlim(low / room, high * room)
+    few_ticks(axes.xaxis, low / room, high * room, decades=9)
+    if named:
+        axes.set_xlabel(label("sliding_speed"))
 
 
 def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str]:

@@ -101,6 +101,17 @@ _OTHERS = [
 ]
 
 
+_CONDITIONS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
+LOAD_MARKERS = "os^DvP<X"  # by the rank of the load
+
+
+def condition_style(number: int) -> SurfaceStyle:
+    """Return colour and marker of one of several conditions; they begin anew after some."""
+    return SurfaceStyle(
+        _CONDITIONS[number % len(_CONDITIONS)], LOAD_MARKERS[number % len(LOAD_MARKERS)]
+    )
+
+
 class PaperFigure(Figure):
     """A matplotlib Figure that a notebook shows by itself.
 

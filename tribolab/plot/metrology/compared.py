@@ -10,27 +10,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.frame import legend_above
-from tribolab.plot.look.labels import label, plain
+from tribolab.plot.look.frame import legend_above, speed_axis
+from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import name_all, name_panel, one_panel, whole_figure
 from tribolab.plot.look.style import (
     BLUE,
     DOUBLE_MM,
-    GREEN,
     GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
+    condition_style,
     keep,
     margins,
     new_figure,
     paper_style,
 )
 
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
-_MARKERS = "os^DvPX"
 _ROW_MM = 5.2
 _MANIFOLD = 300.0  # %: what differs by more is drawn on a logarithmic scale
 
@@ -77,11 +70,7 @@ def differences(points: pd.DataFrame, *, title: str = "", ax: Axes | None = None
         for number, (condition, rows) in enumerate(groups):
             shift = 1 + 0.06 * (number - (len(groups) - 1) / 2)
             _curve(figure, axes, str(condition), rows, number, shift)
-        low, high = axes.dataLim.intervalx
-        axes.set_xscale("log")
-        axes.set_xlim(low / 1.8, high * 1.8)
-        few_ticks(axes.xaxis, low / 1.8, high * 1.8, decades=9)
-        axes.set_xlabel(label("sliding_speed"))
+        speed_axis(axes)
         axes.set_ylabel("relative difference (%)")
         if np.abs(axes.dataLim.intervaly).max() > _MANIFOLD:
             axes.set_yscale("symlog", linthresh=10.0)
@@ -91,7 +80,7 @@ def differences(points: pd.DataFrame, *, title: str = "", ax: Axes | None = None
 def _curve(
     figure: Figure, axes: Axes, condition: str, rows: pd.DataFrame, number: int, shift: float
 ) -> None:
-    colour, marker = _COLOURS[number % len(_COLOURS)], _MARKERS[number % len(_MARKERS)]
+    colour, marker = condition_style(number)
     scale = rows["first"].abs().to_numpy()
     speed, value, low, high = (
         rows[name].to_numpy(dtype=float)

@@ -8,13 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.labels import label, plain
+from tribolab.plot.look.frame import speed_axis
+from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, keep
-
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
-_MARKERS = "os^DvP"
+from tribolab.plot.look.style import (
+    condition_style,
+    keep,
+)
 
 
 def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> Figure:
@@ -51,7 +51,7 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
         raise AnalysisError("there is nothing to draw: the plan has no points")
     with one_panel(ax, title) as (figure, axes):
         for number, (condition, rows) in enumerate(table.groupby("condition", sort=False)):
-            colour, marker = _COLOURS[number % 6], _MARKERS[number % 6]
+            colour, marker = condition_style(number)
             speed = rows["sliding_speed_m_s"].to_numpy(dtype=float)
             own = {name: rows[name].to_numpy(dtype=float) for name in ("runs", "cheapest_runs")}
             axes.plot(
@@ -63,12 +63,8 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
                 markerfacecolor="white",
             )  # fmt: skip
             keep(figure, "runs", str(condition), sliding_speed_m_s=speed, **own)
-        axes.set_xscale("log")
-        low, high = axes.dataLim.intervalx
-        axes.set_xlim(low / 1.8, high * 1.8)
-        few_ticks(axes.xaxis, low / 1.8, high * 1.8, decades=9)
+        speed_axis(axes)
         top = float(np.nanmax(table[["runs", "cheapest_runs"]].to_numpy(dtype=float), initial=2.0))
         axes.set_ylim(0.0, 1.15 * top)
-        axes.set_xlabel(label("sliding_speed"))
         axes.set_ylabel("runs")
     return figure

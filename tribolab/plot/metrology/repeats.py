@@ -8,12 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.labels import label, plain
+from tribolab.plot.look.frame import speed_axis
+from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, keep
-
-_COLOURS = (VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+from tribolab.plot.look.style import (
+    BLACK,
+    BLUE,
+    condition_style,
+    keep,
+)
 
 
 def precision(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> Figure:
@@ -56,7 +59,7 @@ def precision(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -
     columns = [c for c in map(str, rows) if c.endswith("_std")]
     with one_panel(ax, title) as (figure, axes):
         speed = rows["sliding_speed_m_s"].to_numpy(dtype=float)
-        between = iter(_COLOURS * len(columns))
+        between = (condition_style(k).colour for k in range(1, len(columns) + 1))
         for name in columns:
             words = name.removesuffix("_std").replace("_", " ")
             look = _LOOKS.get(words) or (next(between), "s--")
@@ -67,12 +70,8 @@ def precision(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -
                 figure, "precision", words, sliding_speed_m_s=speed,
                 relative_standard_deviation=value,
             )  # fmt: skip
-        axes.set_xscale("log")
-        low, high = axes.dataLim.intervalx
-        axes.set_xlim(low / 1.8, high * 1.8)
-        few_ticks(axes.xaxis, low / 1.8, high * 1.8, decades=9)
+        speed_axis(axes)
         axes.set_ylim(0.0, 1.15 * axes.dataLim.y1 or 1.0)
-        axes.set_xlabel(label("sliding_speed"))
         axes.set_ylabel("standard deviation (% of the mean)")
     return figure
 

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.frame import shaded_band
+from tribolab.plot.look.frame import shaded_band, speed_axis
 from tribolab.plot.look.labels import column, label, plain
 from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
 from tribolab.plot.look.style import (
     GREY,
+    LOAD_MARKERS,
     SINGLE_MM,
     PaperFigure,
     keep,
@@ -28,7 +28,6 @@ from tribolab.plot.look.style import (
 )
 
 _CURVES_HEIGHT, _LEFT_HEIGHT = 56.0, 30.0  # mm
-_MARKERS = "os^DvP<X"
 
 
 class FittedCurves(Protocol):
@@ -99,10 +98,7 @@ def joint_fit(
             _left(figure, below, mine, name, colour, marker)
         speed = fit.points["sliding_speed"].values
         for panel in (above, below):
-            panel.set_xscale("log")
-            panel.set_xlim(speed.min() / 1.5, speed.max() * 1.5)
-            few_ticks(panel.xaxis, speed.min() / 1.5, speed.max() * 1.5, decades=9)
-        below.set_xlabel(label("sliding_speed"))
+            speed_axis(panel, speed, room=1.5, named=panel is below)
         above.set_ylabel(label("friction_coefficient"))
         above.set_ylim(0, 1.06 * above.dataLim.y1)
         below.set_ylabel(r"difference (% of $\mu$)")
@@ -127,7 +123,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[tu
         beside = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(beside, load))
         colour = shade(styles[name].colour, rank, beside.size)
-        looks.append((colour, _MARKERS[rank % len(_MARKERS)]))
+        looks.append((colour, LOAD_MARKERS[rank % len(LOAD_MARKERS)]))
     return looks
 
 

@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.look.decades import few_ticks
 from tribolab.plot.look.frame import (
     Surfaces,
     by_surface,
     colours,
     logarithmic,
     shaded_band,
+    speed_axis,
 )
 from tribolab.plot.look.labels import column, label, plain
 from tribolab.plot.look.panel import Panels, name_all, name_panel, one_panel, several_panels
@@ -106,9 +106,9 @@ def mixed_curve(
         if dry is not None:
             _measured(figure, above, dry, style, "dry", hollow=True)
         _misfit(figure, below, fit, style, "model" if modelled else "viscous part")
-        _speeds(below, curve["sliding_speed"].values)
+        speed_axis(below, curve["sliding_speed"].values, room=1.0)
         if axes is not None:
-            _speeds(above, curve["sliding_speed"].values)
+            speed_axis(above, curve["sliding_speed"].values, room=1.0)
         above.set_ylabel(label("friction_coefficient"))
         low, high = above.dataLim.intervaly
         above.set_ylim(1.2 * low if low < -0.01 * high else 0, 1.06 * high)
@@ -196,13 +196,6 @@ def _misfit(figure: Figure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, wh
     axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
     reach = 1.15 * np.nanmax(np.abs(off) + error) or 1.0
     axes.set_ylim(-reach, reach)
-
-
-def _speeds(axes: Axes, speed: np.ndarray) -> None:
-    axes.set_xscale("log")
-    axes.set_xlim(speed.min(), speed.max())
-    few_ticks(axes.xaxis, speed.min(), speed.max(), decades=9)
-    axes.set_xlabel(label("sliding_speed"))
 
 
 def _two_panels(figure: PaperFigure, axes: Axes, title: str) -> None:
@@ -396,7 +389,7 @@ def shear_stress_over_speed(
             )  # fmt: skip
             columns = {"shear_stress_Pa": stress, "shear_stress_std_Pa": spread}
             keep(figure, "shear stress", name, **{column("sliding_speed"): v}, **columns)
-        _speeds(axes, np.array(axes.dataLim.intervalx) * (0.6, 1.7))
+        speed_axis(axes, np.array(axes.dataLim.intervalx) * (0.6, 1.7), room=1.0)
         axes.set_ylim(0, 1.08 * axes.dataLim.y1)
         axes.set_ylabel(r"shear stress $\sigma_{\mathrm{f}}$ (MPa)")
     return figure
