@@ -158,7 +158,7 @@ def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
     """Return the checks that say so, and what they say."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
     said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
-    return "".join(f": {' '.join(one.split())}" for one in ["; ".join(said)] if one)
+    return "".join(f": {' '.join(text.split())}" for text in ["; ".join(said)] if text)
 
 
 def _computed(outcome: Outcome) -> str:

@@ -195,7 +195,7 @@ def _paired(table: pd.DataFrame) -> list[tuple[Json, Published]]:
 
 
 def _row(record: Json, known: Published) -> Json:
-    figure = next((one for one in FIGURES if one.has(record)), None)
+    figure = next((known_figure for known_figure in FIGURES if known_figure.has(record)), None)
     section = BY_NAME[figure.name].section if figure else _section(known.where)
     note = str(record["note"])
     return record | {

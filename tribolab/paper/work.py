@@ -88,7 +88,7 @@ def _origin(task: Task) -> dict[str, str]:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
         return named_sources(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
     constants = (xu2026.system, xu2026.surface(task.surface))
-    config = {"constants": [asdict(one) for one in constants], "forces": task.forces}
+    config = {"constants": [asdict(constant) for constant in constants], "forces": task.forces}
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
 
 

@@ -46,7 +46,7 @@ def decision_rows(
 
 def not_applied(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
     """Return what was decided on a run that failed."""
-    return tuple(DecisionRow(**one.plain(), effect=NOT_APPLIED) for one in decisions)
+    return tuple(DecisionRow(**decision.plain(), effect=NOT_APPLIED) for decision in decisions)
 
 
 def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:

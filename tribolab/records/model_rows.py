@@ -103,22 +103,22 @@ def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float)
     return float(area.sel(medium=dry[0]) / area.sel(medium=medium))
 
 
-def _sensitivity(found: xr.Dataset) -> list[Row]:
+def _sensitivity(band: xr.Dataset) -> list[Row]:
     rows = []
-    for name in found["variation"].values.tolist():
-        one = found.sel(variation=name)
+    for name in band["variation"].values.tolist():
+        varied = band.sel(variation=name)
         rows.append(
             {
                 "variation": name,
-                "low": str(one["variation_low"].values),
-                "high": str(one["variation_high"].values),
-                "largest_change": float(one["largest_change"]),
-                "largest_change_speed_m_s": float(one["largest_change_speed"]),
-                "largest_relative_change": float(one["largest_relative_change"]),
-                "largest_relative_change_speed_m_s": float(one["largest_relative_change_speed"]),
-                "shear_stress_change_low": float(one["shear_stress_change_low"]),
-                "shear_stress_change_high": float(one["shear_stress_change_high"]),
-                "reason": str(one["variation_reason"].values),
+                "low": str(varied["variation_low"].values),
+                "high": str(varied["variation_high"].values),
+                "largest_change": float(varied["largest_change"]),
+                "largest_change_speed_m_s": float(varied["largest_change_speed"]),
+                "largest_relative_change": float(varied["largest_relative_change"]),
+                "largest_relative_change_speed_m_s": float(varied["largest_relative_change_speed"]),
+                "shear_stress_change_low": float(varied["shear_stress_change_low"]),
+                "shear_stress_change_high": float(varied["shear_stress_change_high"]),
+                "reason": str(varied["variation_reason"].values),
             }
         )
     rows.sort(key=lambda row: -row["largest_change"])

@@ -109,8 +109,8 @@ def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
     words = []
     for first, beyond in ends.reshape(-1, 2):
         last = beyond - 1
-        one = speed_text(speed[first])
-        words.append(one if first == last else f"{one} to {speed_text(speed[last])}")
+        at = speed_text(speed[first])
+        words.append(at if first == last else f"{at} to {speed_text(speed[last])}")
     return " and at ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 

@@ -93,7 +93,7 @@ def _knots(since: np.ndarray) -> list[int] | None:
 
     After D. H. Douglas and T. K. Peucker, Cartographica 10, 112 (1973).
     """
-    found = {0, max(since.size - 1, 0)}
+    knots = {0, max(since.size - 1, 0)}
     parts = [(0, since.size - 1)]
     while parts:
         a, b = parts.pop()
@@ -102,11 +102,11 @@ def _knots(since: np.ndarray) -> list[int] | None:
         worst, off = _least_even(since, a, b)
         if off <= 1:
             continue
-        found.add(worst)
-        if len(found) > _MOST_KNOTS:
+        knots.add(worst)
+        if len(knots) > _MOST_KNOTS:
             return None
         parts += [(a, worst), (worst, b)]
-    return sorted(found)
+    return sorted(knots)
 
 
 def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:

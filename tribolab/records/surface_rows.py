@@ -75,15 +75,15 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
     )
 
 
-def _roughness(found: xr.Dataset, psd: xr.Dataset) -> Row:
+def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
     for name in ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq"):
-        rough[column(name)] = float(found[name].mean())
+        rough[column(name)] = float(moments[name].mean())
     for name in ("rms_roughness", "rms_slope"):
         for end in _BAND:
-            if name + end in found:
-                rough[column(name + end)] = float(found[name + end])
-    attrs = psd.attrs | found.attrs
+            if name + end in moments:
+                rough[column(name + end)] = float(moments[name + end])
+    attrs = psd.attrs | moments.attrs
     rough |= {key: attrs[key] for key in ROUGHNESS if key in attrs}
     q = psd.wavenumber.values
     rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
@@ -117,10 +117,10 @@ def _contact(groups: Mapping[str, xr.Dataset]) -> list[Row]:
 def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[Row]:
     if "adhesion_loads" not in groups:
         return []
-    found, result = groups["adhesion_loads"], []
+    adhesion, result = groups["adhesion_loads"], []
     widths = groups["loads"].contact_width.values if "loads" in groups else []
-    for medium in found.medium.values.tolist():
-        mine = found.sel(medium=medium)
+    for medium in adhesion.medium.values.tolist():
+        mine = adhesion.sel(medium=medium)
         whole = {"medium": medium} | {
             column(str(name)): mine[name].item() for name in mine.data_vars if not mine[name].dims
         }

@@ -296,8 +296,8 @@ def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
     masks = np.atleast_1d(np.asarray(attrs.get("flag_masks", [])))
     words = str(attrs.get("flag_meanings", "")).split()
     seen = np.bitwise_or.reduce(tests)
-    found = zip(masks, words, strict=False)
-    return tuple(word for mask, word in found if int(mask) & int(seen))
+    pairs = zip(masks, words, strict=False)
+    return tuple(word for mask, word in pairs if int(mask) & int(seen))
 
 
 def as_text(data: Any) -> str:

@@ -66,10 +66,10 @@ def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> 
 def _rows(given: Sequence[xr.DataArray | None], longest: int, first: xr.DataArray) -> np.ndarray:
     """Values of a variable (run, segment), filled where a run has none."""
     text = first.dtype.kind in "OUS"
-    whole = all(one is not None and one.size == longest for one in given)
+    whole = all(values is not None and values.size == longest for values in given)
     dtype = object if text else first.dtype if whole else float
     rows = np.full((len(given), longest), "" if text else 0 if whole else np.nan, dtype=dtype)
-    for row, one in zip(rows, given, strict=True):
-        if one is not None and one.dims == ("segment",):
-            row[: one.size] = one.to_numpy()
+    for row, values in zip(rows, given, strict=True):
+        if values is not None and values.dims == ("segment",):
+            row[: values.size] = values.to_numpy()
     return rows

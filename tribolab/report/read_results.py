@@ -113,12 +113,12 @@ class Results(Mapping[str, "pd.DataFrame"]):
                 "data(name, group) has the rest of one run"
             )
         done = [run for run in self._report["runs"] if run["data_file"]]
-        found = {run["name"]: self._part(run["data_file"], group) for run in done}
+        parts = {run["name"]: self._part(run["data_file"], group) for run in done}
         facts = {
             run["name"]: {**run, "normal_force": _number(run["nominal_normal_force_N"])}
             for run in done
         }
-        return joined_runs(found, facts)
+        return joined_runs(parts, facts)
 
     def curves(self) -> xr.Dataset:
         """Return all measured Stribeck curves on common axes, read when asked for.

@@ -134,7 +134,7 @@ def write_report(
         briefs,
         ordered,
         curves=map(reported_curve, shown),
-        surfaces=(reported_surface(one, named.get(one.name)) for one in outcome.surfaces),
+        surfaces=(reported_surface(s, named.get(s.name)) for s in outcome.surfaces),
         modes=(reported_mode(modes[c.outcome.name], c) for c in shown if c.outcome.name in modes),
         models=(reported_model(model, rows.get(model.name)) for model in outcome.models),
         joints=joints,

@@ -47,11 +47,11 @@ class Analysed(NamedTuple):
     @property
     def groups(self) -> dict[str | None, xr.Dataset]:
         """The groups of the data file."""
-        found: dict[str | None, xr.Dataset] = {"run": self.signals, "segments": self.segments}
-        found |= {"friction": self.friction, "stick_slip": self.slip}
+        groups: dict[str | None, xr.Dataset] = {"run": self.signals, "segments": self.segments}
+        groups |= {"friction": self.friction, "stick_slip": self.slip}
         if self.friction_as_found is not None:
-            found[AS_FOUND] = self.friction_as_found
-        return found
+            groups[AS_FOUND] = self.friction_as_found
+        return groups
 
 
 def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
@@ -87,11 +87,11 @@ def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
         before = without_decisions(friction), said.status_as_found
     signals = said.marked
     signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
-    found = Analysed(signals, segments, friction, slip, said.status, *before)
-    for data in found.groups.values():
+    analysed = Analysed(signals, segments, friction, slip, said.status, *before)
+    for data in analysed.groups.values():
         data.attrs.update(labels_of(run), config_sha256=run.config_sha256)
     note_reading(run, read, signals)
-    return found
+    return analysed
 
 
 def labels_of(run: PlannedRun) -> dict[str, str]:

@@ -98,10 +98,11 @@ def _with_decisions(
 ) -> tuple[RunOutcome, Entry[RunRecord]]:
     """Return an earlier run with what was decided on it since, as far as that needs no file."""
     record = known.record
-    if [one.plain() for one in decided] == [_plain(row) for row in record.facts.decisions]:
+    plain = [decision.plain() for decision in decided]
+    if plain == [_plain(row) for row in record.facts.decisions]:
         return outcome, known
-    out = any(one.action == REJECT and one.interval is None for one in decided)
-    rows = tuple(DecisionRow(**one.plain(), effect=_LATER) for one in decided)
+    out = any(decision.action == REJECT and decision.interval is None for decision in decided)
+    rows = tuple(DecisionRow(**decision.plain(), effect=_LATER) for decision in decided)
     facts = replace(record.facts, decisions=rows)
     outcome = replace(outcome, kept=f"{outcome.kept}; {_LATER}")
     if out and outcome.quality != REJECTED:

@@ -207,16 +207,16 @@ def process_run(task: RunTask) -> RunAnswer:
     began = time.monotonic()
     run = task.run
     try:
-        found = analyse(run, task.earlier)
+        analysed = analyse(run, task.earlier)
         signals, segments, friction, slip = (
-            found.signals,
-            found.segments,
-            found.friction,
-            found.slip,
+            analysed.signals,
+            analysed.segments,
+            analysed.friction,
+            analysed.slip,
         )
         root: dict[str | None, xr.Dataset] = {None: _root(run, signals.attrs)}
-        write_data(root | found.groups, task.folder / task.data_file)
-        facts = facts_of(signals, segments, friction, slip, found.friction_as_found)
+        write_data(root | analysed.groups, task.folder / task.data_file)
+        facts = facts_of(signals, segments, friction, slip, analysed.friction_as_found)
         notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_table(slip))
@@ -242,9 +242,9 @@ def process_run(task: RunTask) -> RunAnswer:
         data_file=task.data_file,
         seconds=time.monotonic() - began,
         segments=segments.sizes["segment"],
-        quality=found.quality,
+        quality=analysed.quality,
         segments_rejected=int(rejected(segments).sum()),
-        quality_as_found=found.quality_as_found,
+        quality_as_found=analysed.quality_as_found,
     )
     zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
     sources = sources_of(run, signals.attrs)

@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 def of_names(campaign: Campaign) -> list[Problem]:
     """Names that are used but not declared, or declared twice."""
-    found = []
+    problems = []
     surfaces = [surface.name for surface in campaign.surface]
     for number, name in enumerate(surfaces):
         if name in surfaces[:number]:
-            found.append(
+            problems.append(
                 Problem(
                     ("surface", number, "name"), f"'{shown(name)}' is the name of a surface before"
                 )
             )
     for number, surface in enumerate(campaign.surface):
         if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
-            found.append(Problem(("surface", number, "instrument"), what))
+            problems.append(Problem(("surface", number, "instrument"), what))
     stated = [
         (("medium", name), quantity, medium)
         for name, medium in campaign.medium.items()
@@ -39,11 +39,11 @@ def of_names(campaign: Campaign) -> list[Problem]:
         value, bounds = getattr(table, name), getattr(table, f"{name}_range")
         if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
             what = f"must go from below to above {name}"
-            found.append(Problem((*where, f"{name}_range"), what))
-    found += _of_liquids(campaign)
+            problems.append(Problem((*where, f"{name}_range"), what))
+    problems += _of_liquids(campaign)
     if not campaign.run and not any(surface.scans for surface in campaign.surface):
         what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
-        found.append(Problem(("run",), what))
+        problems.append(Problem(("run",), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
             what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(
@@ -51,33 +51,33 @@ def of_names(campaign: Campaign) -> list[Problem]:
                 surfaces,
                 f'add [[surface]] with name = "{shown(entry.surface)}" (its scans may be left out)',
             )
-            found.append(Problem(("run", number, "surface"), what))
+            problems.append(Problem(("run", number, "surface"), what))
         if entry.medium is not None and entry.medium not in campaign.medium:
             what = f"there is no [medium.{shown(entry.medium)}]" + _hint(
                 entry.medium,
                 campaign.medium,
                 f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
             )
-            found.append(Problem(("run", number, "medium"), what))
+            problems.append(Problem(("run", number, "medium"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
-            found.append(Problem(("run", number, "instrument"), what))
-    return found
+            problems.append(Problem(("run", number, "instrument"), what))
+    return problems
 
 
 def _of_liquids(campaign: Campaign) -> list[Problem]:
     """Liquids that are not known, or none at their temperature."""
-    found = []
+    problems = []
     for name, medium in campaign.medium.items():
         if medium.liquid is not None and not knows_liquid(medium.liquid):
             what = f"no liquid '{shown(medium.liquid)}' is known{nearest(medium.liquid, LIQUIDS)}"
-            found.append(Problem(("medium", name, "liquid"), what))
+            problems.append(Problem(("medium", name, "liquid"), what))
             continue
         try:
             campaign.viscosity_of(name)
         except TribolabError as error:
             key, _, what = str(error).partition(": ")
-            found.append(Problem(("medium", name, key), what))
-    return found
+            problems.append(Problem(("medium", name, key), what))
+    return problems
 
 
 def _hint(word: str, known: Iterable[str], cure: str) -> str:

@@ -191,8 +191,8 @@ def _meaning(known: Quantity) -> str:
         return known.long_name
     if known.bare == "ask":
         return f"{known.long_name}; the unit has to say whether it counts cycles or radians"
-    found = reciprocal(known.unit)
-    bare = f"1/{found.per if found else 's'}"
+    inverse = reciprocal(known.unit)
+    bare = f"1/{inverse.per if inverse else 's'}"
     return f"{known.long_name}; a bare {bare} counts {known.bare}"
 
 

@@ -87,16 +87,16 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
 
 def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
     """Turn pydantic's findings into problems that name the cure."""
-    found: dict[tuple[str | int, ...], Problem] = {}
+    problems: dict[tuple[str | int, ...], Problem] = {}
     items = error.errors(include_url=False)
     for item in items:
         if item["type"] == "too_short" and any(_within(item["loc"], o["loc"]) for o in items):
             continue  # a list whose only element is wrong is not empty
         where, table = _walk(model, item["loc"])
-        if len(found) >= _HINTED:
+        if len(problems) >= _HINTED:
             table = None
-        found.setdefault(where, Problem(where, _words(item, table)))
-    return list(found.values())
+        problems.setdefault(where, Problem(where, _words(item, table)))
+    return list(problems.values())
 
 
 def _within(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:

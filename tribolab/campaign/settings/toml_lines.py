@@ -35,17 +35,17 @@ def line_of(text: str, where: Sequence[str | int]) -> int | None:
     >>> line_of('[[run]]\nfiles = "a"\n[[run]]\nfiles = "b"\n', ["run", 1, "files"])
     4
     """
-    found = _lines(text)
+    lines = _lines(text)
     for length in range(len(where), 0, -1):
-        if tuple(where[:length]) in found:
-            return found[tuple(where[:length])]
+        if tuple(where[:length]) in lines:
+            return lines[tuple(where[:length])]
     return None
 
 
 @functools.lru_cache(maxsize=2)  # one text is asked for every mistake in it
 def _lines(text: str) -> Mapping[tuple[str | int, ...], int]:
     """Lines of all tables and keys of a text."""
-    found: dict[tuple[str | int, ...], int] = {}
+    lines: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
     counts: dict[tuple[str | int, ...], int] = {}
     fence = ""  # inside a text of several lines nothing is a key
@@ -62,10 +62,10 @@ def _lines(text: str) -> Mapping[tuple[str | int, ...], int]:
                     table += (counts[table],)
             if header[1] == "[[":
                 counts[table] = counts.get(table, -1) + 1
-                found.setdefault(table, number)
+                lines.setdefault(table, number)
                 table += (counts[table],)
-            found.setdefault(table, number)
+            lines.setdefault(table, number)
         elif key := _KEY.match(line):
-            found.setdefault(table + _parts(key[1]), number)
+            lines.setdefault(table + _parts(key[1]), number)
         fence = next((f for f in ('"""', "'''") if line.count(f) % 2), "")
-    return found
+    return lines

@@ -82,14 +82,14 @@ class Ledger:
         marker knows no file in them.
         """
         folders = self.folders | {str(Path(name).parent) for name in self.files}
-        found = []
+        names = []
         for name in walk(self.folder):
             path = self.folder / name
             if name == MARKER or (path.is_dir() and not path.is_symlink() and name in folders):
                 continue
             if not self.is_ours(name):
-                found.append(name)
-        return found
+                names.append(name)
+        return names
 
     def write(self, folder: Path) -> None:
         """List everything in a new folder as ours; what was taken over is not read again."""
@@ -111,14 +111,14 @@ class Ledger:
 
 def walk(folder: Path) -> list[str]:
     """Return the relative paths of all files, links and empty folders below a folder, sorted."""
-    found = []
+    names = []
     for place, folders, files in os.walk(folder):
         here = Path(place)
         links = [name for name in folders if (here / name).is_symlink()]
-        found += [(here / name).relative_to(folder).as_posix() for name in (*files, *links)]
+        names += [(here / name).relative_to(folder).as_posix() for name in (*files, *links)]
         if here != folder and not files and not folders:
-            found.append(here.relative_to(folder).as_posix())
-    return sorted(found)
+            names.append(here.relative_to(folder).as_posix())
+    return sorted(names)
 
 
 def other_name(name: str, modified: int) -> str:

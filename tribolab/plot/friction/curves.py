@@ -126,7 +126,7 @@ def _listed(curves: Curves) -> list[xr.Dataset]:
     if curves is None:
         return []
     given = [curves] if isinstance(curves, xr.Dataset) else list(curves)
-    return [curve for one in given for curve in _each(one)]
+    return [curve for data in given for curve in _each(data)]
 
 
 def _each(curves: xr.Dataset) -> list[xr.Dataset]:

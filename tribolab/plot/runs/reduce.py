@@ -73,7 +73,7 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
 def _starts(x: np.ndarray, columns: int) -> np.ndarray:
     """Index of the first point of each column that has any."""
     span = x[-1] - x[0]
-    found = [np.zeros(1, int)]
+    kept = [np.zeros(1, int)]
     for begin, end in pieces(0, x.size - 1):
         part = x[begin : end + 1]
         if span > 0:
@@ -82,8 +82,8 @@ def _starts(x: np.ndarray, columns: int) -> np.ndarray:
         else:
             place = np.arange(begin, begin + part.size) * (1 / (x.size - 1))
         column = np.minimum((place * columns).astype(np.int64), columns - 1)
-        found.append(begin + 1 + np.flatnonzero(np.diff(column) > 0))
-    return np.concatenate(found)
+        kept.append(begin + 1 + np.flatnonzero(np.diff(column) > 0))
+    return np.concatenate(kept)
 
 
 def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:

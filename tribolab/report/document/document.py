@@ -217,13 +217,13 @@ def versions() -> dict[str, str]:
     """Return the versions of Python, of tribolab and of what computes for it."""
     from tribolab.version import __version__
 
-    found = {"tribolab": __version__, "python": platform.python_version()}
+    known = {"tribolab": __version__, "python": platform.python_version()}
     for name in _LIBRARIES:
         try:
-            found[name] = version(name)
+            known[name] = version(name)
         except PackageNotFoundError:  # e.g. in a bundle without package metadata
-            found[name] = "unknown"
-    return found
+            known[name] = "unknown"
+    return known
 
 
 def write_json(document: Mapping[str, Any], runs: Iterable[Mapping[str, Any]], path: Path) -> None:

@@ -248,10 +248,10 @@ def _profiles(task: _Opened) -> tuple[Figure, str]:
 
 def _sensitivity(task: _Opened) -> tuple[Figure, str]:
     (model,) = task.figure.models
-    found = _read(task, model, "uncertainty")
-    most = str(found["variation"].values[int(found["largest_change"].values.argmax())])
+    data = _read(task, model, "uncertainty")
+    most = str(data["variation"].values[int(data["largest_change"].values.argmax())])
     figure = plot.model_sensitivity(
-        found, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
+        data, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
     )
     return figure, f"Moved most by: {most}."
 

@@ -61,7 +61,7 @@ class SlipFigure:
     @property
     def files(self) -> tuple[str, ...]:
         """Data files that it reads."""
-        return tuple(dict.fromkeys(one.data_file for one in self.shown))
+        return tuple(dict.fromkeys(slip.data_file for slip in self.shown))
 
 
 def plan_sliding_figures(

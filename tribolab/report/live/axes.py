@@ -49,29 +49,29 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
     series
         What is shown of the figure.
     """
-    mine = [one for one in series if one.panel == number]
+    mine = [curve for curve in series if curve.panel == number]
     x = _scale(panel.x, _along(mine, panel.x), level=False)
-    names = dict.fromkeys(str(y) for one in mine for y in one.y if isinstance(y, str))
+    names = dict.fromkeys(str(y) for curve in mine for y in curve.y if isinstance(y, str))
     if names:
         return x, Scale(-0.5, len(names) - 0.5, names=tuple(names))
     return x, _scale(panel.y, _up(mine, panel.y, x), level=True)
 
 
 def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
-    for one in series:
-        if one.style == "bars":
-            yield from (0.8 * float(x) if axis.log else 0.0 for x in one.x)
-        if one.style != "band":
-            yield from (float(x) for x in one.x if x is not None)
+    for curve in series:
+        if curve.style == "bars":
+            yield from (0.8 * float(x) if axis.log else 0.0 for x in curve.x)
+        if curve.style != "band":
+            yield from (float(x) for x in curve.x if x is not None)
 
 
 def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
     least = -math.inf if axis.least is None else axis.least
-    for one in series:
-        if one.style == "band":
+    for curve in series:
+        if curve.style == "band":
             continue
-        errors = one.error or [None] * len(one.y)
-        for at, y, error in zip(one.x, one.y, errors, strict=True):
+        errors = curve.error or [None] * len(curve.y)
+        for at, y, error in zip(curve.x, curve.y, errors, strict=True):
             place = x.place(at)
             if y is None or place is None or not 0 <= place <= 1:
                 continue

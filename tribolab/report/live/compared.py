@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Row, number_of
@@ -17,7 +16,7 @@ from tribolab.report.live.curves import (
     system_name,
     systems,
 )
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places
+from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, places
 from tribolab.report.live.points import RunPoint
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, many, number, span
@@ -45,11 +44,11 @@ def _falling(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
         outcome = curve.outcome
         load = force_text(outcome.normal_force)
         name = load if alone else system_name(outcome.surface, outcome.medium, outcome.run_names)
-        one = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
-        series += [one] if one else []
+        drawn = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
+        series += [drawn] if drawn else []
     if len(series) < 2:
         return None
-    speeds = [v for one in series for v in one.x]
+    speeds = [v for drawn in series for v in drawn.x]
     half = Series("half of it", [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6)
     return LiveFigure(
         id="curves-compared",
@@ -87,7 +86,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
             for row, share, error in zip(rows, shares, errors, strict=True)
         ],
         goes_to=curve.outcome.run_names[:1],
-        **labels_of(curve),
+        **labels_of(curve.outcome),
     )
 
 
@@ -108,7 +107,13 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None
         names = [name for name in outcome.run_names if known.points.get(name)]
         if len(names) > 1:
             series += [
-                _run(name, known.points[name], label, colours[outcome.surface], labels_of(curve))
+                _run(
+                    name,
+                    known.points[name],
+                    label,
+                    colours[outcome.surface],
+                    labels_of(outcome),
+                )
                 for name in names
             ]
     if not series:
@@ -120,7 +125,7 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None
         note="A point for each run and speed. Filled: in a liquid; open: dry. Bars: the standard "
         "error within the run, which says nothing of the next run.",
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
-        f"µ {span(mu for one in series for mu in one.y)}.",
+        f"µ {span(mu for drawn in series for mu in drawn.y)}.",
         panels=(Panel(SPEED, FRICTION),),
         series=tuple(series),
         one_load=True,
@@ -129,9 +134,7 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None
     )
 
 
-def _run(
-    name: str, points: Sequence[RunPoint], label: str, colour: int, labels: Mapping[str, Any]
-) -> Series:
+def _run(name: str, points: Sequence[RunPoint], label: str, colour: int, labels: Labels) -> Series:
     return Series(
         label,
         [point.speed for point in points],
@@ -141,7 +144,7 @@ def _run(
         error=[point.within for point in points],
         told=[_told(point) for point in points],
         goes_to=(name,),
-        **(dict(labels) | {"runs": (name,)}),
+        **(labels | {"runs": (name,)}),
     )
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import CurveOutcome
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, safe
+from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
@@ -51,12 +52,12 @@ class Friction:
 
 def systems(known: Friction) -> dict[tuple[str, str], list[CurveRecord]]:
     """Return the measured curves of each surface and medium, the lowest load first."""
-    found: dict[tuple[str, str], list[CurveRecord]] = {}
+    by_system: dict[tuple[str, str], list[CurveRecord]] = {}
     for curve in known.curves:
-        found.setdefault((curve.outcome.surface, curve.outcome.medium), []).append(curve)
-    for curves in found.values():
+        by_system.setdefault((curve.outcome.surface, curve.outcome.medium), []).append(curve)
+    for curves in by_system.values():
         curves.sort(key=lambda curve: curve.outcome.normal_force or 0.0)
-    return found
+    return by_system
 
 
 def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
@@ -105,15 +106,14 @@ def float_of(value: Any) -> float | None:
     return None if value is None else float(value)
 
 
-def labels_of(curve: CurveRecord) -> dict[str, Any]:
+def labels_of(curve: CurveOutcome) -> Labels:
     """Return what all series of a curve are of."""
-    outcome = curve.outcome
     return {
-        "surface": outcome.surface,
-        "medium": outcome.medium,
-        "load": outcome.normal_force,
-        "open": is_dry(outcome.medium),
-        "runs": outcome.run_names,
+        "surface": curve.surface,
+        "medium": curve.medium,
+        "load": curve.normal_force,
+        "open": is_dry(curve.medium),
+        "runs": curve.run_names,
     }
 
 
@@ -135,7 +135,7 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
         error=errors,
         told=words,
         goes_to=targets,
-        **labels_of(curve),
+        **labels_of(curve.outcome),
     )
 
 
@@ -163,7 +163,7 @@ def _as_found(curve: CurveRecord) -> list[Series]:
                 f"µ = {with_error(float_of(row['friction_coefficient']), _sem(row))}"
                 for row in rows
             ],
-            **(labels_of(curve) | {"open": True}),
+            **(labels_of(curve.outcome) | {"open": True}),
         )
     ]
 
@@ -186,7 +186,7 @@ def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
 def _modelled(
     known: Friction, model: ModelRow, curve: CurveRecord, colour: int, label: str
 ) -> list[Series]:
-    labels = labels_of(curve)
+    labels = labels_of(curve.outcome)
     rows = _within(model.curve, curve)
     line = Series(
         label,
@@ -253,7 +253,7 @@ def model_figures(known: Friction) -> list[LiveFigure]:
 
 
 def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> list[Series]:
-    labels = labels_of(curve)
+    labels = labels_of(curve.outcome)
     rows = _within(model.curve, curve)
     speed = [row["sliding_speed_m_s"] for row in rows]
     stressed = _has_stress(model)
@@ -267,7 +267,7 @@ def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> 
     return series
 
 
-def _missed(missed: Missed, curve: CurveRecord, labels: dict[str, Any]) -> Series:
+def _missed(missed: Missed, curve: CurveRecord, labels: Labels) -> Series:
     words = [
         f"v = {plain_speed(v)}\nmeasured − model = {number(off, 2)}\nmodel: {number(mu)}"
         for v, off, mu in zip(missed.speed, missed.residual, missed.model, strict=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 
@@ -89,6 +89,16 @@ class Series:
     open: bool = False
 
 
+class Labels(TypedDict, total=False):
+    """What several series are of: fields of `Series`."""
+
+    surface: str
+    medium: str
+    load: float | None
+    runs: Sequence[str]
+    open: bool
+
+
 @dataclass(frozen=True)
 class LiveFigure:
     """A figure that the page draws.
@@ -130,33 +140,33 @@ class LiveFigure:
         """Loads among which one is chosen, the lowest first; none where all are shown at once."""
         if not self.one_load:
             return []
-        return sorted({one.load for one in self.series if one.load is not None})
+        return sorted({curve.load for curve in self.series if curve.load is not None})
 
     @property
     def surface(self) -> str:
         """Surface that all of it is of; "" where there are several."""
-        names = {one.surface for one in self.series}
+        names = {curve.surface for curve in self.series}
         return names.pop() if len(names) == 1 else ""
 
     @property
     def medium(self) -> str:
         """Medium that all of it is of; "" where there are several."""
-        names = {one.medium for one in self.series}
+        names = {curve.medium for curve in self.series}
         return names.pop() if len(names) == 1 else ""
 
 
 def plain(value: Any) -> Any:
     """Return a figure as plain data, without what is as usual and with the digits that are seen."""
     if is_dataclass(value) and not isinstance(value, type):
-        found = {field.name: getattr(value, field.name) for field in fields(value)}
+        values = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}
         return {
-            name: plain(one)
-            for name, one in found.items()
-            if one is not usual[name] and not (isinstance(one, str | tuple | list) and not one)
+            name: plain(item)
+            for name, item in values.items()
+            if item is not usual[name] and not (isinstance(item, str | tuple | list) and not item)
         }
     if isinstance(value, np.ndarray | list | tuple):
-        return [plain(one) for one in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
         return plain(value.item())
     if isinstance(value, float):

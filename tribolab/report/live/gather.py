@@ -88,13 +88,13 @@ def _tasks(
 ) -> list[LiveTask]:
     """Plan what is made from data files, of each kind all at once."""
     judged = [
-        Judged(one.outcome, modes[one.outcome.name], _slow(outcome, one.outcome))
-        for one in curves
-        if one.outcome.name in modes
+        Judged(curve.outcome, modes[curve.outcome.name], _slow(outcome, curve.outcome))
+        for curve in curves
+        if curve.outcome.name in modes
     ]
     store = outcome.store
     done = [surface for surface in outcome.surfaces if surface.done]
-    traced = dict.fromkeys(one.slow.file for one in judged if one.slow)
+    traced = dict.fromkeys(contact.slow.file for contact in judged if contact.slow)
     return [
         live_task(
             "models",
@@ -113,7 +113,7 @@ def _tasks(
         live_task(
             "surfaces",
             partial(record_of_surfaces, done, surfaces),
-            ([(one.name, one.parts, one.quality) for one in done], surfaces),
+            ([(surface.name, surface.parts, surface.quality) for surface in done], surfaces),
             [surface.data_file for surface in done],
             store,
         ),

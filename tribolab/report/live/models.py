@@ -14,6 +14,7 @@ from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import (
     Axis,
+    Labels,
     LiveFigure,
     Panel,
     Series,
@@ -51,10 +52,10 @@ def record_of_models(
     """
     bands, missed = _of_curves(models, folder)
     colours = places([*surfaces, *(row.model.surface for row in models)])
-    found = [shear_stress(models, colours), sensitivity(models, colours)]
-    found += _profiles(models, folder)
-    found.append(_factors(models, folder, colours))
-    figures = tuple(shown(figure) for figure in found if figure is not None)
+    drawn = [shear_stress(models, colours), sensitivity(models, colours)]
+    drawn += _profiles(models, folder)
+    drawn.append(_factors(models, folder, colours))
+    figures = tuple(shown(figure) for figure in drawn if figure is not None)
     return LiveRecord(figures, bands, missed)
 
 
@@ -66,11 +67,9 @@ def _of_curves(
     for row in models:
         name, parts = row.model.curve, row.model.parts
         if "uncertainty" in parts:
-            found = _read(row, folder, "uncertainty")
-            edges = (
-                found[f"friction_coefficient_{end}"].values.tolist() for end in ("low", "high")
-            )
-            bands[name] = Band(found["sliding_speed"].values.tolist(), *edges)
+            data = _read(row, folder, "uncertainty")
+            edges = (data[f"friction_coefficient_{end}"].values.tolist() for end in ("low", "high"))
+            bands[name] = Band(data["sliding_speed"].values.tolist(), *edges)
         if row.fit is not None and "fit" in parts:
             fit = _read(row, folder, "fit")
             names = ("sliding_speed", "friction_coefficient_residual", "friction_coefficient_sem")
@@ -85,7 +84,7 @@ def _read(row: ModelRow, folder: Path, group: str) -> xr.Dataset:
     return read_netcdf(folder / row.model.data_file, group=group)
 
 
-def _labels(row: ModelRow) -> dict[str, Any]:
+def _labels(row: ModelRow) -> Labels:
     model = row.model
     return {"surface": model.surface, "medium": model.medium, "load": model.normal_force}
 
@@ -115,7 +114,7 @@ def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Live
                     open=open_,
                 )
             )
-    series = [one for one in series if one.x]
+    series = [drawn for drawn in series if drawn.x]
     if not series:
         return None
     return LiveFigure(
@@ -142,27 +141,27 @@ def _told(row: ModelRow, fit: Mapping[str, Any], name: str) -> str:
 
 
 def _by_system(models: Sequence[ModelRow]) -> dict[tuple[str, str], list[ModelRow]]:
-    found: dict[tuple[str, str], list[ModelRow]] = {}
+    by_system: dict[tuple[str, str], list[ModelRow]] = {}
     for row in models:
-        found.setdefault((row.model.surface, row.model.medium), []).append(row)
-    return found
+        by_system.setdefault((row.model.surface, row.model.medium), []).append(row)
+    return by_system
 
 
 def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure | None:
     """Return how far each thing that is not known moves the model."""
     series = []
     for row in models:
-        varied = sorted(row.sensitivity, key=lambda one: float(one["largest_change"] or 0))
+        varied = sorted(row.sensitivity, key=lambda change: float(change["largest_change"] or 0))
         if not varied:
             continue
         series.append(
             Series(
                 system_name(row.model.surface, row.model.medium),
-                [100 * float(one["largest_change"] or 0) for one in varied],
-                [str(one["variation"]) for one in varied],
+                [100 * float(change["largest_change"] or 0) for change in varied],
+                [str(change["variation"]) for change in varied],
                 style="bars",
                 colour=colours[row.model.surface],
-                told=[_moved(one) for one in varied],
+                told=[_moved(change) for change in varied],
                 **_labels(row),
             )
         )
@@ -184,12 +183,12 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveF
     )
 
 
-def _moved(one: Row) -> str:
-    share, speed = (one[key] for key in ("largest_change", "largest_change_speed_m_s"))
-    lines = [str(one["variation"]), f"{one['low'] or '–'} to {one['high'] or '–'}"]
+def _moved(change: Row) -> str:
+    share, speed = (change[key] for key in ("largest_change", "largest_change_speed_m_s"))
+    lines = [str(change["variation"]), f"{change['low'] or '–'} to {change['high'] or '–'}"]
     lines.append(f"moves µ by {percent(_number(share))} of the curve's height")
     lines.append(f"at {plain_speed(_number(speed))}")
-    return "\n".join([*lines, str(one["reason"])])
+    return "\n".join([*lines, str(change["reason"])])
 
 
 def _number(value: Any) -> float | None:
@@ -231,16 +230,16 @@ def _profiles(models: Sequence[ModelRow], folder: Path) -> list[LiveFigure]:
     return figures
 
 
-def _across(row: ModelRow, found: xr.Dataset) -> list[Series]:
-    pressure = found["contact_pressure"] + found["fluid_pressure"]
+def _across(row: ModelRow, data: xr.Dataset) -> list[Series]:
+    pressure = data["contact_pressure"] + data["fluid_pressure"]
     seen = np.flatnonzero((pressure > _NOTHING * pressure.max()).any("sliding_speed").values)
     kept = seen[thinned(seen.size, 160)]
     series = []
-    for number in range(found.sizes["sliding_speed"]):
-        one = found.isel(sliding_speed=number, point=kept)
-        label = plain_speed(float(one["sliding_speed"]))
+    for number in range(data.sizes["sliding_speed"]):
+        line = data.isel(sliding_speed=number, point=kept)
+        label = plain_speed(float(line["sliding_speed"]))
         for panel, (name, _, factor) in enumerate(_PROFILES):
-            x, y = 1e3 * one["x"].values, factor * one[name].values
+            x, y = 1e3 * line["x"].values, factor * line[name].values
             series.append(Series(label, x, y, colour=number, panel=panel, **_labels(row)))
     return series
 
@@ -263,13 +262,13 @@ def _factors(
         if "factors" not in row.model.parts or surface in seen or is_dry(row.model.medium):
             continue
         seen.add(surface)
-        found = _read(row, folder, "factors")
+        data = _read(row, folder, "factors")
         for name, words, style, panel in _FACTORS:
             series.append(
                 Series(
                     surface,
-                    1e6 * found["separation"].values,
-                    found[name].values,
+                    1e6 * data["separation"].values,
+                    data[name].values,
                     style,
                     colours[surface],
                     panel,

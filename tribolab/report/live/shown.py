@@ -61,7 +61,7 @@ def shown(figure: LiveFigure) -> ShownFigure:
         figure.medium,
         tuple(map(force_text, figure.loads)),
         len(figure.panels),
-        len({one.label for one in figure.series if one.style != "band"}),
+        len({curve.label for curve in figure.series if curve.style != "band"}),
         deflated(as_text(plain(figure)).encode()),
         still(figure),
     )

@@ -10,12 +10,22 @@ import numpy as np
 
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import SPEED, system_name
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, Style, places, thinned
+from tribolab.report.live.curves import SPEED, labels_of, system_name
+from tribolab.report.live.figure import (
+    Axis,
+    Labels,
+    LiveFigure,
+    Panel,
+    Series,
+    Style,
+    Values,
+    places,
+    thinned,
+)
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown
 from tribolab.report.plain import plain_speed
-from tribolab.words import force_text, is_dry, number
+from tribolab.words import force_text, number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,10 +66,10 @@ def record_of_sliding(
     folder
         The results folder with the data files of the runs.
     """
-    colours = places([*surfaces, *(one.curve.surface for one in judged)])
+    colours = places([*surfaces, *(contact.curve.surface for contact in judged)])
     lowest = list(_lowest(judged))
-    opened = [_opened(one, colours, folder) for one in lowest if one.slow is not None]
-    found = [
+    opened = [_opened(contact, colours, folder) for contact in lowest if contact.slow is not None]
+    figures = [
         _waveforms(judged),
         _frequencies(judged, colours),
         _traces(opened),
@@ -67,52 +77,46 @@ def record_of_sliding(
         _events(opened),
         _spectrogram(opened),
     ]
-    return LiveRecord(tuple(shown(figure) for figure in found if figure is not None))
+    return LiveRecord(tuple(shown(figure) for figure in figures if figure is not None))
 
 
 def _lowest(judged: Iterable[Judged]) -> Iterable[Judged]:
     """Return the lowest load of each surface and medium: the others slide alike or more evenly."""
     best: dict[tuple[str, str], Judged] = {}
-    for one in judged:
-        key = one.curve.surface, one.curve.medium
-        force = one.curve.normal_force or 0.0
+    for contact in judged:
+        key = contact.curve.surface, contact.curve.medium
+        force = contact.curve.normal_force or 0.0
         if key not in best or force < (best[key].curve.normal_force or 0.0):
-            best[key] = one
+            best[key] = contact
     return best.values()
 
 
+def _system(curve: CurveOutcome) -> str:
+    return system_name(curve.surface, curve.medium, curve.run_names)
+
+
 def _name(curve: CurveOutcome) -> str:
-    name = system_name(curve.surface, curve.medium, curve.run_names)
+    name = _system(curve)
     return name if curve.normal_force is None else f"{name}, {force_text(curve.normal_force)}"
-
-
-def _labels(curve: CurveOutcome) -> dict[str, Any]:
-    return {
-        "surface": curve.surface,
-        "medium": curve.medium,
-        "open": is_dry(curve.medium),
-        "runs": curve.run_names,
-    }
 
 
 def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
     """Return which waveform is seen at every speed."""
     series = []
-    colours = places(str(row["waveform"]) for one in judged for row in one.mode.speeds)
-    for one in judged:
-        for waveform in dict.fromkeys(str(row["waveform"]) for row in one.mode.speeds):
-            rows = [row for row in one.mode.speeds if row["waveform"] == waveform]
+    colours = places(str(row["waveform"]) for contact in judged for row in contact.mode.speeds)
+    for contact in judged:
+        for waveform in dict.fromkeys(str(row["waveform"]) for row in contact.mode.speeds):
+            rows = [row for row in contact.mode.speeds if row["waveform"] == waveform]
             series.append(
                 Series(
                     waveform,
                     [row["sliding_speed_m_s"] for row in rows],
-                    [_name(one.curve)] * len(rows),
+                    [_name(contact.curve)] * len(rows),
                     style="points",
                     colour=colours[waveform],
-                    told=[_seen(one, row) for row in rows],
-                    goes_to=(one.curve.run_names[0],),
-                    load=one.curve.normal_force,
-                    **(_labels(one.curve) | {"open": waveform == "smooth sliding"}),
+                    told=[_seen(contact, row) for row in rows],
+                    goes_to=(contact.curve.run_names[0],),
+                    **(labels_of(contact.curve) | {"open": waveform == "smooth sliding"}),
                 )
             )
     if not series:
@@ -131,8 +135,8 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
     )
 
 
-def _seen(one: Judged, row: Mapping[str, Any]) -> str:
-    lines = [_name(one.curve), f"v = {plain_speed(row['sliding_speed_m_s'])}"]
+def _seen(contact: Judged, row: Mapping[str, Any]) -> str:
+    lines = [_name(contact.curve), f"v = {plain_speed(row['sliding_speed_m_s'])}"]
     lines.append(" ".join(filter(None, (row["regularity"], row["waveform"]))))
     if row["drop"] is not None:
         lines.append(f"µ drops by {number(row['drop'])} on average")
@@ -143,20 +147,19 @@ def _seen(one: Judged, row: Mapping[str, Any]) -> str:
 
 def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFigure | None:
     series = []
-    for one in judged:
-        rows = [row for row in one.mode.speeds if row["dominant_frequency_Hz"]]
+    for contact in judged:
+        rows = [row for row in contact.mode.speeds if row["dominant_frequency_Hz"]]
         if rows:
             series.append(
                 Series(
-                    system_name(one.curve.surface, one.curve.medium, one.curve.run_names),
+                    _system(contact.curve),
                     [row["sliding_speed_m_s"] for row in rows],
                     [row["dominant_frequency_Hz"] for row in rows],
                     style="points",
-                    colour=colours[one.curve.surface],
-                    told=[_seen(one, row) for row in rows],
-                    goes_to=(one.curve.run_names[0],),
-                    load=one.curve.normal_force,
-                    **_labels(one.curve),
+                    colour=colours[contact.curve.surface],
+                    told=[_seen(contact, row) for row in rows],
+                    goes_to=(contact.curve.run_names[0],),
+                    **labels_of(contact.curve),
                 )
             )
     if not series:
@@ -177,29 +180,53 @@ class _Open(NamedTuple):
     """What is opened of one condition: its traces at the slowest speeds, and its stick-slip."""
 
     name: str
-    labels: dict[str, Any]
+    labels: Labels
     colour: int
     run: str
     traces: tuple[tuple[float, np.ndarray, np.ndarray], ...]
     slip: xr.Dataset
     segment: int
 
+    def series(
+        self,
+        label: str,
+        x: Values,
+        y: Values,
+        style: Style,
+        *,
+        high: Values = (),
+        told: str = "",
+        goes_to: Sequence[str] = (),
+    ) -> Series:
+        return Series(
+            label,
+            x,
+            y,
+            style,
+            self.colour,
+            high=high,
+            told=(told,) if told else (),
+            goes_to=goes_to,
+            **self.labels,
+        )
 
-def _opened(one: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
+
+def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     from tribolab.io.netcdf import read_groups
     from tribolab.plot.runs.signals import LOOKED_AT
 
-    assert one.slow is not None
+    assert contact.slow is not None
     wanted = ("run", "segments", "friction", "stick_slip")
-    groups = read_groups(folder / one.slow.file, wanted, only={"run": LOOKED_AT})
+    groups = read_groups(folder / contact.slow.file, wanted, only={"run": LOOKED_AT})
     run, segments, friction, slip = groups.values()
     traces = tuple(
-        (speed, *_trace(run, segments, friction, number)) for number, speed in one.slow.segments
+        (speed, *_trace(run, segments, friction, number)) for number, speed in contact.slow.segments
     )
-    labels = _labels(one.curve) | {"runs": (one.slow.run,)}
-    colour = colours[one.curve.surface]
-    first = one.slow.segments[0][0]
-    return _Open(_name(one.curve), labels, colour, one.slow.run, traces, slip, first)
+    labels = labels_of(contact.curve)
+    labels |= {"load": None, "runs": (contact.slow.run,)}
+    colour = colours[contact.curve.surface]
+    first = contact.slow.segments[0][0]
+    return _Open(_name(contact.curve), labels, colour, contact.slow.run, traces, slip, first)
 
 
 def _trace(
@@ -221,12 +248,12 @@ def _trace(
 
 def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
     series = []
-    for one in opened:
-        for number_, (speed, distance, values) in enumerate(one.traces):
-            style = _STYLES[number_ > 0][one.labels["open"]]
-            told = (f"{one.name}, {plain_speed(speed)}",)
-            more: dict[str, Any] = one.labels | {"colour": one.colour, "goes_to": (one.run,)}
-            series.append(Series(one.name, distance, values, style=style, told=told, **more))
+    for contact in opened:
+        for number_, (speed, distance, values) in enumerate(contact.traces):
+            style = _STYLES[number_ > 0][contact.labels["open"]]
+            told, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
+            line = contact.series(contact.name, distance, values, style, told=told, goes_to=run)
+            series.append(line)
     if not series:
         return None
     return LiveFigure(
@@ -243,18 +270,17 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
 
 def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
     series = []
-    for one in opened:
-        if not one.slip.sizes.get("frequency", 0):
+    for contact in opened:
+        if not contact.slip.sizes.get("frequency", 0):
             continue
-        found = one.slip.isel(segment=one.segment)
-        more: dict[str, Any] = one.labels | {"colour": one.colour}
-        f = found["frequency"].values
-        kept = np.isfinite(found["psd"].values)
-        of, noise = (style[one.labels["open"]] for style in _STYLES)
-        series.append(Series(one.name, f[kept], found["psd"].values[kept], of, **more))
-        limit = found["psd_significant"].values
-        more["told"] = (f"{one.name}: limit of noise",)
-        series.append(Series(one.name, f[kept], limit[kept], noise, **more))
+        spectrum = contact.slip.isel(segment=contact.segment)
+        f = spectrum["frequency"].values
+        kept = np.isfinite(spectrum["psd"].values)
+        of, noise = (style[contact.labels["open"]] for style in _STYLES)
+        power, limit = (spectrum[name].values[kept] for name in ("psd", "psd_significant"))
+        told = f"{contact.name}: limit of noise"
+        series.append(contact.series(contact.name, f[kept], power, of))
+        series.append(contact.series(contact.name, f[kept], limit, noise, told=told))
     if not series:
         return None
     return LiveFigure(
@@ -271,16 +297,15 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
 
 def _events(opened: Sequence[_Open]) -> LiveFigure | None:
     series = []
-    for one in opened:
-        if not one.slip.sizes.get("event", 0):
+    for contact in opened:
+        if not contact.slip.sizes.get("event", 0):
             continue
-        drops = np.sort(one.slip["event_drop"].values.astype(float))
+        drops = np.sort(contact.slip["event_drop"].values.astype(float))
         drops = drops[np.isfinite(drops)]
         kept = thinned(drops.size, _MOST_EVENTS)
         share = (np.arange(drops.size) + 1) / max(drops.size, 1)
-        more: dict[str, Any] = one.labels | {"colour": one.colour}
-        name, style = f"{one.name}: {drops.size} drops", _STYLES[0][one.labels["open"]]
-        series.append(Series(name, drops[kept], share[kept], style, **more))
+        name, style = f"{contact.name}: {drops.size} drops", _STYLES[0][contact.labels["open"]]
+        series.append(contact.series(name, drops[kept], share[kept], style))
     if not series:
         return None
     return LiveFigure(
@@ -298,8 +323,8 @@ def _events(opened: Sequence[_Open]) -> LiveFigure | None:
 def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
     """Return power over that of noise, for every speed and frequency."""
     series = []
-    for one in opened:
-        slip = one.slip
+    for contact in opened:
+        slip = contact.slip
         if not slip.sizes.get("frequency", 0):
             continue
         forward = np.flatnonzero(slip["direction"].values >= 0)
@@ -312,10 +337,8 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
         # below the noise there is nothing to see
         kept = np.isfinite(level) & (level > 0.3)
         values = [float(f"{v:.3g}") for v in level[kept]]
-        label = one.name
-        more: dict[str, Any] = one.labels | {"colour": one.colour}
-        series.append(Series(label, speed[kept], f[kept], style="heat", high=values, **more))
-    series = [one for one in series if len(one.x)]
+        drawn = contact.series(contact.name, speed[kept], f[kept], "heat", high=values)
+        series += [drawn] if values else []
     if not series:
         return None
     return LiveFigure(

@@ -87,18 +87,18 @@ def _seen(figure: LiveFigure, series: Sequence[Series]) -> list[tuple[Scale, Sca
 def _first(figure: LiveFigure) -> list[Series]:
     """Return what is seen at first, its values as plain numbers."""
     shown = []
-    for one in figure.series:
-        other = figure.one_load and one.load is not None and one.load != figure.loads[0]
+    for curve in figure.series:
+        other = figure.one_load and curve.load is not None and curve.load != figure.loads[0]
         if not other:
-            shown.append(replace(one, **{name: plain(getattr(one, name)) for name in ("x", "y")}))
+            shown.append(replace(curve, x=plain(curve.x), y=plain(curve.y)))
     return shown
 
 
 def _labels(series: Sequence[Series]) -> dict[str, Series]:
     named: dict[str, Series] = {}
-    for one in series:
-        if one.style != "band":
-            named.setdefault(one.label, one)
+    for curve in series:
+        if curve.style != "band":
+            named.setdefault(curve.label, curve)
     return named
 
 
@@ -109,9 +109,9 @@ def _columns(width: int, labels: dict[str, Series]) -> int:
 
 def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
     columns = _columns(width, labels)
-    for place, (label, one) in enumerate(labels.items()):
+    for place, (label, curve) in enumerate(labels.items()):
         x, y = 10 + (place % columns) * (width - 10) / columns, 12 + place // columns * _LINE
-        sample = replace(one, style="points" if one.style in ("bars", "heat") else one.style)
+        sample = replace(curve, style="points" if curve.style in ("bars", "heat") else curve.style)
         if sample.style == "points":
             yield from marks.drawn_points([(x + 9, y - 4)], sample, "")
         else:
@@ -142,13 +142,13 @@ def _panel(figure: LiveFigure, place: int, box: _Box, series: Sequence[Series]) 
     sides = ("x", box.left), ("y", box.top), ("width", box.width), ("height", box.height)
     size = " ".join(f'{name}="{coordinate(value)}"' for name, value in sides)
     yield f"<svg {size}>"
-    mine = [one for one in series if one.panel == place]
-    bars = [one for one in mine if one.style == "bars"]
-    for one in sorted(mine, key=lambda one: one.style != "band"):
-        if one.style == "bars":
-            yield from _rows(one, box, bars)
+    mine = [curve for curve in series if curve.panel == place]
+    bars = [curve for curve in mine if curve.style == "bars"]
+    for curve in sorted(mine, key=lambda curve: curve.style != "band"):
+        if curve.style == "bars":
+            yield from _rows(curve, box, bars)
         else:
-            yield from _drawn(one, box, panel.y)
+            yield from _drawn(curve, box, panel.y)
     yield "</svg>"
     yield f'<path class="axis" d="{_corner(box)}"/>'
 
@@ -158,22 +158,22 @@ def _corner(box: _Box) -> str:
     return marks.path([(box.left, box.top), (box.left, bottom), (box.left + box.width, bottom)])
 
 
-def _drawn(one: Series, box: _Box, axis: Axis) -> Iterator[str]:
-    if one.style == "points":
-        at = [box.at(x, y) for x, y in zip(one.x, one.y, strict=True)]
-        bars = marks.error_bars(_bars(one, box, axis), 3)
-        yield from marks.drawn_points([point for point in at if point], one, bars)
-    elif one.style == "band":
-        lower = [box.at(x, _above(y, box)) for x, y in zip(one.x, one.y, strict=True)]
-        upper = [box.at(x, y) for x, y in zip(one.x, one.high, strict=True)]
-        yield from marks.drawn_band([p for p in lower if p], [p for p in upper if p], one)
-    elif one.style == "heat":
-        kept = thinned(len(one.x), _MOST_HEAT)
-        levels = [(box.at(one.x[k], one.y[k]), float(one.high[k])) for k in kept]
+def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
+    if curve.style == "points":
+        at = [box.at(x, y) for x, y in zip(curve.x, curve.y, strict=True)]
+        bars = marks.error_bars(_bars(curve, box, axis), 3)
+        yield from marks.drawn_points([point for point in at if point], curve, bars)
+    elif curve.style == "band":
+        lower = [box.at(x, _above(y, box)) for x, y in zip(curve.x, curve.y, strict=True)]
+        upper = [box.at(x, y) for x, y in zip(curve.x, curve.high, strict=True)]
+        yield from marks.drawn_band([p for p in lower if p], [p for p in upper if p], curve)
+    elif curve.style == "heat":
+        kept = thinned(len(curve.x), _MOST_HEAT)
+        levels = [(box.at(curve.x[k], curve.y[k]), float(curve.high[k])) for k in kept]
         yield from marks.drawn_heat([(at, value) for at, value in levels if at])
     else:
-        kept = thinned(len(one.x), _MOST)
-        yield from marks.drawn_line([box.at(one.x[k], one.y[k]) for k in kept], one)
+        kept = thinned(len(curve.x), _MOST)
+        yield from marks.drawn_line([box.at(curve.x[k], curve.y[k]) for k in kept], curve)
 
 
 def _above(value: Any, box: _Box) -> Any:
@@ -183,10 +183,10 @@ def _above(value: Any, box: _Box) -> Any:
     return value
 
 
-def _bars(one: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, float]]:
+def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, float]]:
     least = -math.inf if axis.least is None else axis.least
-    errors = one.error or [None] * len(one.y)
-    for x, y, error in zip(one.x, one.y, errors, strict=True):
+    errors = curve.error or [None] * len(curve.y)
+    for x, y, error in zip(curve.x, curve.y, errors, strict=True):
         middle = box.at(x, y)
         if middle is None or not error or not error > 0:
             continue
@@ -196,16 +196,16 @@ def _bars(one: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, fl
             yield middle[0], low[1], high[1]
 
 
-def _rows(one: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
+def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
     """Give the bars of a series, which share a row with those of the others."""
     thick = 0.8 * box.height / len(box.y.names) / len(every)
-    below = next(k for k, other in enumerate(every) if other is one) - 0.5 * len(every)
-    for x, y in zip(one.x, one.y, strict=True):
+    below = next(k for k, other in enumerate(every) if other is curve) - 0.5 * len(every)
+    for x, y in zip(curve.x, curve.y, strict=True):
         end = box.at(x, y)
         if end is not None and end[0] > 0:
             top = coordinate(end[1] - (below + 1) * thick)
             yield (
-                f'<rect class="{marks.hue(one.colour)} full" x="0" y="{top}" '
+                f'<rect class="{marks.hue(curve.colour)} full" x="0" y="{top}" '
                 f'width="{coordinate(end[0])}" height="{coordinate(thick)}"/>'
             )
 

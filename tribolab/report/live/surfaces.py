@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown
+from tribolab.untyped import Arguments
 from tribolab.words import is_dry
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class _Surface(NamedTuple):
 
     def series(self, what: str, x: Any, y: Any, **more: Any) -> Series:
         told = (f"{self.label}: {what}",) if what else ()
-        labels: dict[str, Any] = {"colour": self.colour, "surface": self.name, "told": told}
+        labels: Arguments = {"colour": self.colour, "surface": self.name, "told": told}
         return Series(self.label, x, y, **(labels | more))
 
 
@@ -59,23 +60,23 @@ def record_of_surfaces(
     colours = places([*order, *(surface.name for surface in surfaces)])
     opened = [
         _Surface(
-            one.name,
-            colours[one.name],
-            folder / one.data_file,
-            one.parts,
-            one.name + (" (bad scans)" if one.quality in ("fail", "error") else ""),
+            outcome.name,
+            colours[outcome.name],
+            folder / outcome.data_file,
+            outcome.parts,
+            outcome.name + (" (bad scans)" if outcome.quality in ("fail", "error") else ""),
         )
-        for one in surfaces
-        if one.done
+        for outcome in surfaces
+        if outcome.done
     ]
     figures = []
     for kind in _KINDS:
-        series = [one for surface in opened for one in kind.draw(surface)]
+        series = [drawn for surface in opened for drawn in kind.draw(surface)]
         if kind.once:
-            series = [one for one in series if one.surface == series[0].surface]
+            series = [drawn for drawn in series if drawn.surface == series[0].surface]
         if series:
-            loads = len({one.load for one in series if one.load is not None}) > 1
-            alt = f"{kind.title}: {', '.join(dict.fromkeys(one.surface for one in series))}."
+            loads = len({drawn.load for drawn in series if drawn.load is not None}) > 1
+            alt = f"{kind.title}: {', '.join(dict.fromkeys(drawn.surface for drawn in series))}."
             panels = (Panel(kind.x, kind.y),)
             figures.append(
                 LiveFigure(
@@ -104,16 +105,16 @@ class _Kind(NamedTuple):
 
 
 def _spectra(surface: _Surface) -> list[Series]:
-    found = surface.read("psd")
-    if found is None:
+    data = surface.read("psd")
+    if data is None:
         return []
-    q = found["wavenumber"].values
-    low, high = (found[f"psd_2d{end}"].values for end in _Y)
-    measured = found["origin"].values == 0
+    q = data["wavenumber"].values
+    low, high = (data[f"psd_2d{end}"].values for end in _Y)
+    measured = data["origin"].values == 0
     if not measured.any():
         measured = np.ones(q.size, bool)
     first, last = np.flatnonzero(measured)[[0, -1]]
-    value = found["psd_2d"].values
+    value = data["psd_2d"].values
     return [
         surface.series("", q, low, style="band", high=high),
         surface.series("", q[first : last + 1], value[first : last + 1]),
@@ -125,11 +126,11 @@ def _spectra(surface: _Surface) -> list[Series]:
     ]
 
 
-def _banded(surface: _Surface, label: str, found: xr.Dataset, style: str) -> list[Series]:
-    x = found["pressure"].values / 1e6
-    edges = [found[f"contact_area_ratio{end}"] for end in _Y if f"contact_area_ratio{end}" in found]
-    value = found["contact_area_ratio"].values
-    more = {"medium": str(found["medium"].values)} if "medium" in found.coords else {}
+def _banded(surface: _Surface, label: str, data: xr.Dataset, style: str) -> list[Series]:
+    x = data["pressure"].values / 1e6
+    edges = [data[f"contact_area_ratio{end}"] for end in _Y if f"contact_area_ratio{end}" in data]
+    value = data["contact_area_ratio"].values
+    more = {"medium": str(data["medium"].values)} if "medium" in data.coords else {}
     line = surface.series(label, x, value, style=style, **more)
     if len(edges) < 2:
         return [line]
@@ -150,15 +151,15 @@ def _areas(surface: _Surface) -> list[Series]:
 
 
 def _work(surface: _Surface) -> list[Series]:
-    found = surface.read("adhesion_loads")
-    if found is None or "effective_work_of_adhesion" not in found:
+    data = surface.read("adhesion_loads")
+    if data is None or "effective_work_of_adhesion" not in data:
         return []
-    kept = thinned(found.sizes["wavenumber"])
+    kept = thinned(data.sizes["wavenumber"])
     series = []
-    for medium in found["medium"].values.tolist():
-        work = 1e3 * found["effective_work_of_adhesion"].sel(medium=medium).values[kept]
+    for medium in data["medium"].values.tolist():
+        work = 1e3 * data["effective_work_of_adhesion"].sel(medium=medium).values[kept]
         style = "dashed" if is_dry(medium) else "line"
-        x = found["magnification"].values[kept]
+        x = data["magnification"].values[kept]
         series.append(surface.series(medium, x, work, style=style, medium=medium))
     return series
 
@@ -169,16 +170,16 @@ def _at_loads(
     """Return what draws one variable of a group, a line for each load."""
 
     def draw(surface: _Surface) -> list[Series]:
-        found = surface.read(group)
-        if found is None:
+        data = surface.read(group)
+        if data is None:
             return []
-        dim = next(str(d) for d in found[name].dims if d != "load")
-        kept = thinned(found.sizes[dim], 200)
+        dim = next(str(d) for d in data[name].dims if d != "load")
+        kept = thinned(data.sizes[dim], 200)
         series = []
-        for number in range(found.sizes["load"]):
-            one = found.isel({"load": number, dim: kept})
-            force = float(one["normal_force"].values.flat[0])
-            x, y = factors[0] * one[along].values, factors[1] * one[name].values
+        for number in range(data.sizes["load"]):
+            line = data.isel({"load": number, dim: kept})
+            force = float(line["normal_force"].values.flat[0])
+            x, y = factors[0] * line[along].values, factors[1] * line[name].values
             series.append(surface.series("", x, y, load=round(force, 6)))
         return series
 
@@ -186,11 +187,11 @@ def _at_loads(
 
 
 def _modulus(surface: _Surface) -> list[Series]:
-    found = surface.read("modulus")
-    if found is None:
+    data = surface.read("modulus")
+    if data is None:
         return []
-    x = found["angular_frequency"].values
-    storage, loss = (found[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss"))
+    x = data["angular_frequency"].values
+    storage, loss = (data[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss"))
     # one rubber: the lines are told apart by what they are
     return [
         Series("storage modulus", x, storage, surface=surface.name),

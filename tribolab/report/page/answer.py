@@ -334,9 +334,9 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
     'Sb-R, dry, at 31 N and 91 N'
     """
     grouped: dict[str, list[str]] = {}
-    for one in of:
-        loads = grouped.setdefault(system_name(one["surface"], one["medium"]), [])
-        loads.append(force_text(one["nominal_normal_force_N"]))
+    for curve in of:
+        loads = grouped.setdefault(system_name(curve["surface"], curve["medium"]), [])
+        loads.append(force_text(curve["nominal_normal_force_N"]))
     return "; ".join(f"{name}, at {listed(loads)}" for name, loads in grouped.items())
 
 

@@ -63,4 +63,4 @@ def shown_sections(document: Mapping[str, Any]) -> list[Section]:
     >>> [section.id for section in shown_sections({"runs": ["one"]})]
     ['answer', 'surfaces', 'runs', 'details', 'findings', 'methods', 'provenance']
     """
-    return [one for one in SECTIONS if not one.key or document.get(one.key)]
+    return [section for section in SECTIONS if not section.key or document.get(section.key)]
