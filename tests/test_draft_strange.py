@@ -125,3 +125,96 @@ def test_what_is_horizontal_slides_and_what_is_vertical_does_not(tmp_path):
     run = tl.read(file)
     np.testing.assert_allclose(run.position, 2e-3 * T, atol=1e-9)
     np.testing.assert_allclose(run.friction_force / run.normal_force, FRICTION / LOAD, rtol=1e-3)
+
+
+HEAD = "Time [s],Friction force [mN],Load [mN],Speed [mm/s]"
+
+
+@pytest.mark.parametrize(
+    "footer",
+    ["\nAverage,0.4,10,2\nMax,9,1,5\n", "Mean,250,10.0,0.0\n", "Std dev,1,1,1\nn,4,4,4\n"],
+)
+def test_averages_below_the_rows_are_no_rows(footer, tmp_path):
+    file = written(tmp_path / "a.csv", HEAD, T, FRICTION, LOAD, SPEED)
+    file.write_text(file.read_text() + footer)
+    run = tl.read(file)
+    assert run.sizes["time"] == N
+    assert float(run.friction_force.max()) == pytest.approx(1e-3 * FRICTION.max(), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "clock",
+    [
+        lambda s: f"{int(s // 60) % 60:02d}:{s % 60:05.2f}",
+        lambda s: f"{int(s // 3600):02d}:{int(s // 60) % 60:02d}:{s % 60:05.2f}",
+        lambda s: f"{int(s // 60) % 60:02d}:{s % 60:05.2f}".replace(".", ","),
+        lambda s: (
+            f"{(int(s // 3600) + 11) % 12 + 1:02d}:{int(s // 60) % 60:02d}:{s % 60:05.2f} "
+            f"{'AM' if s < 43200 else 'PM'}"
+        ),
+    ],
+)
+def test_a_clock_that_shows_minutes_and_seconds_goes_on_over_the_hour(clock, tmp_path):
+    times = [clock(3590 + t) for t in T]
+    file = written(tmp_path / "a.csv", HEAD.replace(",", ";"), times, FRICTION, LOAD, SPEED,
+                   delimiter=";")  # fmt: skip
+    np.testing.assert_allclose(tl.read(file).time, T, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["Dead weight,153.,g", "Load mass = 0.153 kg", "Normal load;1.5004;N", "Load: 1.5004 N"],
+)
+def test_a_load_above_the_table_is_the_normal_force(said, tmp_path):
+    head = f"Operator,Bob\n{said}\nTime [s],Friction force [mN],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, SPEED))
+    np.testing.assert_allclose(run.normal_force, 1.5004, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "Wear track diameter (mm),40",
+        "Track radius: 0.7874015748 in",
+        "Ball radius,3,mm\nTrack radius,20,mm",
+    ],
+)
+def test_the_track_above_the_table_makes_the_speed_of_turns(said, tmp_path):
+    head = f"{said}\nTime [s],Friction [mN],Load [mN],Speed [rpm]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60))
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 20e-3, rtol=1e-6)
+
+
+@pytest.mark.parametrize("said", ["Ball radius: 3 mm", "Disc diameter: 60 mm"])
+def test_the_size_of_a_ball_or_a_disc_is_no_track(said, tmp_path):
+    head = f"{said}\nTime [s],Friction [mN],Load [mN],Speed [rpm]"
+    assert "sliding_velocity" not in tl.read(
+        written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60)
+    )
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Time,Friction,Load,Speed\nCH1,CH2,CH3,CH4\ns,mN,mN,mm/s",
+        "Channel,1,2,3\nTime,Friction,Load,Speed\nElapsed,Tangential,Normal,Actual\ns,mN,mN,mm/s",
+        "Time,Friction,Load,Speed\n,,,\ns,mN,mN,mm/s",
+        "Zeit in Sekunden,Reibkraft in mN,Last in mN,Geschwindigkeit in mm/s",
+        "Time / s,Friction / mN,Load / mN,Speed / mm/s",
+    ],
+)
+def test_units_may_stand_in_the_third_line_or_in_words(head, tmp_path):
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, SPEED))
+    np.testing.assert_allclose(run.friction_force, 1e-3 * FRICTION, atol=1e-6)
+    np.testing.assert_allclose(run.sliding_velocity, 1e-3 * SPEED)
+
+
+@pytest.mark.parametrize(("said", "at_once"), [("Half stroke: 5 mm", True), ("Amplitude: 5 mm", 0)])
+def test_half_a_stroke_is_half_and_an_amplitude_is_asked_about(said, at_once, tmp_path):
+    force = 300 * np.sign(np.cos(np.pi * T)) + np.sin(7 * T)
+    head = f"{said}\nFrequency: 0.5 Hz\nMotion: sine\nTime [s],Friction [mN],Load [mN]"
+    file = written(tmp_path / "a.csv", head, T, force, LOAD)
+    if not at_once:
+        assert "is half of a stroke" in asked(file)
+        return
+    assert float(tl.read(file).sliding_velocity.max()) == pytest.approx(np.pi * 5e-3, rel=0.01)

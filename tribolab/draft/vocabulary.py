@@ -47,7 +47,10 @@ RUN_WORDS = (
             "forzadiattrito forzadattrito forzatangenziale attrito "
             "摩擦力 切向力 剪切力 せん断力 接線力"
         ),
-        _words("force kraft loadcell kraftmessdose kraftaufnehmer effort fuerza forza 力 测力"),
+        _words(
+            "standardkraft pruefkraft "
+            "force kraft loadcell kraftmessdose kraftaufnehmer effort fuerza forza 力 测力"
+        ),
     ),
     Word(
         "normal_force",
@@ -66,7 +69,8 @@ RUN_WORDS = (
         "friction_coefficient",
         _words("mu cof my mue ffn fxfz cf"),
         _words(
-            "frictioncoefficient frictioncoeff coefficientoffriction coeffoffriction coffriction "
+            "frictioncoefficient frictioncoeff frictionfactor "
+            "coefficientoffriction coeffoffriction coffriction "
             "coefffriction tractioncoefficient tractioncoeff reibwert reibungszahl reibzahl "
             "reibungskoeffizient reibkoeffizient friction cof reibung "
             "coefficientdefrottement coeffdefrottement coeffrottement frottement "
@@ -168,7 +172,11 @@ RUN_WORDS = (
     Word(
         "electrical_contact_resistance",
         ("ecr",),
-        _words("contactresistance uebergangswiderstand resistancedecontact 接触电阻 接触抵抗"),
+        _words(
+            "contactresistance uebergangswiderstand resistancedecontact "
+            "contactpotential filmpercent "
+            "film 接触电阻 接触抵抗"
+        ),
     ),
     Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
     Word(

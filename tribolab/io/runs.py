@@ -35,7 +35,7 @@ from tribolab.io.row_counts import (
     rows_in_words,
     with_companion_rows,
 )
-from tribolab.io.speed import add_speed
+from tribolab.io.speed import add_speed, keep_settings
 from tribolab.io.zero_reading import take_zeros
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
@@ -284,6 +284,7 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
         return _blank(contents[0].path.parent / name, dialect)
 
     attrs |= take_zeros(columns, time, rules, blank, where)
+    keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
     add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)

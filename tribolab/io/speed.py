@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from tribolab.errors import ReadError
@@ -47,6 +49,50 @@ def add_speed(
         columns["set_speed"] = np.full(len(time), float(attrs["set_speed_m_s"]))
 
 
+def keep_settings(
+    columns: Mapping[str, np.ndarray],
+    symbols: Mapping[str, str],
+    attrs: Json,
+    where: str,
+    dialect: Dialect,
+) -> None:
+    """Keep what columns say of a radius, a stroke or a frequency, before they are used up.
+
+    Parameters
+    ----------
+    columns
+        Arrays in SI by quantity or symbol (time).
+    symbols
+        SI units of the symbols.
+    attrs
+        Attributes of the run; added to.
+    where
+        The run, for messages.
+    dialect
+        The instrument's dialect.
+
+    Raises
+    ------
+    ReadError
+        If such a column does not hold the same all along.
+    """
+    for key, name in dialect.speed.values_named.items():
+        if name not in symbols or name not in columns:
+            continue
+        values = columns[name]
+        values = values[np.isfinite(values) & (values > 0)]
+        middle = float(np.median(values)) if values.size else np.nan
+        if values.size and np.any(np.abs(values / middle - 1) > _VARIES):
+            raise ReadError(
+                f"column '{name}' holds {values.min():.4g} to {values.max():.4g}; a speed that "
+                "follows from it needs one number for a run: part the run where it changes",
+                where=where,
+            )
+        turns = key == "frequency_value" and symbols[name].startswith("rad")
+        unit = "Hz" if key == "frequency_value" else "m"
+        attrs[f"{name}_{unit}"] = middle / (2 * np.pi) if turns else middle
+
+
 def _by_turns(columns: dict[str, np.ndarray], attrs: Json, where: str, dialect: Dialect) -> None:
     radius = _stated(dialect.speed.radius, dialect.speed.radius_value, "m", attrs)
     if radius is None or "rotation_speed" not in columns:
@@ -82,6 +128,7 @@ def _by_strokes(
     columns["sliding_velocity"] = strokes.velocity
 
 
+_VARIES = 0.1  # relative; the stroke of a magnetic drive is controlled to some per cent
 _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.roles import Role, role_of
+from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.draft.columns.words import SURE, Match, is_axis
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
@@ -63,7 +64,7 @@ def assigned(
     kind
         What the file is.
     """
-    matched = _without_axes(bare, matched)
+    matched = _without_lengths(bare, _without_axes(bare, matched))
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
     proposals: dict[str, list[_Proposal]] = {}
@@ -204,6 +205,17 @@ def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Mat
         if is_axis(name) and options and options[0].quantity == "position"
         else options
         for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
+
+
+def _without_lengths(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Beside a frequency the length of strokes is no position, and the frequency no turning."""
+    lengths = lengths_beside_frequencies([(name, unit) for name, unit, _ in bare])
+    if not lengths:
+        return matched
+    return [
+        [] if place in lengths or is_frequency(name, unit) else options
+        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
     ]
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout
     from tribolab.draft.model import DraftColumn
 
-_DAY = 86400.0  # [s]
+_DAY, _HOUR = 86400.0, 3600.0  # [s]
 _INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
 OnRepeat = Literal["", "drop", "interpolate"]
 
@@ -59,8 +59,8 @@ def find_clock(
     bad, notes = np.zeros(len(time), dtype=bool), []
     for first, last in parts:
         faults = find_faults(time[first:last])
-        # a time of day begins anew at midnight
-        starts = [s for s in faults.starts if not (column.form and s.period == _DAY)]
+        # a time of day begins anew at midnight, minutes and seconds at the hour
+        starts = [s for s in faults.starts if not (column.form and s.period in (_DAY, _HOUR))]
         restart |= bool(starts)
         bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
         periods = {start.period for start in starts if start.period}

@@ -19,6 +19,8 @@ from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import split_name, split_row
 
+_PURE = ("1", "-")  # what stands for the unit of a pure number
+
 
 def understand(layout: Layout) -> Understood:
     """Tell what the columns of a file hold.
@@ -176,10 +178,11 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
-        if unit is not None and not is_unit(unit):
+        if unit in _PURE or (unit is not None and not is_unit(unit)):
             unit = None  # brackets around something else
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None
+            unit = None if unit in _PURE else unit
         seen[name] = seen.get(name, 0) + 1
         known = name if name and heading and heading.aligned else None
         columns.append(

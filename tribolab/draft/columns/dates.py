@@ -15,7 +15,9 @@ _FORMS = (
     *("%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S,%f"),
     *("%Y/%m/%d %H:%M:%S", "%Y/%m/%d %H:%M:%S.%f", "%Y/%m/%d %H:%M:%S,%f"),
     *(_EUROPE, f"{_EUROPE}.%f", f"{_EUROPE},%f", _AMERICA, f"{_AMERICA}.%f", f"{_AMERICA},%f"),
+    *(f"{day}%I:%M:%S{part} %p" for day in ("", "%m/%d/%Y ") for part in ("", ".%f")),
     *("%H:%M:%S", "%H:%M:%S.%f", "%H:%M:%S,%f"),
+    *("%M:%S.%f", "%M:%S,%f"),  # with a fraction only: 01:30 may be hours and minutes
 )
 _TRIED = 20
 

@@ -6,6 +6,13 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.strokes import (
+    FREQUENCY,
+    HALF_STROKE,
+    STROKE,
+    is_frequency,
+    is_length,
+)
 from tribolab.draft.columns.values import DraftValue, find_radius, find_values, key_of, words_said
 from tribolab.draft.columns.words import split_unit, squeezed
 from tribolab.draft.file.header import converts
@@ -14,19 +21,12 @@ from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.headers import split_name
 
 _TORQUE = re.compile(r"torque|drehmoment|reibmoment|couple|coppia|扭矩|转矩|トルク|^(?:m|mr|tq)$")
-_STROKE = re.compile(
-    r"^(?:stroke|strokelength|hub|hublaenge|course|carrera|corsa|行程|ストローク)$"
-)
-_FREQUENCY = re.compile(
-    r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
-    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数)$"
-)
 _DRIVE = re.compile(r"drive|motion|waveform|antrieb|bewegung|entrainement|movimento|movimiento")
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _LOAD = re.compile(
     r"^(?:normal|applied|dead|sled|schlitten|test|axial|static)?"
-    r"(?:load|force|weight|mass|gewicht|masse|kraft|last)$|^(?:normalkraft|auflast|normallast)$"
+    r"(?:load|force|weight|mass|gewicht|masse|kraft|last)+$|^(?:normalkraft|auflast|normallast)$"
 )
 _WEIGHT = {"g": "gf", "kg": "kgf"}
 SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
@@ -126,11 +126,11 @@ def _with_speed(
         about = "the slide-to-roll ratio is the sliding speed over the mean speed of both surfaces"
         formula = Formula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
         return _and(before, formula)._replace(speed=SpeedBy("none"))
-    stroke = _only(values, _STROKE, "m")
-    frequency = _only(values, _FREQUENCY, "Hz")
-    if stroke is None or frequency is None or "rotation_speed" in names:
+    by_values = _of_values(values)
+    of_strokes = by_values or _of_columns(understood)
+    if of_strokes is None or (by_values is None and "rotation_speed" in names):
         return before
-    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+    settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     drive, guess = understood.drive or "crank", ""
     options: tuple[str, ...] = ()
@@ -138,8 +138,54 @@ def _with_speed(
         drive = "constant speed"
     elif not understood.drive and not any(_SINE.search(text) for text in said):
         guess, options = "a crank drives it: the speed is a sine", ("constant speed",)
+    if of_strokes.guess:
+        guess = f"{guess}; {of_strokes.guess}" if guess else of_strokes.guess
     speed = SpeedBy("stroke", (*settings, ("drive", drive)), guess, options)
-    return before._replace(speed=speed, values=(*before.values, stroke, frequency))
+    return before._replace(
+        speed=speed,
+        values=(*before.values, *of_strokes.values),
+        symbols=(*before.symbols, *of_strokes.symbols),
+    )
+
+
+class _Strokes(NamedTuple):
+    """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
+
+    settings: tuple[tuple[str, str], ...]
+    values: tuple[DraftValue, ...] = ()
+    symbols: tuple[tuple[str, DraftColumn], ...] = ()
+    guess: str = ""
+
+
+def _of_values(values: Sequence[DraftValue]) -> _Strokes | None:
+    """Return the length and frequency of strokes that stand above the table."""
+    stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
+    if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
+        stroke = half._replace(scale=2.0)
+        if "half" not in half.name:
+            guess = f"'{half.text}' is half of a stroke"
+    if stroke is None or frequency is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+    return _Strokes(settings, (stroke, frequency), guess=guess)
+
+
+def _of_columns(understood: Understood) -> _Strokes | None:
+    """Return the columns that hold the length and the frequency of strokes."""
+    lengths, frequencies = [], []
+    for column in understood.columns:
+        name, unit = split_name(column.label)
+        unit = column.file_unit or unit
+        if unit is not None and converts(unit, "m") and is_length(name):
+            lengths.append(column)
+        elif is_frequency(name, unit) and not column.used:
+            frequencies.append(column)
+    if len(lengths) != 1 or len(frequencies) != 1 or lengths[0].used:
+        return None
+    settings = (("stroke_value", "stroke"), ("frequency_value", "stroke_frequency"))
+    return _Strokes(
+        settings, symbols=(("stroke", lengths[0]), ("stroke_frequency", frequencies[0]))
+    )
 
 
 def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> DraftValue | None:

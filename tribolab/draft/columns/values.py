@@ -12,17 +12,19 @@ from tribolab.draft.file.layout import Layout
 
 _MOST = 12  # a long preamble is not repeated in the dialect
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
-_SAYS = re.compile(
-    r"(?P<before>\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*)(?P<number>[-+]?\d[\d.,]*(?:e[-+]?\d+)?)"
-    r"\s*(?P<unit>[^\s\d;,][^\s;,]*)?\s*[;,\t]*\s*(?:\(.*\))?$",
-    re.IGNORECASE,
+_SAID = (
+    r"(?P<before>\W*(?P<key>[^\W\d][^:=\t;{mark}]*?)\s*[:=\t;{mark}]\s*)"
+    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}]*(?P<unit>[^\s\d;,][^\s;,]*)?"
+    r"\s*[;,\t]*\s*(?:\(.*\))?$"
 )
+_SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
+_IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
 _WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 # a sample rate by its name; "Frequency" alone may be that of the strokes
 _RATE = re.compile(
-    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
+    r"^(?:rate|fs|daqrate)$|^(?:sampl|scan|log|mess|abtast)\w*(?:interval|period|time|intervall)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
     r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
 )
 # the distance of a profile's points by its name
@@ -83,7 +85,7 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     above = layout.blocks[0].start if bare and layout.blocks else 0
     stop = layout.heading.names if layout.heading else above
     for line in layout.lines[:stop]:
-        said = _SAYS.match(line.rstrip())
+        said = _said(line.rstrip())
         # a digit before the colon: a time of day
         if len(values) >= _MOST:
             break
@@ -102,7 +104,7 @@ def find_rate(layout: Layout) -> DraftValue | None:
         From `tribolab.draft.file.layout.find_layout`.
     """
     for value in find_values(layout):
-        key = _SAYS.match(value.text)
+        key = _said(value.text)
         rated = key is not None and _RATE.search(squeezed(_BRACKETS.sub("", key["key"])))
         if rated and value.source == "preamble" and value.unit and converts(value.unit, "Hz"):
             return value
@@ -130,7 +132,7 @@ def key_of(value: DraftValue) -> str:
     value
         From `find_values`.
     """
-    said = _SAYS.match(value.text)
+    said = _said(value.text)
     return _BRACKETS.sub("", said["key"]).strip() if said else ""
 
 
@@ -143,7 +145,7 @@ def find_pitch(layout: Layout) -> DraftValue | None:
         From `tribolab.draft.file.layout.find_layout`.
     """
     for value in find_values(layout, bare=True):
-        key = _SAYS.match(value.text)
+        key = _said(value.text)
         named = key is not None and _PITCH.search(squeezed(_BRACKETS.sub("", key["key"])))
         if named and value.source == "preamble" and value.unit and converts(value.unit, "m"):
             return value._replace(name="pitch", to="m")
@@ -166,12 +168,17 @@ def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
     return tracks[0] if len(tracks) == 1 else None
 
 
+def _said(line: str) -> re.Match[str] | None:
+    return _SAYS.match(line) or _IN_CELLS.match(line)
+
+
 def _value(said: re.Match[str]) -> DraftValue:
     key, unit = said["key"], (said["unit"] or "").strip("[]()") or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
-    pattern = r"^\s*" + escaped(said["before"].strip()) + r"\s*([-+\d.,eE]+)"
+    digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
+    pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*({digits})"
     line = said.string.strip()
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:

@@ -25,6 +25,13 @@ _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|moto
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": {"g": "gf", "kg": "kgf"}}
+# units as words of languages that the library of units does not know
+_UNIT_WORDS = {
+    **dict.fromkeys(("sekunden", "sekunde", "sek", "secondes", "segundos", "secondi"), "s"),
+    **dict.fromkeys(("millisekunden", "millisecondes", "milisegundos"), "ms"),
+    **dict.fromkeys(("minuten", "minutos", "minuti"), "min"),
+    **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
+}
 _AS_SET = {"sliding_velocity": "set_speed"}  # a speed that was set is not how fast it slid
 
 
@@ -83,6 +90,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return label, None
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
+        unit = _UNIT_WORDS.get(unit.lower(), unit)
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
             # what has no dimension is part of the name: the N/N of F_N/N
             unitless = converts(text, "1") and text != "%"

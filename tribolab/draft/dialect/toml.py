@@ -114,6 +114,8 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
         units = units if layout.heading.aligned else "dialect"
         if units != "brackets":
             lines.append(f'units = "{units}"')
+        if units == "row" and layout.units_line > 1:
+            lines.append(f"units_line = {layout.units_line}")
         if layout.repeats:
             lines.append("repeats = true")
         if layout.step:
@@ -129,7 +131,8 @@ def _time_table(understood: Understood) -> str:
         if column.used and column.form:
             lines.append(f"format = {_text(column.form)}")
             if not has_day(column.form):
-                lines.append('wrap = "24 h"')
+                hours = "%H" in column.form or "%I" in column.form
+                lines.append(f'wrap = "{"24 h" if hours else "60 min"}"')
     timed = any(c.used and c.quantity == "time" for c in understood.columns)
     if understood.period:
         lines.append('source = "period"    # the column holds what has passed since the row before')

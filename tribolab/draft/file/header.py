@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from tribolab.draft.vocabulary import RUN_WORDS
 from tribolab.errors import TribolabError
 from tribolab.turns import Counted
 from tribolab.units import conversion
@@ -25,6 +26,8 @@ DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),
 )
+_STEMS = frozenset(stem for word in RUN_WORDS for stem in word.stems)
+_SYMBOLS = frozenset(symbol for word in RUN_WORDS for symbol in word.symbols)
 _UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
 
 
@@ -65,9 +68,12 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
     split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
     fitting = {i: c for i, c in split.items() if _fits(lines[i], c[0], grammar, width)}
     for index, (cells, aligned) in fitting.items():
-        if _are_units(cells) and index - 1 in fitting:
-            names, named = fitting[index - 1]
-            return Heading(index - 1, index, names, cells, aligned and named)
+        over = [above for above in fitting if above < index]
+        if _are_units(cells) and over:
+            # between names and units may stand numbers of channels, or a row of delimiters
+            best = max(over, key=lambda above: (_known(fitting[above][0]), above))
+            names, named = fitting[best]
+            return Heading(best, index, names, cells, aligned and named)
     if not fitting:
         return None
     index, (cells, aligned) = next(iter(fitting.items()))
@@ -137,6 +143,12 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     if width == 1:
         return len(filled) == 1 and len(line) < 60 and not re.search(r"[:=]\s*\S", line)
     return len(filled) >= 2 and 0.5 * width <= len(cells) <= 1.5 * width + 2
+
+
+def _known(cells: Sequence[str]) -> int:
+    """How many cells hold a known word or are a known symbol."""
+    texts = ["".join(filter(str.isalnum, cell.lower())) for cell in cells[:_TELLING]]
+    return sum(text in _SYMBOLS or any(stem in text for stem in _STEMS) for text in texts)
 
 
 def _are_units(cells: Sequence[str]) -> bool:

@@ -70,6 +70,15 @@ class Layout(NamedTuple):
         """The delimiter in a word."""
         return DELIMITERS[self.delimiter]
 
+    @property
+    def units_line(self) -> int:
+        """In which line below the names the units stand; a row of delimiters does not count."""
+        heading = self.heading
+        if heading is None or heading.units is None:
+            return 0
+        rows = self.lines[heading.names + 1 : heading.units + 1]
+        return sum(1 for line in rows if line.strip())
+
     def rows(self) -> list[str]:
         """Lines of numbers of all blocks, their cells in the order of the first."""
         return [line for block in self.blocks for line in self._in_order(block)]
@@ -141,7 +150,7 @@ def find_layout(file: File) -> Layout:
     if tail and pattern is not None and end is not None:
         repeats = True  # only then is the whole file searched for the end of the table
     if heading:
-        below = heading.names + (1 if heading.units is None else 2)
+        below = (heading.names if heading.units is None else heading.units) + 1
         skip = sum(1 for index in range(below, first.start) if lines[index].strip())
         skip = 0 if skip == 0 else first.start - below
     else:
@@ -188,6 +197,8 @@ def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
         if not line.strip():
             continue
         cells = grammar.width(line)
+        if cells and rows and grammar.is_footer(line) and not grammar.is_footer(lines[rows[0]]):
+            cells = 0
         if not cells and rows and grammar.goes_on(line, width):
             cells = width
         if cells != width and not (rows and index == last and 0 < cells < width):

@@ -22,7 +22,8 @@ _NUMBER = {
 # dates, times of day, and what instruments write where a value should stand
 _NO_NUMBER = re.compile(
     r"(?i)nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none|"
-    r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|\d{1,2}:\d\d(?::\d\d(?:[.,]\d+)?)?"
+    r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|"
+    r"\d{1,2}:\d\d(?::\d\d)?(?:[.,]\d+)?(?: ?[ap]\.?m\.?)?"
 )
 
 
@@ -65,6 +66,11 @@ class Grammar:
             return len(self.cells(line))
         width, merit = self.merit(line)
         return width if merit else 0
+
+    def is_footer(self, line: str) -> bool:
+        """Whether a line of numbers begins with a word: "Mean" below a column of times."""
+        first = self.cells(line)[0]
+        return bool(first) and not self.is_number(first) and not _NO_NUMBER.fullmatch(first)
 
     def goes_on(self, line: str, width: int) -> bool:
         """Whether a line can be a row in the midst of others: half of it may be error codes."""

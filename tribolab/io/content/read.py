@@ -18,6 +18,7 @@ from tribolab.pieces import anywhere
 from tribolab.provenance import sha256_of_file
 
 _T = TypeVar("_T")
+_UNCLEAR = 0.5  # of a load's largest number, that of the other sign
 _PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
 
 
@@ -142,7 +143,7 @@ def _no_value(values: np.ndarray) -> bool:
 
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
-    content = _chosen(_possible(content))
+    content = _pressed(_chosen(_possible(content)), dialect)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -166,6 +167,31 @@ def _checked(content: Content, dialect: Dialect) -> Content:
     ]
     without = tuple(f"{content.labels[name]} (no values)" for name in empty)
     return content._replace(pieces=pieces, not_used=content.not_used + without)
+
+
+def _pressed(content: Content, dialect: Dialect) -> Content:
+    """Turn a load whose sign is not known so that its largest numbers are positive."""
+    if not any(column.sign == "pressed" for column in dialect.column):
+        return content
+    parts = [p.columns["normal_force"] for p in content.pieces if "normal_force" in p.columns]
+    low = min((float(np.nanmin(part)) for part in parts if not _no_value(part)), default=0.0)
+    high = max((float(np.nanmax(part)) for part in parts if not _no_value(part)), default=0.0)
+    if min(-low, high) > _UNCLEAR * max(-low, high):
+        raise ReadError(
+            f"column '{shown(content.labels['normal_force'])}' (normal_force) is as far below zero "
+            f"as above, so that its sign cannot be told; say sign = 1 or sign = -1 in a copy of "
+            f"the dialect '{dialect.name}'",
+            where=content.path,
+        )
+    if -low <= high:
+        return content
+    pieces = [
+        piece._replace(columns={**piece.columns, "normal_force": -piece.columns["normal_force"]})
+        if "normal_force" in piece.columns
+        else piece
+        for piece in content.pieces
+    ]
+    return content._replace(pieces=pieces)
 
 
 def _chosen(content: Content) -> Content:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import Field, PositiveInt, model_validator
 
@@ -15,9 +15,10 @@ from tribolab.io.dialects.checked_text import (
     check_unit,
 )
 from tribolab.quantities import QUANTITIES, quantity
-from tribolab.turns import Counted
+from tribolab.turns import Counted, reciprocal
 from tribolab.units import base_unit, to_si
 
+_TURNING = {"cycles": "Hz", "radians": "rad/s"}
 FRICTION = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
 
 
@@ -35,7 +36,11 @@ class Column(Strict):
     unit: str | None = Field(None, description="goes before the unit in the file")
     scale: float = 1.0
     offset: float = 0.0
-    sign: Sign = 1
+    sign: Sign | Literal["pressed"] = Field(
+        1,
+        description="'pressed', of a normal force: the sign by which its largest numbers are "
+        "positive, where programs write a load either way",
+    )
     optional: bool = Field(
         False,
         description="may be missing or empty in some files; of several such columns for one "
@@ -67,6 +72,8 @@ class Column(Strict):
         for key, value in stated.items():
             if value is not None and self.quantity not in FRICTION:
                 raise ValueError(f"column '{self.key}': {key} is for {' and '.join(FRICTION)} only")
+        if self.sign == "pressed" and self.quantity != "normal_force":
+            raise ValueError(f"column '{self.key}': sign = 'pressed' is for normal_force only")
         if self.zero is not None and (self.symbol or self.quantity in ("time", "x", "y")):
             raise ValueError(f"column '{self.key}': only a signal has a zero")
         if self.zero_uncertainty is not None:
@@ -87,7 +94,10 @@ class Column(Strict):
         """SI unit that numbers in a unit are turned into."""
         if self.quantity:
             return quantity(self.quantity).unit
-        return base_unit(unit) if unit not in (None, "", "1", "-", "%") else "1"
+        if unit in (None, "", "1", "-", "%"):
+            return "1"
+        turning = reciprocal(str(unit))  # cycles stay cycles
+        return _TURNING.get(turning.counts if turning else "") or base_unit(str(unit))
 
     @property
     def attributes(self) -> dict[str, float | bool]:

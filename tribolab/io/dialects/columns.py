@@ -177,14 +177,15 @@ def _signal(
             f"column '{shown(label)}' ({column.key}): {error}; the right unit can be "
             "given in the dialect"
         ) from error
-    # sign * (scale * x + offset), then the unit
+    # sign * (scale * x + offset), then the unit; what is pressed is told when all is read
+    sign = 1 if column.sign == "pressed" else column.sign
     return ReadColumn(
         place=index,
         quantity=column.key,
         si_unit=wanted,
         label=label,
         unit=unit or "1",
-        scale=column.sign * column.scale * scale,
-        offset=column.sign * column.offset * scale + offset,
+        scale=sign * column.scale * scale,
+        offset=sign * column.offset * scale + offset,
         optional=column.optional,
     )

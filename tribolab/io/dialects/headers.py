@@ -163,7 +163,7 @@ def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes
     header = dialect.header
     starts = _header_starts(file, content, dialect)
     first = content.count(b"\n", 0, starts[0])
-    deep = header.skip + (header.units == "row")
+    deep = header.skip + (header.units_line if header.units == "row" else 0)
     whole = header.line is not None or header.pattern is not None
     kept = {content.count(b"\n", 0, start) + k for start in starts for k in range(deep + whole)}
     pattern = compiled(dialect.text.skip_lines, dialect)
@@ -258,7 +258,10 @@ def _read_header(
     line, here = _line(file, content, start, dialect)
     names, units = _columns(line, delimiter, header.units == "brackets")
     if header.units == "row":
-        line, here = _line(file, content, here, dialect)
+        for _ in range(header.units_line):
+            line, here = _line(file, content, here, dialect)
+        if not line.strip() and line:  # a row of delimiters between names and units
+            line, here = _line(file, content, here, dialect)
         row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
         units = tuple((row + [None] * len(names))[: len(names)])
     for _ in range(header.skip):

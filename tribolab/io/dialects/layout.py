@@ -56,6 +56,9 @@ class Header(Strict):
     units: Literal["brackets", "row", "dialect"] = Field(
         "brackets", description="in brackets after the name, in the next row, or only here"
     )
+    units_line: PositiveInt = Field(
+        1, description="for units = 'row': in which line below the names, from 1"
+    )
     repeats: bool = Field(False, description="a header block stands at each step")
     step: Pattern | None = Field(
         None, description="group 1 is the step's number in the text before its header"

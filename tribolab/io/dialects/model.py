@@ -93,8 +93,10 @@ class Dialect(Strict):
                     )
         check_pitch(self.pitch, self.pitch_value, self.value, names)
         for key, value in self.speed.values_named.items():
-            if value not in {v.name for v in self.value}:
-                raise ValueError(f"speed.{key}: there is no value '{shown(value)}'")
+            if value not in {v.name for v in self.value} | {c.symbol for c in self.column}:
+                raise ValueError(
+                    f"speed.{key}: there is no value and no symbol of a column '{shown(value)}'"
+                )
         return self
 
 

@@ -15,13 +15,19 @@ class Speed(Strict):
 
     source: Literal["column", "position", "rotation", "stroke", "set speed", "none"] = "column"
     radius: str | None = Field(None, description="track radius with unit, for source 'rotation'")
-    radius_value: str | None = Field(None, description="the [[value]] that holds the radius")
+    radius_value: str | None = Field(
+        None, description="the [[value]], or symbol of a column, that holds the radius"
+    )
     stroke: str | None = Field(
         None, description="stroke from end to end with unit, for source 'stroke'"
     )
-    stroke_value: str | None = Field(None, description="the [[value]] that holds the stroke")
+    stroke_value: str | None = Field(
+        None, description="the [[value]], or symbol of a column, that holds the stroke"
+    )
     frequency: str | None = Field(None, description="strokes to and fro per time, e.g. '5 Hz'")
-    frequency_value: str | None = Field(None, description="the [[value]] that holds the frequency")
+    frequency_value: str | None = Field(
+        None, description="the [[value]], or symbol of a column, that holds the frequency"
+    )
     drive: Literal["crank", "constant speed"] = Field(
         "crank", description="for source 'stroke': the velocity is a sine, or constant both ways"
     )

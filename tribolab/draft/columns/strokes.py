@@ -1,0 +1,55 @@
+"""Names of what drives strokes to and fro: their length, half of it, and how often they come."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from tribolab.draft.columns.roles import without_role
+from tribolab.draft.columns.words import squeezed
+from tribolab.draft.file.header import converts
+
+STROKE = re.compile(r"^(?:stroke|strokelength|hub|hublaenge|course|carrera|corsa|行程|ストローク)$")
+HALF_STROKE = re.compile(
+    r"^(?:half(?:the)?stroke(?:length)?|(?:stroke)?amplitude|halbhub|demicourse)$"
+)
+FREQUENCY = re.compile(
+    r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
+    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数)$"
+)
+
+
+def is_length(name: str) -> bool:
+    """Whether a name is that of a stroke's length.
+
+    >>> is_length("Stroke"), is_length("Set stroke length"), is_length("Stroke No")
+    (True, True, False)
+    """
+    return bool(STROKE.search(squeezed(name)) or STROKE.search(squeezed(without_role(name))))
+
+
+def is_frequency(name: str, unit: str | None) -> bool:
+    """Whether a name and a unit are those of how often strokes come.
+
+    >>> is_frequency("Frequency", "Hz"), is_frequency("Speed", "mm/s")
+    (True, False)
+    """
+    return bool(unit and converts(unit, "Hz") and FREQUENCY.search(squeezed(without_role(name))))
+
+
+def lengths_beside_frequencies(named: Sequence[tuple[str, str | None]]) -> set[int]:
+    """Return the places of columns that hold lengths of strokes and no positions.
+
+    Parameters
+    ----------
+    named
+        Names and units of the columns.
+
+    Returns
+    -------
+    set
+        From 0; empty unless another column says how often the strokes come.
+    """
+    if not any(is_frequency(name, unit) for name, unit in named):
+        return set()
+    return {place for place, (name, _) in enumerate(named) if is_length(name)}
