@@ -11,7 +11,10 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
+from tribolab.across.calibration_terms import calibration_terms
 from tribolab.across.compare import CHANGED, UNCHANGED
+from tribolab.across.folder import Folder
+from tribolab.across.run_values import Matched
 from tribolab.app.run import run_campaign
 from tribolab.metrology.differences import (
     DIFFERENT,
@@ -21,6 +24,7 @@ from tribolab.metrology.differences import (
     holm,
     verdicts,
 )
+from tribolab.metrology.resampling import by_rotation
 
 
 def runs(rng, count, points, offset=0.0):
@@ -49,20 +53,50 @@ def test_holms_rule_is_that_of_statsmodels_documentation():
 
 @pytest.mark.parametrize(
     "conditions, count, method",
-    [(1, 4, "permutation"), (2, 4, "Holm"), (6, 5, "permutation"), (1, 3, "Holm")],
+    [(1, 5, "permutation"), (1, 4, "rotation"), (6, 5, "permutation"), (1, 3, "rotation")],
 )
 def test_permutations_are_used_where_they_can_tell(conditions, count, method):
     rng = np.random.default_rng(1)
     groups = [(runs(rng, count, 3), runs(rng, count, 3, 0.5)) for _ in range(conditions)]
     compared = differences_of_groups(groups)
-    assert compared.method == method
+    assert set(compared.methods) == {method}
     assert (compared.adjusted_p_value <= 0.05).all(), "no clear difference is lost in their number"
 
 
 def test_permutations_of_one_condition_are_counted_exactly():
     rng = np.random.default_rng(2)
-    compared = differences_of_groups([(runs(rng, 4, 5), runs(rng, 4, 5, 1.0))])
-    assert compared.adjusted_p_value == pytest.approx(np.full(5, 2 / 70))
+    compared = differences_of_groups([(runs(rng, 5, 5), runs(rng, 5, 5, 1.0))])
+    assert compared.adjusted_p_value == pytest.approx(np.full(5, 2 / 252))
+
+
+def test_of_one_point_rotations_are_students_t():
+    from scipy import stats
+
+    rng = np.random.default_rng(12)
+    first, second = runs(rng, 3, 1), runs(rng, 3, 1, 0.02)
+    own, _ = by_rotation(
+        first, second, np.zeros((0, 1)), np.array([0.05]), np.array([4.0]), 0.05, 0
+    )
+    # Welch's p of equal scatter and equal numbers is a function of t: how often it is below 5 %
+    # is known from Student's t of all four degrees of freedom, over the mixing of the two scatters
+    score, share = np.abs(stats.t.rvs(4, size=200_000, random_state=1)), rng.beta(1, 1, 200_000)
+    freedom = 2 / (share**2 + (1 - share) ** 2)
+    wanted = np.mean(2 * stats.t.sf(score, freedom) <= 0.05)
+    assert own[0] == pytest.approx(wanted, abs=4 * np.sqrt(wanted / 2000))
+
+
+def test_what_the_groups_share_cancels_and_what_they_do_not_counts_for_all_points_at_once():
+    rng = np.random.default_rng(13)
+    wrong, families, gain = np.zeros(2), 60, 0.02
+    for _ in range(families):
+        first, second = runs(rng, 4, 6), runs(rng, 4, 6)
+        second *= 1 + gain * rng.normal()
+        told = [None, [np.full((1, 6), 0.5 * gain)]]
+        for place, terms in enumerate(told):
+            compared = differences_of_groups([(first, second)], not_in_scatter=terms)
+            wrong[place] += (compared.adjusted_p_value <= 0.05).any()
+    assert wrong[0] / families > 0.1, "a gain that nobody states is taken for a difference"
+    assert wrong[1] / families < 0.05 + 3 * np.sqrt(0.05 * 0.95 / families)
 
 
 @pytest.mark.slow
@@ -83,9 +117,64 @@ def test_what_the_scatter_does_not_show_widens_the_error():
     rng = np.random.default_rng(4)
     groups = [(runs(rng, 5, 2), runs(rng, 5, 2, 0.03))]
     alone = differences_of_groups(groups)
-    whole = differences_of_groups(groups, not_in_scatter=[np.array([0.0, 0.2])])
+    whole = differences_of_groups(groups, not_in_scatter=[np.array([[0.0, 0.2]])])
     assert whole.standard_error == pytest.approx(np.hypot(alone.standard_error, [0.0, 0.2]))
     assert whole.adjusted_p_value[1] > 0.5 > alone.adjusted_p_value[1]
+
+
+def folder_with_budget(path, serial, gain, tilt=0.0, instrument="slide"):
+    """A results folder whose curve has a gain of 1 % and, where stated, a tilt of each mount."""
+    (path / "tables").mkdir(parents=True)
+    rows = [
+        {
+            "curve": "c",
+            "sliding_speed_m_s": speed,
+            "part": part,
+            "varies": varies,
+            "contribution": c,
+        }
+        for speed, mu in ((1e-4, 0.5), (1e-3, 0.3))
+        for part, varies, c in (
+            ("friction gain", "calibration", gain * mu),
+            ("tilt", "mount", tilt),
+            ("resolution", "stroke", 0.001 * bool(gain)),
+            ("between runs", "", 0.1),
+        )
+    ]
+    pd.DataFrame(rows).to_csv(path / "tables/uncertainty_budget.csv", index=False)
+    runs = [{"name": "a", "status": "done", "instrument": instrument, "files": ["a.csv"]}]
+    text = '[campaign]\nname = "x"\n\n'
+    text += f'[calibration]\nserial = "{serial}"\n\n[[run]]\nfiles = "*.csv"\n'
+    campaign = {"name": "x", "text": text, "sha256": 64 * "0"}
+    return Folder(
+        path, {"campaign": campaign, "runs": runs, "curves": [{"name": "c", "runs": ["a"]}]}
+    )
+
+
+def test_a_calibration_that_both_share_is_not_in_their_difference_twice(tmp_path):
+    speeds = np.array([1.01e-4, 0.99e-3])
+    condition = Matched("x", speeds, np.zeros((1, 2)), np.zeros((1, 2)), ("a",), ("a",))
+    first = folder_with_budget(tmp_path / "1", "42", 0.01)
+    assert first.campaign is not None and first.campaign.calibration.serial == "42"
+
+    def terms(second):
+        made = calibration_terms(condition, first, second)
+        return made, np.sqrt((made.terms**2).sum(axis=0))
+
+    own = np.sqrt(2) * 0.001  # of the resolution, of which each point has its own
+    made, error = terms(folder_with_budget(tmp_path / "2", "42", 0.01))
+    assert error == pytest.approx([own, own]) and made.shared == ("friction gain",)
+    made, error = terms(folder_with_budget(tmp_path / "3", "43", 0.01))
+    assert error == pytest.approx(np.hypot(own, np.sqrt(2) * 0.01 * np.array([0.5, 0.3])))
+    assert made.own == ("friction gain", "resolution") and made.shared == ()
+    gains = [row for row in made.terms if row.all()]
+    assert np.array(gains) == pytest.approx(0.01 * np.array([[0.5, 0.3], [0.5, 0.3]]))
+    made, error = terms(folder_with_budget(tmp_path / "4", "42", 0.01, 0.02))
+    assert error == pytest.approx(np.hypot(own, 0.02)), "a tilt of another mount is not shared"
+    # of a gain that one of two states while both have the same, the difference knows nothing
+    made, error = terms(folder_with_budget(tmp_path / "5", "42", 0.0))
+    assert error == pytest.approx([0.001, 0.001]) and "friction gain" not in made.own
+    assert calibration_terms(condition, None, first).terms.shape == (0, 2)
 
 
 def test_three_verdicts():

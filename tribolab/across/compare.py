@@ -4,32 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from tribolab.across.calibration_terms import CalibrationTerms, calibration_terms, terms_text
 from tribolab.across.changes import Change, changes_between
-from tribolab.across.folder import Folder, open_folder
 from tribolab.across.quantities import of_quantities
 from tribolab.across.run_values import (
     CONDITION,
     SPEED,
     Matched,
     matched,
-    of_level,
-    segments_of,
 )
+from tribolab.across.sides import Compared, Side, sides_of
 from tribolab.errors import AnalysisError
-from tribolab.metrology.differences import Differences, differences_of_groups, interval, verdicts
-from tribolab.report.read_results import Results
+from tribolab.metrology.differences import (
+    HOLM,
+    PERMUTATION,
+    ROTATION,
+    Differences,
+    differences_of_groups,
+    interval,
+    verdicts,
+)
 from tribolab.units import to_si
+from tribolab.words import many
 
 UNCHANGED, CHANGED = "unchanged", "changed by the analysis"
 LEVEL, EQUIVALENCE_LEVEL = 0.95, 0.90
 _EXACT = 1e-12  # relative: results of the same raw data by the same analysis are the same
-
-Compared = str | Path | Results | pd.DataFrame
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ class Comparison:
         What changed in settings, decisions, code and data.
     method
         How the error rate of all points is kept, in words.
+    calibration
+        What the errors hold beside the scatter of the runs, in words.
     margin
         The difference that does not matter, as it was stated; "" if none was.
     counts
@@ -64,6 +70,7 @@ class Comparison:
     quantities: pd.DataFrame
     changes: tuple[Change, ...] = ()
     method: str = ""
+    calibration: str = ""
     margin: str = ""
     counts: dict[str, int] = field(default_factory=dict)
     two_folders: bool = False
@@ -116,8 +123,9 @@ def compare(
     -----
     Runs made of the same raw files are no two observations: where all runs of a condition are, its
     verdict says whether the analysis changed the numbers, and there is no test.
-    `differences_of_groups` has the statistics. Uncertainties that do not show in the scatter of the
-    runs, such as that of a gain, are not in the intervals.
+    `differences_of_groups` has the statistics. What results folders state of their calibration and
+    the scatter of the runs does not show is in the errors; what both share, such as the gain of one
+    instrument, only as far as it acts on them differently (`calibration_terms`).
 
     Examples
     --------
@@ -133,7 +141,7 @@ def compare(
     >>> compare(table, by="surface").points.verdict.tolist()
     ['undecided', 'different']
     """
-    sides = _sides(first, second, by, levels)
+    sides = sides_of(first, second, by, levels)
     kept = [name for name in CONDITION if name != by]
     conditions = matched(sides[0].segments, sides[1].segments, kept)
     if not conditions:
@@ -144,7 +152,9 @@ def compare(
     same = [_all_same(condition, *sides) for condition in conditions]
     alpha = (1 - LEVEL) / max(1, pairs)
     tested = [condition for condition, is_same in zip(conditions, same, strict=True) if not is_same]
-    by_chance = _tested(tested, margin, alpha) if tested else None
+    terms = [calibration_terms(c, sides[0].folder, sides[1].folder) for c in conditions]
+    own = [part for part, is_same in zip(terms, same, strict=True) if not is_same]
+    by_chance = _tested(tested, own, margin, alpha) if tested else None
     points = [_points_of_same(c) for c, is_same in zip(conditions, same, strict=True) if is_same]
     if by_chance is not None:
         points.append(by_chance[1])
@@ -154,89 +164,21 @@ def compare(
     return Comparison(
         names=(sides[0].name, sides[1].name),
         points=rows,
-        quantities=of_quantities(conditions, same, sides[0].tables, sides[1].tables, by, margin),
+        quantities=of_quantities(
+            conditions, same, [part.terms for part in terms], sides[0].tables, sides[1].tables, by
+        ),
         changes=()
         if second is None or folders[0] is None or folders[1] is None
         else tuple(changes_between(folders[0], folders[1])),
         method=_method(None if by_chance is None else by_chance[0], len(tested), pairs),
+        calibration=terms_text(own) if tested else "",
         margin=margin,
         counts={word: int((rows["verdict"] == word).sum()) for word in dict.fromkeys(rows.verdict)},
         two_folders=two_folders,
     )
 
 
-@dataclass(frozen=True)
-class _Side:
-    name: str
-    segments: pd.DataFrame
-    folder: Folder | None = None
-    tables: dict[str, pd.DataFrame] = field(default_factory=dict)
-
-
-def _sides(
-    first: Compared, second: Compared | None, by: str, levels: Sequence[str]
-) -> tuple[_Side, _Side]:
-    if second is not None:
-        one, two = _side(first, "first"), _side(second, "second")
-        return (one, two) if one.name != two.name else _told_apart(one, two)
-    if not by:
-        raise AnalysisError(
-            "there is nothing to compare with: name a second folder, or say by which column two "
-            "parts of the first differ, e.g. surface"
-        )
-    whole = _side(first, "table")
-    known = (
-        [str(level) for level in dict.fromkeys(whole.segments[by].dropna())]
-        if (by in whole.segments)
-        else []
-    )
-    chosen = list(levels) or known[:2]
-    if len(chosen) != 2:
-        raise AnalysisError(f"two levels of {by} are compared with each other; got {len(chosen)}")
-    halves = [
-        _Side(
-            level,
-            of_level(whole.segments, by, level),
-            whole.folder,
-            {n: t[t[by].astype(str) == level] for n, t in whole.tables.items() if by in t},
-        )
-        for level in chosen
-    ]
-    return halves[0], halves[1]
-
-
-def _told_apart(one: _Side, two: _Side) -> tuple[_Side, _Side]:
-    """Return two folders of one name with what tells them apart."""
-    names = [
-        str(side.folder.path) if side.folder else f"{side.name} ({word})"
-        for side, word in ((one, "first"), (two, "second"))
-    ]
-    sides = [
-        _Side(name, side.segments, side.folder, side.tables)
-        for name, side in zip(names, (one, two), strict=True)
-    ]
-    return sides[0], sides[1]
-
-
-def _side(given: Compared, name: str) -> _Side:
-    if isinstance(given, pd.DataFrame):
-        return _Side(name, segments_of(given, name))
-    folder = open_folder(given.folder if isinstance(given, Results) else given)
-    table = folder.table("friction")
-    if table is None:
-        raise AnalysisError(f"{folder.path}: there is no table of friction: it has no runs")
-    if counting := folder.counting:
-        table = table[table["run"].astype(str).isin(counting)]
-    known = {name: folder.table(name) for name in ("shear_stress", "roughness")}
-    return _Side(
-        folder.name,
-        segments_of(table, folder.path),
-        folder,
-        {name: table for name, table in known.items() if table is not None},
-    )
-
-
-def _all_same(condition: Matched, one: _Side, two: _Side) -> bool:
+def _all_same(condition: Matched, one: Side, two: Side) -> bool:
     """Tell whether the runs of a condition are made of the same raw files in both."""
     if one.folder is None or two.folder is None or one.folder is two.folder:
         return False
@@ -263,9 +205,13 @@ def _points_of_same(condition: Matched) -> pd.DataFrame:
 
 
 def _tested(
-    conditions: Sequence[Matched], margin: str, alpha: float
+    conditions: Sequence[Matched], terms: Sequence[CalibrationTerms], margin: str, alpha: float
 ) -> tuple[Differences, pd.DataFrame]:
-    compared = differences_of_groups([(c.first, c.second) for c in conditions], alpha=alpha)
+    compared = differences_of_groups(
+        [(c.first, c.second) for c in conditions],
+        not_in_scatter=[part.terms for part in terms],
+        alpha=alpha,
+    )
     limits = margin_of(margin, compared.first)
     words = verdicts(compared, limits, alpha)
     rows, start = [], 0
@@ -348,18 +294,22 @@ def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
     return np.abs(values) * size if "%" in margin else np.full(values.shape, size)
 
 
+_HOW = {
+    PERMUTATION: "runs change their groups, whole, and the largest difference over its error of a "
+    "condition's points tells what chance can do",
+    ROTATION: "the scatter of the runs, turned at random, tells what chance can do at the points "
+    "of a condition together, supposing that runs are normally distributed",
+    HOLM: "Holm's rule, where runs are few and lack speeds",
+}
+
+
 def _method(compared: Differences | None, conditions: int, pairs: int) -> str:
     if compared is None:
         return "the raw data are the same: what differs, the analysis changed"
     points = int(np.isfinite(compared.p_value).sum())
-    how = (
-        "runs change their groups, whole, and the largest difference over its error of a "
-        "condition's points tells what chance can do"
-        if compared.method == "permutation"
-        else "Holm's rule, as there are too few runs for so many conditions to permute them"
-    )
+    how = "; ".join(_HOW[name] for name in dict.fromkeys(compared.methods))
     others = f" and {pairs} comparisons" if pairs > 1 else ""
     return (
-        f"Welch's t of the runs' means at {points} points of {conditions} conditions; 5 % for all "
-        f"of them{others} together: {how}"
+        f"Welch's t of the runs' means at {many(points, 'point')} of "
+        f"{many(conditions, 'condition')}; 5 % for all of them{others} together: {how}"
     )

@@ -99,8 +99,7 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
             figures=(drawn,),
             tables=(_points(compared, end),),
             notes=(
-                "The unit is the run. What its scatter does not show, such as the calibration of "
-                "the force cells, is not in these intervals.",
+                f"The unit is the run; {compared.calibration}." if compared.calibration else "",
             ),
         ),
         Part(

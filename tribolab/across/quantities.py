@@ -18,10 +18,10 @@ _ROUGHNESS = {"rms_roughness": "_m", "rms_slope": ""}
 def of_quantities(
     conditions: Sequence[Matched],
     same: Sequence[bool],
+    terms: Sequence[np.ndarray],
     first: Mapping[str, pd.DataFrame],
     second: Mapping[str, pd.DataFrame],
     by: str = "",
-    margin: str = "",
 ) -> pd.DataFrame:
     """Return mean friction, shear stress and roughness of both, with their differences.
 
@@ -31,12 +31,12 @@ def of_quantities(
         The runs at common speeds.
     same
         Of each whether its raw data are the same: then its difference has no error.
+    terms
+        Of each what the scatter of the runs does not show of its differences (term, point).
     first, second
         Tables of shear stresses and roughness, where there are any.
     by
         Column by which the two differ on purpose.
-    margin
-        As it was stated; where it is a share it is that of these numbers, too.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def of_quantities(
         ``standard_error``, ``low`` and ``high`` at 95 %, ``low_90`` and ``high_90``, all of it in
         SI; ``basis`` says what the error holds.
     """
-    rows = [_mean_friction(c, is_same) for c, is_same in zip(conditions, same, strict=True)]
+    rows = [_mean_friction(*each) for each in zip(conditions, same, terms, strict=True)]
     for name, make in (("shear_stress", _shear_stress), ("roughness", _roughness)):
         if name in first and name in second:
             rows += make(first[name], second[name], by)
@@ -79,16 +79,18 @@ def _row(
     return [quantity, of, *values, float(difference[0]), error, *ends, basis]
 
 
-def _mean_friction(condition: Matched, same: bool) -> list[object]:
+def _mean_friction(condition: Matched, same: bool, terms: np.ndarray) -> list[object]:
     """Mean over the speeds that every run has; else over those of each run."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
-    compared = differences_of_groups([(means[0], means[1])])
+    everywhere = terms.mean(axis=1, keepdims=True)
+    compared = differences_of_groups([(means[0], means[1])], not_in_scatter=[everywhere])
     values = float(compared.first[0]), float(compared.second[0])
     name = "friction_coefficient"
     if same:
         return _row(name, condition.condition, values, 0.0, 1.0, "same raw data")
     error, freedom = float(compared.standard_error[0]), float(compared.degrees_of_freedom[0])
-    return _row(name, condition.condition, values, error, freedom, "scatter of the runs")
+    basis = "scatter of the runs" + (" and calibration" if everywhere.any() else "")
+    return _row(name, condition.condition, values, error, freedom, basis)
 
 
 def _matched_rows(

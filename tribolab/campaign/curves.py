@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import format_exception
@@ -24,6 +24,8 @@ from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from tribolab.io.uncertainty import Known
 
 SLIP = "stick_slip"  # group of the stick-slip over speed
 AS_FOUND = "as_found"  # group of the curve without a person's decisions
@@ -147,7 +149,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     with NETCDF:
         parts = [read_groups(task.folder / n, ("friction", SLIP)) for n in task.data_files]
     frictions = [part["friction"] for part in parts]
-    curve = _with_budget(frictions)
+    curve, known = _with_budget(frictions)
     levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
@@ -177,16 +179,17 @@ def process_curve(task: CurveTask) -> CurveRecord:
         Origin(str(curve.attrs.get("source", "")), str(curve.attrs.get("source_sha256", ""))),
         reason,
         points_found,
-        tuple(budget_rows(curve)),
+        tuple(budget_rows(curve, known)),
         str(curve.attrs["uncertainty_says"]),
     )
 
 
-def _with_budget(frictions: list[xr.Dataset]) -> xr.Dataset:
-    """Combine runs into a curve whose points have their whole uncertainty."""
+def _with_budget(frictions: list[xr.Dataset]) -> tuple[xr.Dataset, Mapping[str, Known]]:
+    """Combine runs into a curve whose points have their whole uncertainty; and what is stated."""
     from tribolab.metrology.budget import uncertainty_budget
 
-    return uncertainty_budget(frictions).data
+    budget = uncertainty_budget(frictions)
+    return budget.data, budget.known
 
 
 def _as_found(task: CurveTask) -> xr.Dataset | None:
@@ -198,7 +201,7 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     wanted = ("friction", FRICTION_AS_FOUND)
     with NETCDF:
         parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
-    return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])
+    return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])[0]
 
 
 def _condition(run: RunOutcome) -> Condition:

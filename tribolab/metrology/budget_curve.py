@@ -14,7 +14,7 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, Scatter, combined, p
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 
 MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
-_ALONE = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own
+EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own
 
 
 class CurveUncertainty(NamedTuple):
@@ -156,5 +156,5 @@ def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
     if "uncertainty_part" not in curve:
         return
     for name in curve["part"].values.astype(str).tolist():
-        if part_name(name) not in _ALONE:
+        if part_name(name) not in EACH_POINT:
             yield name, curve["uncertainty_part"].sel(part=name).values

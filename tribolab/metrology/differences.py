@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
 from tribolab.errors import AnalysisError
+from tribolab.metrology.resampling import (
+    MOST_ROTATED,
+    by_permutation,
+    by_rotation,
+    permutations_will_do,
+)
 
 Array = NDArray[np.float64]
 Groups = Sequence[tuple[Array, Array]]
 
-FEWEST = 4  # runs in each group, from which on permutations of runs can tell at the 5 % level
-_PERMUTATIONS = 4999
-_EXHAUSTIVE = 5000
-_SAME = 1e-9  # relative: rounding does not tell a permutation from itself
-
+PERMUTATION, ROTATION, HOLM = "permutation", "rotation", "Holm"
 DIFFERENT, EQUIVALENT, UNDECIDED = "different", "equivalent", "undecided"
 
 
@@ -40,8 +40,9 @@ class Differences:
         Of each point as one of all of them: that this or a larger one of any point came by chance.
     factor
         Standard errors to each side within which all differences lie together (point).
-    method
-        ``"permutation"`` or ``"Holm"``.
+    methods
+        How the points of each condition were taken together: ``"permutation"``, ``"rotation"`` or
+        ``"Holm"`` (condition).
     """
 
     first: Array
@@ -52,7 +53,7 @@ class Differences:
     p_value: Array
     adjusted_p_value: Array
     factor: Array
-    method: str
+    methods: tuple[str, ...]
 
     def interval(self, level: float) -> tuple[Array, Array]:
         """Return the interval of each point alone that holds the difference at this level."""
@@ -92,8 +93,9 @@ def differences_of_groups(
         For each condition the values of the runs of both groups, (run, point) each; NaN where a
         run has none. The points of all conditions are one family.
     not_in_scatter
-        For each condition the standard uncertainty of the difference that the scatter of the runs
-        does not show (point), e.g. of a gain that the groups do not share.
+        For each condition what the scatter of the runs does not show of the difference, e.g. gains
+        that the groups do not share: one standard uncertainty of each, with its sign, which moves
+        all points at once (term, point).
     alpha
         Chance that any point of the family is called different where none is.
     seed
@@ -112,20 +114,17 @@ def differences_of_groups(
 
     Notes
     -----
-    At each point Welch's t [1]_. Runs change their groups within their condition, whole, so that
-    what binds the points of a run stays in it; the largest \|t\| of the condition's points over
-    these permutations tells which are too large for chance [2]_. Conditions are independent of each
-    other, and Sidak's step-down rule takes their number into account. Where there are fewer than
-    four runs in a group, or too few permutations for so many conditions (of four and four runs
-    there are 70, which is enough for one; of five and five 252, enough for six), Holm's rule
-    adjusts the p values of Student's distribution instead, and the intervals are Bonferroni's. The
-    intervals of permutations are made of the runs' deviations from the means of their groups: a
-    difference that there is must not widen them.
+    At each point Welch's t [1]_. The points of a condition are taken together by permutations of
+    its runs (`by_permutation`) where there are four or more in each group, and enough permutations
+    for so many conditions; else by rotations (`by_rotation`), which suppose that runs are normally
+    distributed. Where runs that are too few to be permuted lack points, Holm's rule adjusts the p
+    values of Student's distribution, and the intervals are Bonferroni's. Conditions are independent
+    of each other, and Sidak's step-down rule takes their number into account. No adjusted p is
+    below that of the point alone.
 
     References
     ----------
     .. [1] Welch (1947), Biometrika 34, 28-35. doi:10.1093/biomet/34.1-2.28
-    .. [2] Westfall and Young (1993), Resampling-based multiple testing, Wiley.
 
     Examples
     --------
@@ -133,31 +132,88 @@ def differences_of_groups(
     >>> first, second = rng.normal(1.0, 0.01, (5, 3)), rng.normal(1.0, 0.01, (5, 3))
     >>> second[:, 1] += 0.1
     >>> compared = differences_of_groups([(first, second)])
-    >>> (compared.adjusted_p_value < 0.05).tolist(), compared.method
-    ([False, True, False], 'permutation')
+    >>> (compared.adjusted_p_value < 0.05).tolist(), compared.methods
+    ([False, True, False], ('permutation',))
     """
     if not groups:
         raise AnalysisError("there is nothing to compare: the two have no condition in common")
-    parts = [_welch(first, second) for first, second in groups]
-    means_a, means_b, squares, freedom = (np.concatenate(part) for part in zip(*parts, strict=True))
-    extra = np.zeros_like(squares) if not_in_scatter is None else np.concatenate(not_in_scatter)
-    error = np.sqrt(squares + extra**2)
-    difference = means_b - means_a
-    score = _ratio(difference, error)
-    p_value = np.asarray(2 * stats.t.sf(np.abs(score), freedom))
-    ends = np.cumsum([first.shape[1] for first, _ in groups])
-    if _enough_permutations(groups, alpha):
-        adjusted, factor = _by_permutation(groups, ends, np.abs(score), alpha, seed)
-        method = "permutation"
-    else:
-        adjusted = holm(p_value)
-        count = max(1, int(np.isfinite(p_value).sum()))
-        factor = np.asarray(stats.t.ppf(1 - alpha / (2 * count), freedom))
-        method = "Holm"
-    adjusted = np.where(np.isfinite(score) | np.isinf(score), adjusted, np.nan)
+    terms = [np.zeros((0, first.shape[1])) for first, _ in groups]
+    if not_in_scatter is not None:
+        terms = [np.asarray(own, dtype=float) for own in not_in_scatter]
+    points = [
+        _points(first, second, own) for (first, second), own in zip(groups, terms, strict=True)
+    ]
+    level = 1 - (1 - alpha) ** (1 / len(groups))
+    told = [
+        _together(*pair, own, at, level, seed)
+        for pair, own, at in zip(groups, terms, points, strict=True)
+    ]
+    alone = [at.p_value for at in points]
+    adjusted = np.concatenate(_step_down([own for own, _, _ in told]))
+    adjusted = np.where(np.isnan(np.concatenate(alone)), np.nan, adjusted)
     return Differences(
-        means_a, means_b, difference, error, freedom, p_value, adjusted, factor, method
+        **{name: np.concatenate([getattr(at, name) for at in points]) for name in _OF_POINTS},
+        adjusted_p_value=np.fmax(adjusted, np.concatenate(alone)),
+        factor=np.concatenate([factor for _, factor, _ in told]),
+        methods=tuple(method for _, _, method in told),
     )
+
+
+@dataclass(frozen=True)
+class _Points:
+    """Welch's numbers of the points of one condition; named as in `Differences`."""
+
+    first: Array
+    second: Array
+    difference: Array
+    standard_error: Array
+    degrees_of_freedom: Array
+    p_value: Array
+
+
+_OF_POINTS = tuple(field.name for field in fields(_Points))
+
+
+def _points(first: Array, second: Array, terms: Array) -> _Points:
+    mean_a, mean_b, square, freedom = _welch(first, second)
+    total = square + (terms**2).sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        freedom = np.where(square > 0, freedom * (total / square) ** 2, freedom)
+    error = np.sqrt(total)
+    score = np.abs(_ratio(mean_b - mean_a, error))
+    p_value = 2 * stats.t.sf(score, freedom)
+    return _Points(mean_a, mean_b, mean_b - mean_a, error, freedom, np.asarray(p_value))
+
+
+def _together(
+    first: Array, second: Array, terms: Array, at: _Points, level: float, seed: int
+) -> tuple[Array, Array, str]:
+    """Return p values of a condition's points as parts of all, the intervals' factor, and how."""
+    if permutations_will_do(len(first), len(second), level):
+        scores = np.abs(_ratio(at.difference, at.standard_error))
+        return *by_permutation(first, second, terms, scores, level, seed), PERMUTATION
+    known = np.isfinite(at.p_value)
+    own, factor = np.ones(known.size), np.full(known.size, np.nan)
+    whole = first[:, known], second[:, known]
+    gaps = not all(np.isfinite(values).all() for values in whole)
+    if known.any() and not gaps and len(first) + len(second) <= MOST_ROTATED:
+        own[known], factor[known] = by_rotation(
+            *whole, terms[:, known], at.p_value[known], at.degrees_of_freedom[known], level, seed
+        )
+        return own, factor, ROTATION
+    count = max(1, int(known.sum()))
+    factor = np.asarray(stats.t.ppf(1 - level / (2 * count), at.degrees_of_freedom))
+    return holm(at.p_value), factor, HOLM
+
+
+def _step_down(own: Sequence[Array]) -> list[Array]:
+    """Return the p values of conditions adjusted for their number, by Sidak's step-down rule."""
+    least = [np.nanmin(part, initial=1.0) for part in own]
+    adjusted, bound = list(own), 0.0
+    for rank, place in enumerate(np.argsort(least, kind="stable").tolist()):
+        adjusted[place] = np.maximum(bound, 1 - (1 - own[place]) ** (len(own) - rank))
+        bound = float(np.nanmin(adjusted[place], initial=1.0))
+    return adjusted
 
 
 def holm(p_values: Array) -> Array:
@@ -233,89 +289,3 @@ def _ratio(difference: Array, error: Array) -> Array:
     """Difference over its error; two values that are the same to the last digit do not differ."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(difference == 0, np.where(np.isnan(error), np.nan, 0.0), difference / error)
-
-
-def _enough_permutations(groups: Groups, alpha: float) -> bool:
-    """Tell whether permutations could call the clearest difference one, in every condition."""
-    if min(len(part) for pair in groups for part in pair) < FEWEST:
-        return False
-    ways = min(math.comb(len(first) + len(second), len(first)) for first, second in groups)
-    return 1 - (1 - 2 / ways) ** len(groups) <= alpha
-
-
-def _by_permutation(
-    groups: Groups, ends: NDArray[np.int64], scores: Array, alpha: float, seed: int
-) -> tuple[Array, Array]:
-    """Return adjusted p values, and the factor of the intervals that hold all points."""
-    rng = np.random.default_rng(seed)
-    own, factor = np.empty_like(scores), np.empty_like(scores)
-    level = (1 - alpha) ** (1 / len(groups))
-    places = np.split(np.arange(scores.size), ends[:-1])
-    for place, (first, second) in zip(places, groups, strict=True):
-        chosen = _choices(len(first), len(second), rng)
-        own[place] = _share_above(_largest(np.concatenate([first, second]), chosen), scores[place])
-        about = np.concatenate([_about_mean(first), _about_mean(second)])
-        factor[place] = np.quantile(_largest(about, chosen[1:]), level, method="higher")
-    least = np.array([np.min(own[place], initial=1.0) for place in places])
-    adjusted, bound = np.empty_like(own), 0.0
-    for rank, number in enumerate(np.argsort(least, kind="stable")):
-        place, left = places[number], len(groups) - rank
-        adjusted[place] = np.maximum(bound, 1 - (1 - own[place]) ** left)
-        bound = float(np.min(adjusted[place], initial=1.0))
-    return adjusted, factor
-
-
-def _about_mean(values: Array) -> Array:
-    with np.errstate(invalid="ignore", divide="ignore"):
-        known = np.isfinite(values)
-        return values - np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
-
-
-def _largest(values: Array, chosen: NDArray[np.bool_]) -> Array:
-    """Largest absolute t of all points for each choice of the runs of the first group."""
-    return _scores(values, chosen).max(axis=1, initial=0.0)
-
-
-def _choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Return which runs make the first group in each permutation; first as they did."""
-    if math.comb(first + second, first) <= _EXHAUSTIVE:
-        return _all_choices(first, second)
-    return _drawn_choices(first, second, rng)
-
-
-def _all_choices(first: int, second: int) -> NDArray[np.bool_]:
-    picks = np.array(list(itertools.combinations(range(first + second), first)))
-    chosen = np.zeros((len(picks), first + second), dtype=bool)
-    np.put_along_axis(chosen, picks, True, axis=1)
-    return chosen
-
-
-def _drawn_choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    order = rng.random((1 + _PERMUTATIONS, first + second)).argsort(axis=1)
-    chosen = order < first
-    chosen[0] = np.arange(first + second) < first
-    return chosen
-
-
-def _scores(values: Array, chosen: NDArray[np.bool_]) -> Array:
-    """Absolute t of each point for each choice of the runs of the first group."""
-    known = np.isfinite(values)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        middle = np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
-        about = np.where(known, values - middle, 0.0)
-        count, total, square = known.astype(float), about, about**2
-        parts = []
-        for group in (chosen.astype(float), (~chosen).astype(float)):
-            n, s, q = group @ count, group @ total, group @ square
-            spread = np.maximum(q - s**2 / n, 0.0) / (n - 1) / n
-            parts.append((s / n, np.where(n < 2, np.nan, spread)))
-        (mean_a, square_a), (mean_b, square_b) = parts
-        scores = np.abs(mean_b - mean_a) / np.sqrt(square_a + square_b)
-    return np.nan_to_num(scores, nan=0.0, posinf=np.inf)
-
-
-def _share_above(largest: Array, scores: Array) -> Array:
-    """Share of the permutations in which some point was as far off as each score."""
-    ordered = np.sort(largest)
-    bound = np.where(np.isfinite(scores), scores * (1 - _SAME), scores)
-    return 1 - np.searchsorted(ordered, bound, side="left") / ordered.size

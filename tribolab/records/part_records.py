@@ -36,11 +36,12 @@ _PART = Columns(
     {
         "sliding_speed_m_s": "",
         "part": "name of the input, or of the scatter",
+        "varies": "with what it takes another value, as stated; empty for the scatter",
         "contribution": "by how much one standard uncertainty of it moves the coefficient, signed",
         "share": "of the variance",
         "dof": "degrees of freedom; null where they are without limit",
     },
-    texts=("part",),
+    texts=("part", "varies"),
     known=("sliding_speed_m_s",),
     row="one part of the uncertainty of one point",
 )

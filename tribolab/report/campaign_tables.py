@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _CHECK = ("check", "variable", "status", "value", "unit", "message")
 _POINT = (*tables.LABELS, "sliding_speed_m_s", "friction_coefficient")
-_PART = (*tables.LABELS, "sliding_speed_m_s", "part", "contribution", "share", "dof")
+_PART = (*tables.LABELS, "sliding_speed_m_s", "part", "varies", "contribution", "share", "dof")
 _SEGMENT = (*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
 
 
