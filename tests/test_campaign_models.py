@@ -306,6 +306,7 @@ def described(residual, **attrs):
     data = {
         "friction_coefficient": 1 + residual,
         "friction_coefficient_residual": residual,
+        "friction_coefficient_residual_u": np.full(residual.size, 0.003),
         "friction_coefficient_sem": np.full(residual.size, 0.003),
         "used": np.ones(residual.size),
     }

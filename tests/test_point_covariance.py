@@ -1,10 +1,15 @@
 """Errors that points share: the covariance of a curve in fits and in the verdict on a model."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.interpolate import CubicSpline
 
 import tribolab as tl
+from tribolab.errors import AnalysisError
+from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.point_covariance import PointErrors
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
@@ -103,3 +108,83 @@ def test_glycerol_at_half_a_degree_reaches_the_points_by_the_speed(bare, truth):
     told = misfit_numbers(data, model, mu - thinner)
     untold = misfit_numbers(data, model.assign_attrs(abscissa_error=0.0), mu - thinner)
     assert untold["model_misfit_p_value"] < 1e-4 < told["model_misfit_p_value"]
+
+
+COARSE = np.geomspace(1e-6, 1e-2, 10)
+RELATIVE = {"load": 0.05, "radius": 0.05, "youngs_modulus": 0.05}
+
+
+@pytest.fixture(scope="module")
+def inputs():
+    return model_inputs(*GIVEN, COARSE, RELATIVE, cells=100)
+
+
+def test_what_load_radius_and_modulus_move_is_what_a_curve_of_other_ones_shows(inputs):
+    contact, psd, eta, load = GIVEN
+    stress, step = 0.84e6, 0.05
+    height = stribeck_curve(*GIVEN, stress, COARSE, cells=100).friction_coefficient.values
+    moved = dict(zip(RELATIVE, moved_friction(inputs, stress, COARSE), strict=True))
+    for name, expected in moved.items():
+        ends = []
+        for factor in (1 + step, 1 - step):
+            body, force = contact, load
+            if name == "load":
+                force = factor * load
+            else:
+                body = dataclasses.replace(contact, **{name: factor * getattr(contact, name)})
+            curve = stribeck_curve(body, psd, eta, force, stress, COARSE, cells=100)
+            ends.append(curve.friction_coefficient.values)
+        found = (ends[0] - ends[1]) / 2
+        np.testing.assert_allclose(expected, found, rtol=0.02, atol=2e-4 * height.max())
+
+
+def test_nothing_changes_where_all_forces_grow_alike(inputs, bare):
+    """Viscosity times speed, load, modulus and shear stress together: dimensional analysis."""
+    stress = 0.84e6
+    curve = with_shear_stress(bare, stress)
+    place, at = np.log(bare.sliding_speed.values), np.log(COARSE)
+    by_speed = CubicSpline(place, curve.friction_coefficient.values)(at, 1)
+    by_stress = CubicSpline(place, stress * curve.friction_per_shear_stress.values)(at)
+    by_load, _, by_modulus = moved_friction(inputs, stress, COARSE) / 0.05
+    whole = by_speed + by_stress + by_load + by_modulus
+    assert np.abs(whole).max() < 0.01 * curve.friction_coefficient.values.max()
+
+
+@pytest.mark.parametrize("name", list(RELATIVE))
+def test_a_curve_of_another_input_is_described_where_its_error_is_known(name, inputs, bare):
+    contact, psd, eta, load = GIVEN
+    changed = {name: 1.08 * getattr(contact, name)} if name != "load" else {}
+    body = dataclasses.replace(contact, **changed)
+    force = 1.08 * load if name == "load" else load
+    mu = stribeck_curve(body, psd, eta, force, 0.84e6, SPEED, cells=100).friction_coefficient.values
+    data = measured(mu, np.full(9, 1e-3 * mu.max()), np.zeros((1, 9)))
+    given = {"curve": bare}
+    untold, told = (
+        fit_shear_stress(data, *GIVEN, inputs=some, **given)
+        for some in (None, inputs.sel(model_input=[name]))
+    )
+    assert untold.chi_square_p_value < 1e-4 < 0.05 < told.chi_square_p_value
+    assert abs(told.shear_stress - 0.84e6) < 2 * told.shear_stress_error
+    bars = told.curve.friction_coefficient_residual_u.values
+    assert (bars >= 1e-3 * mu.max() * (1 - 1e-9)).all() and bars.max() > 2e-3 * mu.max()
+
+
+def test_a_verdict_knows_the_errors_of_load_and_radius(truth, inputs):
+    curve = truth[0]
+    mu = curve.friction_coefficient.values
+    part = moved_friction(inputs, 0.84e6, SPEED)
+    model = curve[["friction_coefficient"]]
+    telling = model.assign(model_part=(("model_input", "sliding_speed"), part))
+    seen = mu + 1.2 * part[0]
+    data = measured(seen, np.full(9, 1e-3 * mu.max()), np.zeros((1, 9)))
+    told, untold = (misfit_numbers(data, m, mu - seen) for m in (telling, model))
+    assert untold["model_misfit_p_value"] < 1e-4 < 0.05 < told["model_misfit_p_value"]
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [({"raduis": 0.01}, "did you mean 'radius'"), ({"load": -0.1}, "from 0 to 0.5")],
+)
+def test_inputs_that_are_not_known_are_said(errors, words):
+    with pytest.raises(AnalysisError, match=words):
+        model_inputs(*GIVEN, COARSE, errors)

@@ -82,6 +82,7 @@ _PUBLIC = {
     "sliding_mode": "tribolab.mode.verdict",
     "sliding_modes": "tribolab.mode.several",
     "Mode": "tribolab.mode.model",
+    "model_inputs": "tribolab.fit.model_inputs",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
     "read_modulus": "tribolab.rubber.modulus",
@@ -166,6 +167,7 @@ __all__ = [
     "sliding_mode",
     "sliding_modes",
     "Mode",
+    "model_inputs",
     "model_uncertainty",
     "viscoelastic_friction",
     "read_modulus",
@@ -213,6 +215,7 @@ if TYPE_CHECKING:
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction
     from tribolab.fit.joint.priors import JointPriors
+    from tribolab.fit.model_inputs import model_inputs
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress

@@ -80,6 +80,10 @@ _ROWS = [
     ("tilt_found", "\\alpha", "rad", "tilt of the force cell, found from both directions"),
     ("uncertainty_part", "", "1", "part of the uncertainty of the friction coefficient, signed"),
     ("uncertainty_part_dof", "\\nu", "1", "degrees of freedom of a part of the uncertainty"),
+    ("fluid_part", "", "1", "what an uncertain input moves of the liquid's friction, signed"),
+    ("solid_part", "", "1/Pa", "what an uncertain input moves of the contact area, signed"),
+    ("solid_part_other", "", "1/Pa", "the same with the other theory of the contact area"),
+    ("model_part", "", "1", "part of the uncertainty of the computed friction, signed"),
     ("friction_coefficient_offset", "\\mu_0", "1", "offset of the friction coefficient, removed"),
     # static friction
     ("start_of_sliding", "", "1", "number of the segment that starts"),

@@ -36,7 +36,7 @@ class PointErrors(NamedTuple):
         return PointErrors(self.own[which], self.shared[:, which])
 
     def with_part(self, part: np.ndarray) -> PointErrors:
-        """Return the errors with one more part that all points share (point)."""
+        """Return the errors with one more part that all points share (point), or with several."""
         return PointErrors(self.own, np.vstack([self.shared, part]))
 
     def whitened(self, values: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from scipy.special import comb
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
@@ -45,6 +46,7 @@ def fit_shear_stress(
     spectrum_error: tuple[float, float] | None = None,
     curve: xr.Dataset | None = None,
     abscissa_error: float = 0.0,
+    inputs: xr.Dataset | None = None,
     **model: Any,
 ) -> ShearStressFit:
     """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
@@ -79,6 +81,9 @@ def fit_shear_stress(
     abscissa_error
         Relative standard uncertainty [1] of viscosity times speed, the same along the curve; not
         with a free viscosity, which takes it up.
+    inputs
+        What uncertain load, radius and modulus make of the curve, from `model_inputs`; a modulus
+        that is fitted is left out of it.
     **model
         Further arguments of `stribeck_curve`, such as ``rough_body``.
 
@@ -99,8 +104,10 @@ def fit_shear_stress(
     is known, weights are equal, the error comes from the scatter, and chi-square says nothing.
     An error that all points share cannot be averaged away. It does not move the estimate; it moves
     sigma_f by ``common_error`` times the response of the regression to ``mu``, which is added.
-    What the points share by their calibration, and by the abscissa, is in their covariance, ``C =
-    diag(e^2) + sum c c^T u^2`` with ``c = d mu/d ln(viscosity v)`` for the latter (`PointErrors`):
+    What the points share by their calibration, by the abscissa, and by load, radius and modulus of
+    the model beside them, is in their covariance, ``C = diag(e^2) + sum c c^T u^2`` with ``c =
+    d mu/d ln(viscosity v)`` for the abscissa (`PointErrors`), its diagonal in
+    ``friction_coefficient_residual_u`` of the curve:
     regression, chi-square and the error of sigma_f are those of generalised least squares.
     The errors of neighbouring speeds may go together, since a run's level wanders: how much is
     told by the residuals, and the error bar grows with it (`residual_error`).
@@ -166,10 +173,15 @@ def fit_shear_stress(
     fluid, area = _parts(model_curve)
     area = np.where(area > least, area, 0.0)
     stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
-    if abscissa_error > 0 and "viscosity" not in free:
-        dense = model_curve if curve is None or free else curve
-        steep = _slope(dense, stress, speed)
-        errors = errors.with_part(abscissa_error * steep)
+    dense = model_curve if curve is None or free else curve
+    moved = _moved_by_model(dense, stress, speed, abscissa_error, inputs, free)
+    if moved.size:
+        errors = errors.with_part(moved)
+        if free:  # the least squares are those of the whole covariance
+            best = _profiled(computed, best, mu[used], errors.at(used), used)
+            model_curve = computed(best)
+            fluid, area = _parts(model_curve)
+            area = np.where(area > least, area, 0.0)
         stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
     residual = mu - fluid - stress * area
     freedom = int(used.sum()) - 1 - len(free)
@@ -194,6 +206,7 @@ def fit_shear_stress(
     )
     model_curve = with_shear_stress(model_curve, stress).assign(
         friction_coefficient_residual=("sliding_speed", residual),
+        friction_coefficient_residual_u=("sliding_speed", np.sqrt(np.diag(errors.covariance))),
         used=("sliding_speed", used.astype(int)),
     )
     return ShearStressFit(
@@ -329,6 +342,24 @@ def _slope(curve: xr.Dataset, stress: float, speed: np.ndarray) -> np.ndarray:
     fluid, area = _parts(curve)
     place = np.log(curve["sliding_speed"].values)
     return np.interp(np.log(speed), place, np.gradient(fluid + stress * area, place))
+
+
+def _moved_by_model(
+    curve: xr.Dataset,
+    stress: float,
+    speed: np.ndarray,
+    abscissa_error: float,
+    inputs: xr.Dataset | None,
+    free: Sequence[str],
+) -> np.ndarray:
+    """Return what the errors of the model's own inputs make of friction (part, speed)."""
+    rows = np.zeros((0, speed.size))
+    if abscissa_error > 0 and "viscosity" not in free:
+        rows = np.vstack([rows, abscissa_error * _slope(curve, stress, speed)])
+    if inputs is not None:
+        fixed = ~np.isin(inputs["model_input"].values, list(free))
+        rows = np.vstack([rows, moved_friction(inputs.isel(model_input=fixed), stress, speed)])
+    return rows
 
 
 def _profiled(

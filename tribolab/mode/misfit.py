@@ -22,7 +22,8 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
         Measured curve (sliding_speed); of its errors ``_sem`` and ``uncertainty_part`` count.
     model
         Computed curve (sliding_speed); its attribute ``abscissa_error`` is the relative standard
-        uncertainty of viscosity times speed.
+        uncertainty of viscosity times speed, its ``model_part`` (model_input, sliding_speed) what
+        the errors of load, radius and modulus make of it.
     off
         Computed less measured (sliding_speed); NaN where the model was not computed.
 
@@ -46,14 +47,12 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
         return numbers
     speed = measured["sliding_speed"].values
     errors = PointErrors(own.values.astype(float), shared_errors(measured, speed))
+    place = np.log(model["sliding_speed"].values)
+    moved = list(model["model_part"].values) if "model_part" in model else []
     if (relative := float(model.attrs.get("abscissa_error", 0.0))) > 0:
-        place, computed = (
-            np.log(model["sliding_speed"].values),
-            model["friction_coefficient"].values,
-        )
-        errors = errors.with_part(
-            relative * np.interp(np.log(speed), place, np.gradient(computed, place))
-        )
+        moved.append(relative * np.gradient(model["friction_coefficient"].values, place))
+    for part in moved:
+        errors = errors.with_part(np.interp(np.log(speed), place, part))
     errors = errors.at(fine)
     white = errors.whitened(off[fine])
     freedom = int(fine.sum()) - _FITTED

@@ -209,7 +209,7 @@ def _curve(
 
 
 def _in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
-    """At how many measured speeds friction lies in the model's band, within two errors."""
+    """At how many measured speeds friction lies in the model's band, within its 95 %."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
     place = np.log(band["sliding_speed"].values)
@@ -220,7 +220,9 @@ def _in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
     )
     mu = measured["friction_coefficient"].values
     error = np.zeros(mu.size)
-    if "friction_coefficient_sem" in measured:
+    if "friction_coefficient_U95" in measured:
+        error = np.nan_to_num(measured["friction_coefficient_U95"].values)
+    elif "friction_coefficient_sem" in measured:
         error = 2 * np.nan_to_num(measured["friction_coefficient_sem"].values)
     inside = (mu + error >= low) & (mu - error <= high)
     return {

@@ -77,7 +77,7 @@ def judgement(fit: xr.Dataset) -> str:
     )
     share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
     worst = int(np.argmax(np.abs(off)))
-    error = fit["friction_coefficient_sem"].values[used]
+    error = fit["friction_coefficient_residual_u"].values[used]
     told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _BEYOND * error)
     factor = float(np.exp(np.abs(np.log(mu[told] / (mu - off)[told])).max(initial=0.0)))
     parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max(), factor)]

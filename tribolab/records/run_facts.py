@@ -50,6 +50,7 @@ def facts_of(
         stick_slip=stick_slip_of(slip),
         omitted=tuple(left_out(segments)),
         segments=plain_rows(friction_table(friction)),
+        uncertainty_says=str(friction.attrs.get("uncertainty_says", "")),
         flagged=tuple(flagged_spans(run)),
     )
 

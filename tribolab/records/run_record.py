@@ -136,6 +136,9 @@ class RunFacts:
     value_max: float | None = None
     relative_scatter: Annotated[float | None, means(_SCATTER)] = None
     relative_drift: Annotated[float | None, means(_DRIFT)] = None
+    uncertainty_says: Annotated[
+        str, means("what the uncertainty of its friction does not hold; empty for nothing")
+    ] = ""
     unsteady_segments: Natural = 0
     stick_slip: Waveform | None = None
     sliding_speed_min_m_s: float | None = None

@@ -101,6 +101,11 @@ def write_tables(
         tables.write(made, folder / f"{name}.csv")
 
 
+def _saying(says: str, rows: Iterable[Row]) -> Iterator[Row]:
+    """Give rows with what their uncertainties do not hold."""
+    return (row | {"uncertainty_says": says} for row in rows)
+
+
 def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_Long]:
     in_curves = {name for curve in curves for name in curve.outcome.run_names}
 
@@ -129,10 +134,16 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
     def slip(record: RunRecord) -> Iterable[Row]:
         return record.slip if record.outcome.name in in_curves else ()
 
-    yield _Long("friction.csv", of_runs(lambda run: run.facts.segments), ("run", *_SEGMENT))
+    def segments(record: RunRecord) -> Iterable[Row]:
+        return _saying(record.facts.uncertainty_says, record.facts.segments)
+
+    def points(record: CurveRecord) -> Iterable[Row]:
+        return _saying(record.uncertainty_says, record.points)
+
+    yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
     yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
     yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
-    yield _Long("stribeck.csv", of_curves(lambda curve: curve.points), ("curve", *_POINT))
+    yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
     yield _Long("uncertainty_budget.csv", of_curves(lambda curve: curve.budget), ("curve", *_PART))
     yield _Long("checks.csv", checks, ("run", *_CHECK))
     decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))

@@ -13,6 +13,7 @@ from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.contact.area import other_area
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError
+from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.factors import flow_factors
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from tribolab.fit.shear_stress_fit import ShearStressFit
 
 _PROFILES = 5
+_A_DECADE = 2  # speeds at which it is looked what moves the curve, between them it is smooth
 _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are shown
 _95 = 1.959963984540054
 
@@ -65,9 +67,10 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         except AnalysisError as error:  # recorded: the curve stands without it
             findings.append(Finding("suspect", f"{what}: {explain(error)[0]}"))
 
-    fit = None
+    fit = inputs = None
     try:
-        fit = _fit(model, measured, contact, psd, load, computed, folder)
+        inputs = _inputs(model, points[points > 0], contact, psd, load, body)
+        fit = _fit(model, measured, contact, psd, load, computed, folder, inputs)
     except AnalysisError as error:  # recorded, as above
         findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
     if fit is not None:
@@ -75,8 +78,8 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         _, low, high = _enhancement(model, folder)
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
-        other = _with_other_area(computed)
-        again = _fit(model, measured, contact, psd, load, other, folder)
+        other, moved = _with_other_area(computed), inputs and _with_other_area(inputs)
+        again = _fit(model, measured, contact, psd, load, other, folder, moved)
         groups["fit"] = beside(fit, measured).assign_attrs(
             **bounds,
             area=model.area,
@@ -84,6 +87,8 @@ def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], l
             shear_stress_other_area_Pa=again.shear_stress,
         )
     groups["curve"].attrs["abscissa_error"] = model.abscissa_error
+    if fit is not None and inputs is not None:
+        groups["curve"] = _with_parts(groups["curve"], inputs, max(fit.shear_stress, 0.0))
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
@@ -104,6 +109,7 @@ def _fit(
     load: float,
     computed: xr.Dataset,
     folder: Path,
+    inputs: xr.Dataset | None,
 ) -> ShearStressFit:
     enhancement, low, high = _enhancement(model, folder)
     runs = float(np.median(measured["runs"].values))
@@ -121,12 +127,38 @@ def _fit(
         common_freedom=model.freedom,
         curve=computed,
         abscissa_error=model.abscissa_error,
+        inputs=inputs,
     )
 
 
+def _inputs(
+    model: PlannedModel,
+    speed: np.ndarray,
+    contact: LineContact,
+    psd: xr.Dataset,
+    load: float,
+    body: Arguments,
+) -> xr.Dataset | None:
+    """Return what the errors of load, radius and modulus make of the curve; None without any."""
+    if not model.input_errors or not speed.size:
+        return None
+    decades = np.log10(speed.max() / speed.min())
+    coarse = np.geomspace(speed.min(), speed.max(), int(np.ceil(_A_DECADE * decades)) + 2)
+    return model_inputs(contact, psd, model.viscosity, load, coarse, model.input_errors, **body)
+
+
+def _with_parts(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Dataset:
+    """Add by how much each input moves the computed friction (model_input, sliding_speed)."""
+    moved = moved_friction(inputs, stress, curve["sliding_speed"].values)
+    names = inputs["model_input"].values
+    parts = curve.assign(model_part=(("model_input", "sliding_speed"), moved))
+    return stamp(parts.assign_coords(model_input=names))
+
+
 def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
-    """Give a computed curve the contact area of the other theory; its films stay."""
-    return computed.assign(friction_per_shear_stress=computed["friction_per_shear_stress_other"])
+    """Give a computed curve, or what moves it, the contact area of the other theory."""
+    names = ("friction_per_shear_stress", "solid_part")
+    return computed.assign({n: computed[f"{n}_other"] for n in names if n in computed})
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
@@ -155,7 +187,8 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
     data = curve.rename(friction_coefficient="friction_coefficient_model").assign(
         {
             f"friction_coefficient{end}": points[f"friction_coefficient{end}"]
-            for end in ("", "_std", "_sem")
+            for end in ("", "_std", "_sem", "_u")
+            if f"friction_coefficient{end}" in points
         }
     )
     data["friction_coefficient_residual"] = (

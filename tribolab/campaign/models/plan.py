@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -49,6 +49,8 @@ class PlannedModel:
         Relative standard deviation of a run's friction level, and its degrees of freedom.
     abscissa_error
         Relative standard uncertainty of viscosity times speed.
+    input_errors
+        Those of load, radius and modulus, as far as they are stated.
     missing
         What the campaign knows too little of; "" if a model can be computed.
     source, source_sha256
@@ -70,6 +72,7 @@ class PlannedModel:
     repeatability: float
     freedom: int
     abscissa_error: float = 0.0
+    input_errors: Mapping[str, float] = field(default_factory=dict)
     missing: str = ""
     source: str = ""
     source_sha256: str = ""
@@ -133,6 +136,7 @@ def plan_models(
             viscosity_range=viscosity.bounds,
             youngs_modulus_range=_modulus_range(campaign),
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
+            input_errors=_input_errors(stated, _modulus_range(campaign)),
             settings=settings,
             area=campaign.contact.area,
             leading=first,
@@ -154,6 +158,17 @@ def _modulus_range(campaign: Campaign) -> tuple[float, float] | None:
         return stated
     factor = float(np.exp(_95 * known["standard"]))
     return modulus / factor, modulus * factor
+
+
+def _input_errors(
+    stated: Mapping[str, float], modulus_range: tuple[float, float] | None
+) -> dict[str, float]:
+    """Return the relative standard uncertainties of what the model takes as given."""
+    names = ("load", "radius", "youngs_modulus")
+    errors = {name: stated[name] for name in names if stated.get(name, 0.0) > 0}
+    if modulus_range is not None and "youngs_modulus" not in errors:
+        errors["youngs_modulus"] = float(np.log(modulus_range[1] / modulus_range[0]) / (2 * _95))
+    return errors
 
 
 def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | None) -> str:

@@ -78,7 +78,8 @@ def mixed_curve(
         viscous part is drawn, and the differences are from that.
         Above: points with wide pale bars (standard deviation) and narrow ones (standard error),
         the model as a line, its solid part dashed and its viscous part dotted, dry points open.
-        Below: measured less model, with the standard errors.
+        Below: measured less model, with the standard uncertainties of both where the fit knows
+        them, else with the standard errors of the points.
 
     Examples
     --------
@@ -184,7 +185,8 @@ def _measured(
 
 def _misfit(figure: Figure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, what: str) -> None:
     v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
-    error = np.nan_to_num(fit["friction_coefficient_sem"].values)
+    sizes = fit.get("friction_coefficient_residual_u", fit["friction_coefficient_sem"])
+    error = np.nan_to_num(sizes.values)
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     axes.errorbar(
         v, off, error, color=style.colour, marker=style.marker, markersize=3.2,

@@ -238,7 +238,8 @@ def model_figures(known: Friction) -> list[LiveFigure]:
                     title=f"{name}: the model taken apart",
                     note="Above: what the computed friction is made of; its sum stands beside the "
                     "measured points on the first screen. Below: measured less model, with the "
-                    "standard error of the measured point.",
+                    "standard uncertainty of both: of the point, and of what the model takes as "
+                    "given (viscosity, speed, load, radius, modulus) where it is stated.",
                     alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
                     "and the difference between measurement and model.",
                     panels=(

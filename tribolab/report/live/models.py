@@ -72,8 +72,9 @@ def _of_curves(
             bands[name] = Band(data["sliding_speed"].values.tolist(), *edges)
         if row.fit is not None and "fit" in parts:
             fit = _read(row, folder, "fit")
-            names = ("sliding_speed", "friction_coefficient_residual", "friction_coefficient_sem")
-            columns = [fit[n].values.tolist() for n in (*names, "friction_coefficient_model")]
+            off = "friction_coefficient_residual"
+            names = ("sliding_speed", off, f"{off}_u", "friction_coefficient_model")
+            columns = [fit[name].values.tolist() for name in names]
             missed[name] = Missed(*columns)
     return bands, missed
 

@@ -105,7 +105,8 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     Returns
     -------
     PointError
-        ``size``, the curve's own standard error of the mean, with repeats widened for few runs;
+        ``size``, the curve's own standard error of the mean, with repeats widened for few runs, or
+        the standard uncertainty with what is stated of the calibration, where that is larger;
         ``within``, the usual error within one run; ``scatter``, the standard deviation of the
         runs.
 
@@ -116,6 +117,9 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     PointError(size=0.03, holds='between runs', within=0.01, scatter=0.04)
     >>> point_error({"friction_coefficient_sem": 0.01, "runs": 1}, []).holds
     'within the run'
+    >>> calibrated = {"friction_coefficient_sem": 0.01, "friction_coefficient_u": 0.02, "runs": 1}
+    >>> point_error(calibrated, []).holds
+    'within the run, with calibration'
     """
     runs = int(row.get("runs") or 1)
     sem, scatter = row.get("friction_coefficient_sem"), row.get("friction_coefficient_between")
@@ -123,6 +127,12 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     within = math.sqrt(sum(e * e for e in own) / len(own)) if own else None
     size = within if sem is None else sem
     holds = "between runs" if runs > 1 else "within the run"
+    if (
+        size is not None
+        and (u := row.get("friction_coefficient_u")) is not None
+        and u > 1.001 * size
+    ):
+        size, holds = u, f"{holds}, with calibration"
     return PointError(size, holds, within, scatter if runs > 1 else None)
 
 

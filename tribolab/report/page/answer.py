@@ -12,6 +12,7 @@ from tribolab.records.judgement import check_words, is_bad, status_word, why
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import system_name
+from tribolab.report.live.points import point_error
 from tribolab.report.plain import listed, plain_speed, plain_speeds
 from tribolab.words import aligned, force_text, many
 
@@ -176,13 +177,13 @@ def _flat(known: list[Mapping[str, Any]], low: Mapping[str, Any], high: Mapping[
 
 def _held(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return what the errors of a sentence hold, in brackets; "" where none is known."""
-    known = [row for row in rows if row["friction_coefficient_sem"] is not None]
-    held = dict.fromkeys("between runs" if row["runs"] > 1 else "within the run" for row in known)
+    errors = [point_error(row, ()) for row in rows]
+    held = dict.fromkeys(error.holds for error in errors if error.size is not None)
     return f" (± {' and '.join(held)})" if held else ""
 
 
 def _mu(row: Mapping[str, Any]) -> str:
-    return with_error(row["friction_coefficient"], row["friction_coefficient_sem"])
+    return with_error(row["friction_coefficient"], point_error(row, ()).size)
 
 
 def _plateau(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str:

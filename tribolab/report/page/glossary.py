@@ -11,6 +11,8 @@ GLOSSARY: dict[str, str] = {
     "± between runs": "Standard error of the mean of repeated runs of the same surface, medium and "
     "load, widened by Student's t for few runs. The curves and the cards show it wherever there "
     "are repeats.",
+    "± with calibration": "Standard uncertainty with what is stated of gains, tilt, zeros and the "
+    "rest in it, shown where it is larger than the standard error.",
     "± scatter of the runs": "Standard deviation of repeated runs about their mean: how far a "
     "single run lies from the others. It stands behind the friction of one run where it is larger "
     "than the error within the run.",

@@ -1,0 +1,130 @@
+"""What load, radius and modulus that are known within an error make of a computed curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from tribolab.contact.geometry import LineContact
+from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.stamping import labelled, stamp
+from tribolab.units import positive
+
+INPUTS = ("load", "radius", "youngs_modulus")
+_STEP = 0.02  # of ln x, to both sides
+_CELLS = 160  # a change needs no finer mesh than this: its error is on both sides
+_PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
+SOLID = "friction_per_shear_stress"
+_MOVED = ("fluid_part", "solid_part", "solid_part_other")
+
+
+def model_inputs(
+    contact: LineContact,
+    psd: xr.Dataset | None,
+    viscosity: str | float,
+    load: str | float,
+    speed: str | ArrayLike,
+    errors: Mapping[str, float],
+    **model: Any,
+) -> xr.Dataset:
+    """How far a computed curve moves by one standard uncertainty of load, radius and modulus.
+
+    Parameters
+    ----------
+    contact, psd, viscosity, load
+        As for `stribeck_curve`, with one load.
+    speed
+        Sliding speeds [m/s] (sliding_speed), above zero; some three in a decade are enough, since
+        what moves is smooth.
+    errors
+        Relative standard uncertainties [1] of ``"load"``, ``"radius"``, ``"youngs_modulus"``.
+    **model
+        Further arguments of `stribeck_curve`, such as ``area``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``model_input`` and ``sliding_speed``, with their sign: ``fluid_part`` [1] of the
+        liquid's friction; ``solid_part`` [1/Pa] of what the shear stress is multiplied with, and
+        ``solid_part_other`` of that with the other theory of the contact area.
+
+    Raises
+    ------
+    AnalysisError
+        If an input is not known, or its uncertainty is negative or too large to be linear.
+
+    Notes
+    -----
+    Central differences over 4 % of each input, two curves for each. Measured friction is held: it
+    is the force over the force that was recorded, whatever the model takes the load to be. Where
+    all forces grow alike nothing changes: ``d mu/d ln(viscosity v) + d mu/d ln(load) +
+    d mu/d ln(modulus) + sigma_f d mu/d sigma_f = 0``.
+
+    Examples
+    --------
+    >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
+    >>> moved = model_inputs(contact, None, 1.4, 310.0, [1e-2], {"load": 0.01}, cells=100)
+    >>> moved.fluid_part.sel(model_input="load").values.round(5)  # of smooth surfaces
+    array([-0.00011])
+    """
+    for name, error in errors.items():
+        if name not in INPUTS:
+            raise AnalysisError(f"errors: '{shown(name)}' is not known{nearest(name, INPUTS)}")
+        if not 0 <= error < 0.5:
+            raise AnalysisError(
+                f"errors: {name}: a relative standard uncertainty from 0 to 0.5 is wanted; "
+                f"got {error:g}"
+            )
+    force = positive(load, "N/m", "load")
+    speeds = np.atleast_1d(labelled(speed, "sliding_speed"))
+    model = {**model, "cells": min(model.get("cells", _CELLS), _CELLS)}
+    rows = []
+    for name, error in errors.items():
+        ends = []
+        for factor in (np.exp(_STEP), np.exp(-_STEP)):
+            body, at = contact, force
+            if name == "load":
+                at = factor * force
+            else:
+                body = replace(contact, **{name: factor * getattr(contact, name)})
+            ends.append(stribeck_curve(body, psd, viscosity, at, 0.0, speeds, **model))
+        rows.append([error * (above - below) / (2 * _STEP) for above, below in _columns(*ends)])
+    moved = np.reshape(rows, (len(errors), 3, speeds.size))
+    dims = ("model_input", "sliding_speed")
+    return stamp(
+        xr.Dataset(
+            {name: (dims, moved[:, i]) for i, name in enumerate(_MOVED)},
+            {"model_input": np.array(list(errors), dtype=str), "sliding_speed": speeds},
+        )
+    )
+
+
+def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the friction of the liquid and both contact areas, at both ends of an input."""
+    names = (SOLID, f"{SOLID}_other")
+    fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
+    return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]
+
+
+def moved_friction(inputs: xr.Dataset, shear_stress: float, speed: np.ndarray) -> np.ndarray:
+    """Return by how much each input moves friction at speeds (model_input, sliding_speed).
+
+    Parameters
+    ----------
+    inputs
+        From `model_inputs`.
+    shear_stress
+        sigma_f [Pa].
+    speed
+        Speeds [m/s]; between those of `inputs`, over the logarithm.
+    """
+    place = np.log(inputs["sliding_speed"].values)
+    rows = inputs["fluid_part"].values + shear_stress * inputs["solid_part"].values
+    moved = [np.interp(np.log(speed), place, row) for row in rows]
+    return np.array(moved).reshape(len(moved), speed.size)
