@@ -343,7 +343,7 @@ def test_the_words_follow_the_residuals():
     assert judgement(low).startswith(
         "the model does not describe this curve: off by up to a factor of 31"
     )
-    low["friction_coefficient_sem"][-1] = 0.2
+    low["friction_coefficient_residual_u"][-1] = 0.2
     assert is_described(judgement(low))
     none = judgement(described([0.5] * 4, shear_stress_Pa=-1.0))
     assert none.startswith("no shear stress describes this curve")
