@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab import cli
+from tribolab.app.commands.campaign import show_outcome
 from tribolab.app.progress import progress_bars
 from tribolab.campaign.settings.config import Qc
 from tribolab.records.parts import ModelOutcome
@@ -185,7 +186,7 @@ def test_a_mistake_of_ours_is_one_line_and_a_traceback_on_demand(monkeypatch, ca
     assert caught.value.code == 3
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "crashed with ZeroDivisionError at cli.py:" in said
+    assert "crashed with ZeroDivisionError at app/commands/campaign.py:" in said
     assert "--debug" in said
     with pytest.raises(ZeroDivisionError):
         cli.app(["run", str(campaign), "--debug"])
@@ -313,6 +314,6 @@ def test_a_model_that_failed_is_named_and_gives_exit_code_1(
     labels = {"curve": "curve0", "surface": "Sb-R", "medium": "glycerol", "normal_force": 31.0}
     model = ModelOutcome("model_curve0", status=status, reason="no film was found", **labels)
     campaign = made.campaign.model_copy(update={"qc": Qc(fail_on=fail_on)})
-    assert cli.show_outcome(replace(made, models=(model,), campaign=campaign), debug=False) == code
+    assert show_outcome(replace(made, models=(model,), campaign=campaign), debug=False) == code
     said = "tribolab: no model of Sb-R in glycerol at 31 N: no film was found"
     assert (said in capsys.readouterr().err) == (status == "failed")

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 from rich.console import Console
 
-from tribolab import cli
 from tribolab.app import terminal
+from tribolab.app.commands.campaign import show_outcome
 from tribolab.campaign import curves
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
@@ -72,9 +72,9 @@ def test_a_mistake_of_ours_in_a_curve_is_an_error_and_traced_on_demand(
     outcome = steps_of_an_instrument(shared_data, tmp_path, number="1")
     _, missing = results.shown_curves(curves_of(outcome), {})
     assert [notice.severity for notice in missing] == ["error"]
-    assert cli.show_outcome(outcome, debug=False) == 3
+    assert show_outcome(outcome, debug=False) == 3
     assert "Traceback" not in capsys.readouterr().err
-    assert cli.show_outcome(outcome, debug=True) == 3
+    assert show_outcome(outcome, debug=True) == 3
     assert "ZeroDivisionError: float division by zero" in capsys.readouterr().err
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import ClassVar, Generic, Protocol, TypeVar
 
 from tribolab.campaign.engine.stage import Stage
@@ -34,6 +34,8 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
     ----------
     store
         What is known, and where it is written down.
+    tasks
+        What is to be done, unless the stage finds it out itself.
 
     Attributes
     ----------
@@ -46,8 +48,12 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
     kind: ClassVar[str]
     record: ClassVar[type]
 
-    def __init__(self, store: Store) -> None:
-        self._store = store
+    def __init__(self, store: Store, tasks: Sequence[Mine] = ()) -> None:
+        self._store, self._tasks = store, tasks
+
+    def plan(self) -> Sequence[Mine]:
+        """Return what is to be done."""
+        return self._tasks
 
     def known(self, task: Mine, place: int) -> Record | None:
         """Take over the record of a task that is made of the same, if its files are there."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from tribolab.records.annotations import means, one_of
-from tribolab.records.parts import Row
+from tribolab.records.parts import HasStatus, Row
 
 if TYPE_CHECKING:
     from tribolab.fit.joint.comparison import ModelComparison
@@ -60,7 +60,7 @@ class JointCorrelation:
 
 
 @dataclass(frozen=True)
-class JointRecord:
+class JointRecord(HasStatus):
     """The joint fit of all loads of a surface in one liquid.
 
     Parameters
@@ -101,11 +101,6 @@ class JointRecord:
     correlations: tuple[JointCorrelation, ...] = ()
     sentences: tuple[str, ...] = ()
     models: tuple[JointModelRow, ...] = ()
-
-    @property
-    def done(self) -> bool:
-        """Whether there is a fit."""
-        return self.status == "done"
 
 
 def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:

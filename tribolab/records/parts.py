@@ -16,8 +16,19 @@ if TYPE_CHECKING:
 BAD = ("fail", "error", "rejected")  # qualities of a run of which nothing goes into the curves
 
 
+class HasStatus:
+    """What says by its status what it came to."""
+
+    status: str
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results."""
+        return self.status == "done"
+
+
 @dataclass(frozen=True)
-class RunOutcome:
+class RunOutcome(HasStatus):
     """One run: done or failed, and where its data are.
 
     Parameters
@@ -74,11 +85,6 @@ class RunOutcome:
     quality_as_found: str = ""
 
     @property
-    def done(self) -> bool:
-        """Whether there are results of this run."""
-        return self.status == "done"
-
-    @property
     def in_curves(self) -> bool:
         """Whether it goes into the measured curves."""
         left = self.segments - self.segments_rejected
@@ -92,7 +98,7 @@ class RunOutcome:
 
 
 @dataclass(frozen=True)
-class CurveOutcome:
+class CurveOutcome(HasStatus):
     """One measured curve: the runs of one surface, medium and load, taken together.
 
     `status` and `reason` are as for a run; `data_file` is "" for a curve that failed. `crash` is
@@ -108,11 +114,6 @@ class CurveOutcome:
     status: str = "done"
     reason: str = ""
     crash: str = ""
-
-    @property
-    def done(self) -> bool:
-        """Whether there is a curve."""
-        return self.status == "done"
 
 
 Cell = float | int | str | bool | None
@@ -195,7 +196,7 @@ def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
 
 
 @dataclass(frozen=True)
-class SurfaceOutcome:
+class SurfaceOutcome(HasStatus):
     """One surface: its spectrum, contact and adhesion, as far as they could be computed.
 
     Parameters
@@ -231,11 +232,6 @@ class SurfaceOutcome:
     kept: str = ""
 
     @property
-    def done(self) -> bool:
-        """Whether there are results of this surface."""
-        return self.status == "done"
-
-    @property
     def unreadable(self) -> tuple[Finding, ...]:
         """What could not be read or computed."""
         grave = ("fail", "error")
@@ -248,7 +244,7 @@ class SurfaceOutcome:
 
 
 @dataclass(frozen=True)
-class ModelOutcome:
+class ModelOutcome(HasStatus):
     """The model of one measured curve, with the shear stress that was fitted to it.
 
     Parameters
@@ -277,11 +273,6 @@ class ModelOutcome:
     parts: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     kept: str = ""
-
-    @property
-    def done(self) -> bool:
-        """Whether there is a model."""
-        return self.status == "done"
 
 
 PartOutcome = RunOutcome | SurfaceOutcome | ModelOutcome  # what files are read for

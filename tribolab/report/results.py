@@ -119,7 +119,7 @@ def write_report(
     known = [curve.outcome for curve in shown]
     tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
-    figured = perform(Figures(tasks, store), executor, tell)
+    figured = perform(Figures(store, tasks), executor, tell)
     for task, record in zip(tasks, figured, strict=True):
         if isinstance(record, Notice):
             findings.append(record)

@@ -20,6 +20,7 @@ from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.errors import UnitError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.units import to_si
+from tribolab.untyped import Json
 
 _NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
 
@@ -121,19 +122,17 @@ def _share(value: Any) -> Any:
         raise ValueError(f"{shown(repr(value))} is no share; write e.g. 0.1 or '10 %'") from error
 
 
+def _number_or_text(example: str, **limits: float) -> WithJsonSchema:
+    text: Json = {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": [example]}
+    return WithJsonSchema({"anyOf": [{"type": "number", **limits}, text]})
+
+
 # a part of something, below one half: its two ends may be cut off
 ShareOfEnds = Annotated[
     float,
     Field(ge=0, lt=0.5),
     BeforeValidator(_share),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "number", "minimum": 0, "exclusiveMaximum": 0.5},
-                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["10 %"]},
-            ]
-        }
-    ),
+    _number_or_text("10 %", minimum=0, exclusiveMaximum=0.5),
 ]
 
 
@@ -142,14 +141,7 @@ MiddleShare = Annotated[
     float,
     Field(gt=0, le=1),
     BeforeValidator(_share),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "number", "exclusiveMinimum": 0, "maximum": 1},
-                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["40 %"]},
-            ]
-        }
-    ),
+    _number_or_text("40 %", exclusiveMinimum=0, maximum=1),
 ]
 
 
@@ -158,14 +150,7 @@ ShareOfMass = Annotated[
     float,
     Field(ge=0, le=1),
     BeforeValidator(_share),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "number", "minimum": 0, "maximum": 1},
-                {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["1 %"]},
-            ]
-        }
-    ),
+    _number_or_text("1 %", minimum=0, maximum=1),
 ]
 
 

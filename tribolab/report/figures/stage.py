@@ -73,27 +73,11 @@ What = TypeVar("What", bound=Planned)
 
 
 class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
-    """The stage of the figures.
-
-    Parameters
-    ----------
-    tasks
-        What is to be drawn.
-    store
-        What is known, and where it is written down.
-    """
+    """The stage of the figures."""
 
     name = "figures"
     kind = "figure"
     record = FigureRecord
-
-    def __init__(self, tasks: Sequence[FigureTask], store: Store) -> None:
-        super().__init__(store)
-        self._tasks = tasks
-
-    def plan(self) -> Sequence[FigureTask]:
-        """Return the figures, each with the checksum of what it is drawn from."""
-        return self._tasks
 
     def linked(self, task: FigureTask, record: FigureRecord) -> bool:
         """Have the picture, its numbers, and its PDF if that is wanted, among the new files."""

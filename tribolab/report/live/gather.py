@@ -63,7 +63,7 @@ def live_figures(
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     models = list(rows.values())
     tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
-    records, findings = parted(perform(LiveFigures(tasks, outcome.store), executor))
+    records, findings = parted(perform(LiveFigures(outcome.store, tasks), executor))
     bands: dict[str, Band] = {}
     missed: dict[str, Missed] = {}
     for record in records:

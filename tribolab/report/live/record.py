@@ -80,27 +80,11 @@ def live_task(
 
 
 class LiveFigures(Recorded[LiveTask, LiveRecord, Notice]):
-    """The stage of the figures that the page draws.
-
-    Parameters
-    ----------
-    tasks
-        What is to be made.
-    store
-        What is known, and where it is written down.
-    """
+    """The stage of the figures that the page draws."""
 
     name = "page"
     kind = "live"
     record = LiveRecord
-
-    def __init__(self, tasks: Sequence[LiveTask], store: Store) -> None:
-        super().__init__(store)
-        self._tasks = tasks
-
-    def plan(self) -> Sequence[LiveTask]:
-        """Return what is to be made."""
-        return self._tasks
 
     @staticmethod
     def work(task: LiveTask) -> LiveRecord:

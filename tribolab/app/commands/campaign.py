@@ -1,0 +1,215 @@
+"""The commands that make a campaign, analyse it, and reproduce the paper."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tribolab.app.progress import progress_bars
+from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
+from tribolab.app.streams import say
+
+if TYPE_CHECKING:
+    from tribolab.campaign.store.outcome import Outcome
+
+
+def demo(
+    folder: Annotated[
+        Path, typer.Argument(help="Where to put it; made if it is not there.")
+    ] = Path("tribolab-demo"),
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Simulate a campaign, analyse it and compare the result with the truth.
+
+    The virtual rig measures the reference system: smooth and sandblasted PMMA cylinders on
+    PDMS rubber, dry and in glycerol, at 13 speeds in repeats. Called again, it analyses the same
+    raw files and redoes only what changed.
+
+        tribolab demo
+
+        tribolab demo /tmp/look
+    """
+    with reported(debug):
+        from tribolab.app.demo import run_demo
+        from tribolab.app.terminal import truth_lines
+
+        with progress_bars(quiet) as progress:
+            outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
+        code = show_outcome(outcome, debug)
+        for line in truth_lines(compared, outcome):
+            say(line)
+    raise typer.Exit(code)
+
+
+def reproduce(
+    output: Annotated[
+        Path,
+        typer.Option("--output", "-o", help="Folder of the results; files of yours in it stay."),
+    ] = Path("tribolab-paper"),
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Reproduce the reference paper: its figures, and its numbers beside computed ones.
+
+    `paper.html` goes through it section by section and says what was measured by the authors, what
+    is computed here and what is simulated by the virtual rig; `paper.csv` has a row for each of
+    the 58 published numbers, with status and reason: what was put in agrees by construction and is
+    not counted as reproduced. It takes about a minute.
+
+        tribolab reproduce --output /tmp/paper
+    """
+    with reported(debug):
+        from tribolab.app.terminal import paper_lines
+        from tribolab.paper.reproduce import reproduce as reproduce_paper
+
+        with progress_bars(quiet) as progress:
+            made = reproduce_paper(output, jobs=jobs, progress=progress)
+        say("\n".join(paper_lines(made.folder, made.table)))
+
+
+def run(
+    campaign: Annotated[
+        Path, typer.Argument(help="The campaign file (TOML), or the folder with campaign.toml.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="Folder of the results; files of yours in it stay.",
+            show_default="as the campaign file says, else results/ beside it",
+        ),
+    ] = None,
+    jobs: Jobs = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="Address of a Dask scheduler to work on, e.g. tcp://10.0.0.5:8786.",
+            show_default=False,
+        ),
+    ] = None,
+    figures: Annotated[
+        str,
+        typer.Option(help="Figures for publication: all, curves (measured curves only) or none."),
+    ] = "all",
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
+    verify: Annotated[
+        bool,
+        typer.Option(
+            "--verify", help="Read every file to tell what changed, not its size and time only."
+        ),
+    ] = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Analyse a campaign: friction of every run, measured curves, report.
+
+    Raw files are only read. Results appear whole or not at all, and what did not change since
+    the last time is not done again.
+
+        tribolab run campaign.toml
+
+        tribolab run campaign.toml --output /tmp/results --jobs 4
+    """
+    with reported(debug, audience="campaign"):
+        from tribolab.app.run import run_campaign
+
+        with progress_bars(quiet) as progress:
+            outcome = run_campaign(
+                campaign,
+                output=output,
+                jobs=jobs,
+                scheduler=scheduler,
+                progress=progress,
+                figures=figures,
+                pdf=pdf,
+                verify=verify,
+            )
+        code = show_outcome(outcome, debug)
+    raise typer.Exit(code)
+
+
+def simulate(
+    folder: Annotated[Path, typer.Argument(help="Where to; must be new or empty.")],
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 0,
+    repeats: Annotated[int, typer.Option(min=1, help="Runs per surface, medium and load.")] = 2,
+    small: Annotated[
+        bool, typer.Option("--small", help="Two surfaces, one load, three speeds.")
+    ] = False,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Put this fault into one run, or into the scans of one surface (dropouts and "
+            "saturation: of a run, with scan_ before them of scans); may be given again. A wrong "
+            "name lists them.",
+            show_default=False,
+        ),
+    ] = None,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Write a campaign of raw files as the virtual rig measures it, with the truth beside it.
+
+    To learn with, to teach with, and to try an analysis on data whose answer is known.
+
+        tribolab simulate practice --small
+
+        tribolab run practice/campaign.toml
+
+        tribolab simulate faulty --small --fault spikes --fault sign
+    """
+    with reported(debug):
+        from tribolab.campaign.engine.executor import workers
+        from tribolab.rig import simulate_campaign
+
+        with progress_bars(quiet) as progress, workers(jobs) as pool:
+            campaign = simulate_campaign(
+                folder,
+                seed,
+                small=small,
+                n_repeats=repeats,
+                faults=fault or (),
+                executor=pool,
+                progress=progress,
+            )
+        say(f"{campaign} is written; analyse it with\n  tribolab run {campaign}")
+
+
+def show_outcome(outcome: Outcome, debug: bool) -> int:
+    """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
+    from tribolab.app import terminal
+    from tribolab.qc.findings import exit_code
+
+    table = terminal.outcome_table(outcome)
+    if table.row_count:
+        terminal.console().print(table)
+    for line in terminal.outcome_lines(outcome):
+        say(line)
+    for line in terminal.foreign_lines(outcome):
+        say(line)
+    for line in terminal.failure_lines(outcome):
+        say(f"tribolab: {line}", to_stderr=True)
+    crashes = [curve.crash for curve in outcome.curves if curve.crash]
+    for crash in crashes if debug else ():
+        say(crash, to_stderr=True)
+    nothing = bool(outcome.campaign.run) and not outcome.segments
+    if nothing:
+        say("tribolab: no segment of constant speed was found in any run", to_stderr=True)
+    spoilt = (
+        outcome.failed
+        or outcome.lost_decisions
+        or any(surface.unreadable for surface in outcome.surfaces)
+    )
+    if spoilt or outcome.kept or crashes or nothing:
+        return UNREADABLE
+    statuses = {run.quality for run in outcome.runs}
+    statuses.update(*(surface.objections for surface in outcome.surfaces))
+    if outcome.failed_models:
+        statuses.add("fail")  # as the findings call it
+    return exit_code(statuses, outcome.campaign.qc.fail_on)

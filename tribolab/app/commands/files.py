@@ -1,0 +1,190 @@
+"""The commands that look at raw files."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tribolab.app.progress import progress_bars
+from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, fail, reported
+from tribolab.app.streams import say
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+_MANY = 12  # files, from which on it pays to start other processes
+
+
+Instrument = Annotated[
+    str | None,
+    typer.Option(
+        "--instrument",
+        "-i",
+        help="Name of an instrument, or the .toml file that describes it.",
+        show_default="the files tell",
+    ),
+]
+
+
+def check(
+    files: Annotated[
+        list[Path], typer.Argument(help="Runs (the two logs of one are one run) and scans.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
+    fail_on: Annotated[
+        str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
+    ] = "fail",
+    instrument: Instrument = None,
+    repeats: Annotated[
+        bool | None,
+        typer.Option(help="Compare scans as repeats.", show_default="by names but the last number"),
+    ] = None,
+    notes: Annotated[bool, typer.Option("--notes", help="Show notes on sound files.")] = False,
+    everything: Annotated[bool, typer.Option("--all", help="Show what passed, too.")] = False,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Say whether runs and scans are usable, while the sample is still mounted.
+
+    What is wrong, where, how badly, and what to do. Nothing is written.
+
+        tribolab check raw/friction/sb-r_dry_31N_01_*.csv
+
+        tribolab check raw/profiles/*.csv --json --fail-on suspect
+    """
+    with reported(debug):
+        from tribolab.app.quick import importing, plain_arrays_only
+
+        with importing():
+            plain_arrays_only()
+            from tribolab.app import checks
+
+        code = checks.code_of([], fail_on)  # a wrong level is told before the work
+        with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
+            checked = checks.check_files(
+                files, instrument, repeats=repeats, executor=pool, progress=progress
+            )
+        code = checks.code_of(checked, fail_on)
+        if as_json:
+            say(checks.as_json(checked, fail_on))
+        else:
+            checks.show(checked, notes=notes, everything=everything)
+    raise typer.Exit(code)
+
+
+def info(
+    files: Annotated[list[Path], typer.Argument(help="Raw files.")],
+    instrument: Instrument = None,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Show how raw files are understood, before anything is computed.
+
+    tribolab info raw/friction/*.csv
+
+    tribolab info odd.txt --instrument my_tribometer.toml
+    """
+    with reported(debug):
+        from tribolab.app.quick import importing, plain_arrays_only
+
+        with importing():
+            plain_arrays_only()
+            from tribolab.app.file_info import Descriptions
+            from tribolab.campaign.engine.stage import perform
+
+        with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
+            described = perform(Descriptions(files, instrument), pool, progress)
+        for description in described:
+            if description.error:
+                say(f"tribolab: {description.error}", to_stderr=True)
+            else:
+                say("\n".join(description.lines))
+    raise typer.Exit(UNREADABLE if any(description.error for description in described) else 0)
+
+
+def dialect(
+    files: Annotated[
+        list[Path], typer.Argument(help="Raw text files of one instrument that is not known yet.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="The .toml file to write.",
+            show_default="the dialect's name, in this folder",
+        ),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of the dialect: small letters, digits, _.",
+            show_default="from the file's name",
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the .toml file if there is one.")
+    ] = False,
+    ask: Annotated[
+        bool | None,
+        typer.Option(
+            "--ask/--no-ask",
+            help="Ask which column is what; Enter takes the guess.",
+            show_default="in a terminal",
+        ),
+    ] = None,
+    debug: Debug = False,
+) -> None:
+    """Draft the description of an unknown instrument's files from one or several of them.
+
+    Shows the file as it was understood and what was guessed, asks about it in a terminal, writes
+    the description (TOML), tries it on the files, and says which of its lines want to be filled
+    in. What is not in all of the files is optional. The raw files are only read.
+
+        tribolab dialect odd.txt
+
+        tribolab dialect raw/*.csv --output instruments/my_tribometer.toml
+    """
+    with reported(debug):
+        from tribolab.app.dialect import ask_about, try_on
+        from tribolab.app.terminal import console
+        from tribolab.draft.dialect.draft import check_target, save_draft
+        from tribolab.draft.dialect.examples import draft_of_examples
+        from tribolab.draft.dialect.show import print_draft, print_next, print_signals
+
+        draft = draft_of_examples(files, name)
+        target = output or Path(f"{draft.name}.toml")
+        print_draft(draft, console())
+        if draft.toml:
+            check_target(target, force=force)
+        if ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty()):
+            before = draft
+            draft = ask_about(draft, _prompt, say)
+            if draft is not before:
+                print_signals(draft, console())
+        if not draft.toml:
+            fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+        written = save_draft(draft, target, force=force)
+        for line in try_on(files, written, draft.kind):
+            say(line)
+        print_next(draft, written, console())
+
+
+def _prompt(question: str, default: str) -> str:
+    return str(typer.prompt(question, default=default))
+
+
+def _pool(
+    jobs: int | None, files: Sequence[Path]
+) -> contextlib.AbstractContextManager[Executor | None]:
+    """Return processes to look at files in; a few files are looked at here, which is sooner."""
+    from tribolab.campaign.engine.executor import workers
+
+    return workers(1 if jobs is None and len(files) < _MANY else jobs)
