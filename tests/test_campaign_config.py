@@ -8,7 +8,7 @@ import pytest
 from tribolab.campaign.settings.config import SCHEMA_FILE, Campaign, campaign_schema
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.page import PAGE_FILE, campaign_page
-from tribolab.campaign.settings.plan import plan
+from tribolab.campaign.settings.plan import plan_runs
 from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import ConfigError
 from tribolab.io.dialects.find import known_dialects, load_dialect
@@ -124,7 +124,7 @@ def test_a_clock_shift_may_be_negative_and_wants_its_unit(folder):
     def given(shift):
         return WHOLE.replace('"31 N"\n', f'"31 N"\nclock_shift = {shift}\n')
 
-    assert [run.clock_shift for run in plan(load(folder, given('"-420 ms"'))).runs] == [
+    assert [run.clock_shift for run in plan_runs(load(folder, given('"-420 ms"'))).runs] == [
         -0.42,
         -0.42,
         None,
@@ -133,7 +133,7 @@ def test_a_clock_shift_may_be_negative_and_wants_its_unit(folder):
 
 
 def test_files_become_runs_with_names_and_settings(folder):
-    runs, _ = plan(load(folder, WHOLE))
+    runs, _ = plan_runs(load(folder, WHOLE))
     assert [run.name for run in runs] == ["sb-r_glycerol_31N_01", "sb-r_glycerol_31N_02", "cycle"]
     assert [file.name for file in runs[0].files] == [
         "sb-r_glycerol_31N_01_force.csv",
@@ -151,12 +151,12 @@ def test_what_is_not_known_may_be_left_out(folder):
     campaign = load(folder, text)
     assert campaign.contact.radius is None
     assert campaign.surface == ()
-    assert plan(campaign).runs[0].segments == {"trim": 0.10}
+    assert plan_runs(campaign).runs[0].segments == {"trim": 0.10}
 
 
 def test_the_settings_of_a_run_and_no_others_change_its_checksum(folder):
     def sums(text):
-        return [run.config_sha256 for run in plan(load(folder, text)).runs]
+        return [run.config_sha256 for run in plan_runs(load(folder, text)).runs]
 
     before = sums(WHOLE)
     assert sums(WHOLE.replace("PMMA on PDMS", "Another title")) == before
@@ -264,7 +264,7 @@ def test_a_file_in_another_encoding_is_one_clear_error(tmp_path):
 def test_brackets_in_a_real_name_are_no_wildcards(folder):
     (folder / "raw" / "run [1].csv").write_text("x")
     campaign = load(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "run [1].csv"\n')
-    assert [run.name for run in plan(campaign).runs] == ["run_1"]
+    assert [run.name for run in plan_runs(campaign).runs] == ["run_1"]
 
 
 def test_the_same_name_in_two_folders_gives_two_data_files(folder):
@@ -272,7 +272,7 @@ def test_the_same_name_in_two_folders_gives_two_data_files(folder):
         (folder / "raw" / place).mkdir()
         (folder / "raw" / place / "curve_µ.csv").write_text("x")
     campaign = load(folder, '[campaign]\nname = "a"\n[[run]]\nfiles = "**/curve_*.csv"\n')
-    names = [run.name for run in plan(campaign).runs]
+    names = [run.name for run in plan_runs(campaign).runs]
     assert names == ["monday_run_curve_u", "Monday_run_curve_u_2", "tuesday_run_curve_u"]
 
 

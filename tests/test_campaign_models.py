@@ -15,7 +15,7 @@ import xarray as xr
 import tribolab
 from tribolab.app.demo import DemoComparison
 from tribolab.app.terminal import truth_lines
-from tribolab.app.truth.friction import Comparison
+from tribolab.app.truth.friction import TruthComparison
 from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.campaign.models.analysis import beside
 from tribolab.campaign.pipeline import process
@@ -417,7 +417,7 @@ def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):
     fits.to_csv(tmp_path / "tables/shear_stress.csv")
     paper = pd.DataFrame({"status": ["reproduced"]})
     fitted = pd.DataFrame({"relative_difference": [0.01], "within_interval": [1]})
-    runs = Comparison(pd.DataFrame(), 1, 1, 0, 0, 1.0, 1.0)
+    runs = TruthComparison(pd.DataFrame(), 1, 1, 0, 0, 1.0, 1.0)
     compared = DemoComparison(tmp_path, runs, pd.DataFrame(), fitted, paper)
     said = "\n".join(truth_lines(compared, SimpleNamespace(folder=tmp_path)))
     assert "1 of 1 within their 95 % intervals (2 curves of Smooth are not described" in said

@@ -11,7 +11,7 @@ from campaigns import RUNS, copied
 from tribolab.app.run import run_campaign
 from tribolab.campaign.runs import analysis
 from tribolab.campaign.runs.reading import READING, Earlier, earlier_signals, mark_of, note_reading
-from tribolab.campaign.runs.sources import sources_of
+from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.data_files import read_data, write_data
 from tribolab.io.runs import read_run
@@ -143,7 +143,7 @@ def stored(run, tmp_path):
     marked.attrs |= {"quality": "pass", "instrument": "another", "trim": np.float64(0.1)}
     note_reading(run, read, marked)
     write_data({"run": marked}, tmp_path / "run.nc")
-    return read, Earlier(tmp_path / "run.nc", mark_of(run, sources_of(run, read.attrs)))
+    return read, Earlier(tmp_path / "run.nc", mark_of(run, sources_of_run(run, read.attrs)))
 
 
 def planned(*files, **more):

@@ -124,17 +124,17 @@ def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
         guarded.setattr("tribolab.campaign.pipeline.process", refuse)
         assert [one.error for one in run(campaign).failed] == ["ReadError"]
 
-    analyse = runs_module.analyse
+    analyse = runs_module.analyse_run
 
     def out_of_memory(*given):
         raise MemoryError("for now")
 
-    monkeypatch.setattr(runs_module, "analyse", out_of_memory)
+    monkeypatch.setattr(runs_module, "analyse_run", out_of_memory)
     campaign.write_text(campaign.read_text("utf-8").replace("trim = 0.10", "trim = 0.12"), "utf-8")
     assert "MemoryError" in {one.error for one in run(campaign).failed} | {
         one.kept and "MemoryError" for one in run(campaign).runs
     }
-    monkeypatch.setattr(runs_module, "analyse", analyse)
+    monkeypatch.setattr(runs_module, "analyse_run", analyse)
     done = run(campaign)
     assert [(one.name, one.kept) for one in done.runs if one.done] == [(RUNS[2], "")]
 

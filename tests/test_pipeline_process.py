@@ -160,7 +160,7 @@ def test_a_mistake_of_ours_costs_the_run_and_says_where(campaign, tmp_path, monk
     def broken(*given):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr(stage, "analyse", broken)
+    monkeypatch.setattr(stage, "analyse_run", broken)
     outcome = process(load_campaign(campaign), tmp_path)
     assert outcome.curves == ()
     assert outcome.runs[0].error == "ZeroDivisionError"

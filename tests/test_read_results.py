@@ -44,7 +44,7 @@ def test_no_cell_begins_like_a_formula_and_all_come_back(tmp_path):
 
 @given(st.text(st.characters(codec="utf-8", exclude_characters="\r\0"), min_size=1))
 def test_what_is_made_harmless_is_undone(text):
-    assert tables.as_it_was(tables.harmless(text)) == text
+    assert tables.as_it_was(tables.uncomputed(text)) == text
 
 
 def test_what_is_no_folder_of_results_says_so(tmp_path):

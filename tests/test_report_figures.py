@@ -65,7 +65,7 @@ def test_figures_of_the_same_data_are_taken_over_and_not_drawn(made, tmp_path, m
     def refuse(*given, **more):
         raise AssertionError("drawn again")
 
-    monkeypatch.setattr("tribolab.report.figures.stage.draw", refuse)
+    monkeypatch.setattr("tribolab.report.figures.stage.draw_figure", refuse)
     again = the_next(made, tmp_path)
     write_report(again, pdf=True)
     assert drawn(again) == drawn(made) and drawn(made)
@@ -80,13 +80,13 @@ def test_a_figure_whose_data_changed_is_drawn_anew_alone(made, tmp_path, monkeyp
     content = file.read_bytes()
     file.unlink()
     file.write_bytes(content)
-    done, draw = [], figures.draw
+    done, draw = [], figures.draw_figure
 
     def noted(task):
         done.append(task.file)
         return draw(task)
 
-    monkeypatch.setattr(figures, "draw", noted)
+    monkeypatch.setattr(figures, "draw_figure", noted)
     write_report(again)
     assert sorted(done) == [
         *("figures/slip_map.svg", "figures/stribeck_load_1.svg", "figures/stribeck_surface_2.svg"),

@@ -27,7 +27,7 @@ from report_pages import (
 from reporting import made_run
 
 from tribolab.campaign.store.catalogue import Catalogue
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain_data
 from tribolab.report.live.still import first_view
 from tribolab.report.page import page as page_module
 
@@ -539,5 +539,5 @@ def test_a_picture_of_any_kind_has_the_limits_of_the_live_figure(browser, alone,
     )
     with browser.page(alone) as page:
         assert_seen_alike(
-            figure, page.run(drawing.format(json.dumps(plain(figure)), LIMITS.format("place")))
+            figure, page.run(drawing.format(json.dumps(plain_data(figure)), LIMITS.format("place")))
         )

@@ -24,7 +24,7 @@ from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_facts import stick_slip_of
 from tribolab.records.run_record import RunRecord, Waveform
-from tribolab.records.traces import as_text, finer_trace, flagged_spans, trace
+from tribolab.records.traces import finer_trace, flagged_spans, script_json, trace
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.results import write_report
 
@@ -484,7 +484,7 @@ def test_traces_for_the_page_are_the_signals_with_every_extreme(fine):
         resolution = np.ptp(true) / 65534 if name == "ratio" else 1e-3 * np.abs(true[at]) + 1e-9
         assert np.all(np.abs(value - true[at]) <= resolution)
         assert value.max() == pytest.approx(true.max(), rel=1e-4)
-    assert as_text({"a": "</script>"}) == '{"a":"\\u003c/script>"}'
+    assert script_json({"a": "</script>"}) == '{"a":"\\u003c/script>"}'
 
 
 @pytest.mark.parametrize(("jitter", "counted"), [(0.0, True), (0.1, True), (0.9, False)])

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.app.run import run_campaign
-from tribolab.campaign.runs.analysis import analyse
+from tribolab.campaign.runs.analysis import analyse_run
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import planned_runs
 from tribolab.campaign.settings.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
@@ -101,7 +101,7 @@ def test_notes_and_acceptance_move_no_number_and_cost_no_second_analysis(
     original, monkeypatch, name, action
 ):
     [planned] = [run for run in planned_runs(load_campaign(original)) if run.name == name]
-    bare = analyse(planned)
+    bare = analyse_run(planned)
     calls = []
 
     def counted(*given, **options):
@@ -111,7 +111,7 @@ def test_notes_and_acceptance_move_no_number_and_cost_no_second_analysis(
     place = "tribolab.friction.coefficient.coefficient.friction_coefficient"
     monkeypatch.setattr(place, counted)
     decision = Decision(action, "humid day", "A. Person", "2026-11-20")
-    decided = analyse(replace(planned, decisions=(decision,)))
+    decided = analyse_run(replace(planned, decisions=(decision,)))
     assert len(calls) == 1
     for result in (decided.friction_as_found, bare.friction):
         del result.attrs["history"]  # it says when

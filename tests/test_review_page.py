@@ -18,7 +18,7 @@ from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
 from tribolab.io.runs import read_run
-from tribolab.report.page.reviewing import pieces
+from tribolab.report.page.reviewing import decision_texts
 
 NUMBERS = {name: number for number, name in enumerate((FROZEN, SLIPPED, LATE, SOUND), start=1)}
 SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
@@ -257,7 +257,7 @@ FILES = {
 
 @pytest.mark.parametrize(("text", "count"), FILES.values(), ids=FILES)
 def test_a_review_file_is_cut_into_decisions_and_nothing_of_it_is_lost(text, count):
-    head, texts = pieces(text)
+    head, texts = decision_texts(text)
     if count is None:
         assert (head, texts) == ("", [])
     else:

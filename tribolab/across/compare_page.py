@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tribolab import plot
 from tribolab.across.compare import CHANGED, Comparison
-from tribolab.across.page import Part, Picture, Sheet, cells, write_page
+from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.metrology.differences import DIFFERENT, EQUIVALENT, UNDECIDED
 from tribolab.report import tables
 from tribolab.words import many, speed_text
@@ -27,7 +27,7 @@ _HEADS = (
 )
 
 
-def verdict_text(compared: Comparison) -> str:
+def comparison_verdict(compared: Comparison) -> str:
     """Return what came of a comparison in one sentence."""
     points = len(compared.points)
     words = {word: word for word in _VERDICTS}
@@ -59,11 +59,11 @@ def write_comparisons(compared: Sequence[Comparison], folder: Path) -> Path:
     fine = not any(pair.counts.get(word) for pair in compared for word in (DIFFERENT, CHANGED))
     page = folder / "compare.html"
     first = compared[0].names[0]
-    write_page(
+    write_parts(
         page,
         kind="Comparison",
         heading=f"{', '.join(pair.names[1] for pair in compared)} beside {first}",
-        verdict="; ".join(verdict_text(pair) for pair in compared),
+        verdict="; ".join(comparison_verdict(pair) for pair in compared),
         fine=fine,
         parts=parts,
     )

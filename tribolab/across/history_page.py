@@ -7,12 +7,12 @@ from pathlib import Path
 
 from tribolab import plot
 from tribolab.across.history import History, Watched, expectations
-from tribolab.across.page import Part, Picture, Sheet, cells, write_page
+from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.report import tables
 from tribolab.words import many
 
 
-def verdict_text(told: History) -> str:
+def history_verdict(told: History) -> str:
     """Return what came of it in one sentence."""
     charts = many(len(told.charts), "chart")
     if not told.signalling:
@@ -32,11 +32,11 @@ def write_history(told: History, folder: Path) -> Path:
     tables.write_csv(told.table(), folder / "history.csv")
     page = folder / "history.html"
     instruments = dict.fromkeys(chart.instrument for chart in told.charts)
-    write_page(
+    write_parts(
         page,
         kind="History of instruments",
         heading=", ".join(name or "instrument not named" for name in instruments),
-        verdict=verdict_text(told),
+        verdict=history_verdict(told),
         fine=not told.signalling,
         parts=[_summary(told), *(_chart(chart, told) for chart in told.charts)],
     )

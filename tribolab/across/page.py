@@ -92,7 +92,7 @@ def cells(row: Iterable[object], digits: int = 3) -> list[Cell]:
     return made
 
 
-def write_page(
+def write_parts(
     path: Path, *, kind: str, heading: str, verdict: str, fine: bool, parts: Sequence[Part]
 ) -> None:
     """Write a page that opens offline.

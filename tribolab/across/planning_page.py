@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from tribolab import plot
-from tribolab.across.page import Part, Picture, Sheet, cells, write_page
+from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.across.planning import FEW, LONGEST, MeasuringPlan, plan_text
 from tribolab.report import tables
 from tribolab.words import duration, speed_text
@@ -54,7 +54,7 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
     page = folder / "plan.html"
     fine = not plan.table["cheapest_runs"].isna().any()
     verdict = plan_text(plan)
-    write_page(page, kind="Plan", heading=heading, verdict=verdict, fine=bool(fine), parts=(part,))
+    write_parts(page, kind="Plan", heading=heading, verdict=verdict, fine=bool(fine), parts=(part,))
     return page
 
 

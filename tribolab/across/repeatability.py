@@ -265,7 +265,7 @@ def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=heads)
 
 
-def verdict_text(told: Repeatability) -> str:
+def repeatability_verdict(told: Repeatability) -> str:
     """Return what came of it in one sentence."""
     last = told.table.iloc[-1]
     parts = [f"within {100 * last.repeatability_std:.2g} %"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tribolab import plot
-from tribolab.across.page import Part, Picture, Sheet, cells, write_page
-from tribolab.across.repeatability import Repeatability, verdict_text
+from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
+from tribolab.across.repeatability import Repeatability, repeatability_verdict
 from tribolab.report import tables
 
 
@@ -35,11 +35,11 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
     )
     page = folder / "repeatability.html"
     odd = [] if told.mandel.empty else [_mandel(told)]
-    write_page(
+    write_parts(
         page,
         kind="Repeatability",
         heading=heading,
-        verdict=verdict_text(told),
+        verdict=repeatability_verdict(told),
         fine=True,
         parts=(part, *odd),
     )

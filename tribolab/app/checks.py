@@ -240,7 +240,7 @@ def code_of(checked: Sequence[Checked], fail_on: str) -> int:
     return UNREADABLE if any(c.error for c in checked) else code
 
 
-def findings_table(
+def checked_table(
     rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
 ) -> Table:
     """Return objections, graver ones first; notes, or all that was asked, where wanted."""
@@ -267,7 +267,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
             say(f"tribolab: {checked_file.error}", to_stderr=True)
             continue
         say(f"{checked_file.name}: {checked_file.summary}")
-        table = findings_table(checked_file.rows, notes=notes, everything=everything)
+        table = checked_table(checked_file.rows, notes=notes, everything=everything)
         if table.row_count:
             terminal.console().print(table)
     if len(checked) > 1:

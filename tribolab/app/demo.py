@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from tribolab.app.run import run_campaign
-from tribolab.app.truth.friction import Comparison, compare_with_truth
+from tribolab.app.truth.friction import TruthComparison, compare_with_truth
 from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.app.truth.surfaces import compare_surfaces
 from tribolab.campaign.engine.executor import workers
@@ -41,7 +41,7 @@ class DemoComparison:
     """
 
     folder: Path
-    runs: Comparison
+    runs: TruthComparison
     surfaces: pd.DataFrame
     shear_stress: pd.DataFrame
     paper: pd.DataFrame

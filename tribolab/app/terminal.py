@@ -121,14 +121,14 @@ def outcome_lines(outcome: Outcome) -> list[str]:
                 names.append(f"scans of {surface.name}{_because(surface.checks, quality)}")
         lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
         if len(names) > _HANDFUL:
-            file = shown(outcome.folder / "tables" / "findings.csv")
+            file = from_here(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
         lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
-    return [*lines, f"report: {shown(outcome.folder / 'report.html')}"]
+    return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
 
 
 def _decisions(outcome: Outcome) -> list[str]:
@@ -145,7 +145,9 @@ def _decisions(outcome: Outcome) -> list[str]:
     if count := sum(run.segments_rejected for run in of):
         parts.append(f"{Count(count):segment|segments} of {Count(len(of)):run|runs} rejected")
     said = ", ".join(parts) or f"on {Count(len(decided)):run|runs}"
-    return [f"decided by hand: {said}: see {shown(outcome.folder / 'tables' / 'decisions.csv')}"]
+    return [
+        f"decided by hand: {said}: see {from_here(outcome.folder / 'tables' / 'decisions.csv')}"
+    ]
 
 
 def _why(run: RunOutcome, outcome: Outcome) -> str:
@@ -222,16 +224,16 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
     lines.append(f"against the paper: {tell_statuses(compared.paper)}")
-    tables = shown(results / "tables")
+    tables = from_here(results / "tables")
     return [
         *lines,
         "",
-        f"look at   {shown(results / 'report.html')}        the page: open it in a browser",
+        f"look at   {from_here(results / 'report.html')}        the page: open it in a browser",
         f"          {tables}/friction.csv  every segment, a row each",
         f"          {tables}/truth.csv     every segment beside its truth",
         f"          {tables}/paper.csv     the paper's numbers beside computed ones",
-        f"then try  tribolab info {shown(folder)}/raw/friction/*_force.csv",
-        f"          tribolab run {shown(folder)}/campaign.toml  after changing something in it",
+        f"then try  tribolab info {from_here(folder)}/raw/friction/*_force.csv",
+        f"          tribolab run {from_here(folder)}/campaign.toml  after changing something in it",
     ]
 
 
@@ -270,12 +272,12 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     return [
         *lines,
         "",
-        f"look at   {shown(folder / 'paper.html')}  the page: open it in a browser",
-        f"          {shown(folder / 'paper.csv')}   all numbers, a row each",
+        f"look at   {from_here(folder / 'paper.html')}  the page: open it in a browser",
+        f"          {from_here(folder / 'paper.csv')}   all numbers, a row each",
     ]
 
 
-def shown(path: Path) -> str:
+def from_here(path: Path) -> str:
     """Return a path as short as it can be said from here."""
     try:
         return str(path.resolve().relative_to(Path.cwd()))

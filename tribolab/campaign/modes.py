@@ -114,7 +114,7 @@ class Modes(Recorded[ModeTask, ModeRecord, Notice]):
     @staticmethod
     def work(task: ModeTask) -> ModeRecord:
         """Judge one curve."""
-        return judge(task)
+        return judge_mode(task)
 
     def failed(self, task: ModeTask, error: BaseException) -> Notice:
         """Return why a curve could not be judged."""
@@ -122,7 +122,7 @@ class Modes(Recorded[ModeTask, ModeRecord, Notice]):
         return Notice("error", members, f"stick-slip {task.name}", explain(error)[0])
 
 
-def judge(task: ModeTask) -> ModeRecord:
+def judge_mode(task: ModeTask) -> ModeRecord:
     """Weigh what speaks for and against an adhesion-controlled sliding mode.
 
     Raises

@@ -112,7 +112,7 @@ _WORDS = {
 }
 
 
-def shown_sections() -> list[Section]:
+def paper_sections() -> list[Section]:
     """Return the sections of the page: the summary, the paper's, and where it comes from."""
     return [
         Section("summary", "Summary", "paper/summary.html.j2"),

@@ -41,7 +41,7 @@ _SLIP = (
 
 
 @dataclass(frozen=True)
-class PaperFigure:
+class PlannedFigure:
     """A figure of the reproduction.
 
     Parameters
@@ -93,23 +93,23 @@ class PaperFigure:
 
 
 FIGURES = (
-    PaperFigure(
+    PlannedFigure(
         "spectra", "topography", "Surface roughness power spectra", (COMPUTED,),
         "Roughness and slope are the paper's by construction. " + _STAND_IN,
         drawing.spectra, (("rms_roughness", "", ""), ("rms_slope", "", "")),
     ),
-    PaperFigure(
+    PlannedFigure(
         "spectra_from_profiles", "topography", "Spectra from simulated profiles", (SIMULATED,),
         "What the analysis makes of profiles that the virtual profilometer took of the stand-in "
         "surfaces: full where measured, dashed where extrapolated, shaded the 95 % band.",
         drawing.scanned_spectra,
     ),
-    PaperFigure(
+    PlannedFigure(
         "contact_area", "topography", "Contact area without adhesion", (COMPUTED,),
         "Grey: mean Hertz pressures of the four loads. " + _STAND_IN,
         drawing.contact_area, (("contact_area_ratio", "", "0.042 MPa; no adhesion"),),
     ),
-    PaperFigure(
+    PlannedFigure(
         "effective_work", "adhesion", "Effective work of adhesion over magnification", (COMPUTED,),
         "As the pressure vanishes, over the work γ₀ of smooth surfaces: 64 mJ/m² dry (dashed) and "
         "51 mJ/m² in glycerol (full). Zero at magnification 1 means no pull-off force; that only "
@@ -118,7 +118,7 @@ FIGURES = (
         drawing.effective_work,
         (("work_of_adhesion", "", ""), ("macroscopic_work_of_adhesion", "", "")),
     ),
-    PaperFigure(
+    PlannedFigure(
         "adhesive_area", "adhesion", "Contact area with adhesion", (COMPUTED,),
         "Dotted: without adhesion; dashed: dry; full: in glycerol. Grey: mean Hertz pressures. The "
         "paper's text and caption swap full and dotted lines.",
@@ -128,54 +128,54 @@ FIGURES = (
             ("dry_over_glycerol_area", "", ""),
         ),
     ),
-    PaperFigure(
+    PlannedFigure(
         "dry_friction", "dry", "Dry friction over speed", (SIMULATED,),
         _POINTS + " The rig's dry friction has the paper's ratio of shear stresses; its level is "
         "an assumption. " + _RIG,
         drawing.dry_friction,
     ),
-    PaperFigure(
+    PlannedFigure(
         "modulus", "dry", "Viscoelastic modulus of the rubber", (COMPUTED,),
         "A stand-in (1.5 MPa at rest, 1 GPa as a glass): the authors' measured modulus is a "
         "picture without numbers.",
         drawing.modulus,
     ),
-    PaperFigure(
+    PlannedFigure(
         "viscoelastic", "dry", "Viscoelastic contribution to friction", (COMPUTED,),
         "At 0.0417 MPa, without adhesion; dashed: Smooth in complete contact. With the stand-in "
         "modulus, so an order of magnitude only.",
         drawing.viscoelastic,
         (("viscoelastic_friction", "", ""), ("area_enhancement", "", "dry")),
     ),
-    PaperFigure(
+    PlannedFigure(
         "dry_shear_stress", "dry", "Dry shear stress over speed", (SIMULATED, COMPUTED),
         "Simulated friction times nominal pressure over the computed dry contact area with "
         "adhesion; bars: standard deviation while sliding. The ratio is what the rig was given, "
         "but for the areas, which are computed:",
         drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), told=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "dry_traces", "dry", "Dry friction over sliding distance", (SIMULATED,), _SLIP,
         drawing.dry_traces, wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "stribeck_both", "stribeck", "Sb-S and Sb-R at 310 N/m", (COMPUTED, SIMULATED),
         "Lines: mixed-lubrication theory with the printed shear stress. " + _POINTS + " Open: dry. "
         "The rig was given that same theory, so agreement tests the analysis and not the theory. "
         + _RIG,
         drawing.both_rough,
     ),
-    PaperFigure(
+    PlannedFigure(
         "stribeck_sb-s", "stribeck", "Sb-S at all loads", (COMPUTED, SIMULATED),
         "Lines: theory with the printed shear stress of each load. " + _POINTS,
         drawing.loads_less_rough, (("shear_stress", "Sb-S", ""),),
     ),
-    PaperFigure(
+    PlannedFigure(
         "stribeck_sb-r", "stribeck", "Sb-R at all loads", (COMPUTED, SIMULATED),
         "Lines: theory with the printed shear stress of each load. " + _POINTS,
         drawing.loads_rough, (("shear_stress", "Sb-R", ""),),
     ),
-    PaperFigure(
+    PlannedFigure(
         "shear_stress", "stribeck", "Shear stress over load", (COMPUTED, SIMULATED),
         "Open: fitted to the simulated points, for the area without adhesion; filled: divided by "
         "the computed growth of the area by adhesion in glycerol. Bars: 95 %. The authors' own "
@@ -188,7 +188,7 @@ FIGURES = (
             ("corrected_shear_stress_ratio", "", ""),
         ),
     ),
-    PaperFigure(
+    PlannedFigure(
         "smooth_and_theory", "stribeck", "Smooth against theory", (COMPUTED, SIMULATED),
         "Line: theory at 310 N/m with the printed 0.5 MPa. Points: the virtual rig, which follows "
         "what the authors report and their theory does not give: a plateau up to about 10 µm/s.",
@@ -200,37 +200,37 @@ FIGURES = (
             ("boundary_onset_speed", "", ""),
         ),
     ),
-    PaperFigure(
+    PlannedFigure(
         "wet_traces", "stribeck", "Friction in glycerol over sliding distance", (SIMULATED,),
         _SLIP, drawing.wet_traces, wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "sb-r_dry_and_wet", "discussion", "Sb-R, dry and in glycerol", (SIMULATED,),
         f"{_TRACES} Nothing oscillates: what is seen is the rig's noise.",
         drawing.rough_dry_and_wet, wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "smooth_dry_and_wet", "discussion", "Smooth, dry and in glycerol; Sb-R in glycerol",
         (SIMULATED,), _SLIP, drawing.smooth_dry_and_wet, wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "contact_separation", "factors", "Contact pressure over separation", (COMPUTED,),
         "Persson's theory without adhesion. " + _STAND_IN,
         drawing.separation, (("separation_decay_alpha", "", ""),),
     ),
-    PaperFigure(
+    PlannedFigure(
         "factors", "factors", "Flow factors and friction factors", (COMPUTED,),
         "(a) Pressure and shear flow factor, the rough body at rest: over separation in units of "
         "the roughness, the three surfaces nearly share one line. (b) Friction factors.",
         drawing.factors, (("percolation_separation", "", ""),), wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
         "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
         "paper draws Sb-R alone, with a small effect, and finds none to be seen on Sb-S. Here:",
         drawing.friction_factor_effect, told=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),
         "The flat slides to the right: (a) mean separation, (b) pressure in the solid contact, (c) "
         "pressure in the fluid. The paper does not print its speeds; these are ours.",
@@ -241,7 +241,7 @@ FIGURES = (
         ),
         wide=True,
     ),
-    PaperFigure(
+    PlannedFigure(
         "profiles_sb-r", "profiles", "Across the contact of Sb-R at 310 N/m", (COMPUTED,),
         "As above, for Sb-R.",
         drawing.profiles_rough,
@@ -252,7 +252,7 @@ FIGURES = (
         wide=True,
     ),
     *(
-        PaperFigure(
+        PlannedFigure(
             f"error_bars_{name.lower()}", "bars", f"{name} with error bars", (SIMULATED,),
             _BARS, draw,
         )
@@ -275,7 +275,7 @@ class DrawTask:
     data: PaperData
 
 
-def draw(task: DrawTask) -> Json:
+def draw_paper_figure(task: DrawTask) -> Json:
     """Draw a figure into the results and return its record."""
     known = BY_NAME[task.name]
     with _ALONE:

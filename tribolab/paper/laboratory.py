@@ -45,7 +45,7 @@ class Laboratory:
     seed: int = 0
 
 
-def simulate(
+def simulate_laboratory(
     laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
 ) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
@@ -62,7 +62,7 @@ def simulate(
     return load_campaign(file)
 
 
-def analyse(
+def analyse_laboratory(
     campaign: Campaign, folder: Path, executor: Executor | None, progress: Progress
 ) -> tuple[Outcome, tuple[PlannedSurface, ...]]:
     """Take the raw files through the ordinary pipeline.

@@ -16,8 +16,8 @@ from tribolab.campaign.engine.stage import Progress, silent
 from tribolab.campaign.store.staging import staged
 from tribolab.paper import laboratory as lab
 from tribolab.paper.data import SURFACES, PaperData
-from tribolab.paper.document import context_of, paper_document, shown_sections
-from tribolab.paper.figures import FIGURES, DrawTask, draw
+from tribolab.paper.document import context_of, paper_document, paper_sections
+from tribolab.paper.figures import FIGURES, DrawTask, draw_paper_figure
 from tribolab.paper.work import Task, compute
 from tribolab.records.parts import Row
 from tribolab.report import tables
@@ -80,8 +80,8 @@ def reproduce(
     with staged(place) as folder:
         (folder / "figures").mkdir()
         with workers(jobs) as pool:
-            campaign = lab.simulate(laboratory, folder, pool, tell)
-            outcome, scans = lab.analyse(campaign, folder, pool, tell)
+            campaign = lab.simulate_laboratory(laboratory, folder, pool, tell)
+            outcome, scans = lab.analyse_laboratory(campaign, folder, pool, tell)
             table, fits = _computed(outcome, scans, pool, tell)
             data = PaperData(folder, outcome.runs, outcome.curves, fits)
             figures = _drawn(data, pool, tell)
@@ -90,7 +90,7 @@ def reproduce(
         tables.write_csv(fits, folder / "data" / "shear_stress.csv", digits=6)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
-        page = framed("paper/page.html.j2", context_of(document), shown_sections(), folder)
+        page = framed("paper/page.html.j2", context_of(document), paper_sections(), folder)
         (folder / "paper.html").write_text(page, encoding="utf-8")
         tell("page", 1, 1)
     return Reproduction(place, table, document)
@@ -136,7 +136,9 @@ def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
 
 def _drawn(data: PaperData, pool: Executor | None, tell: Progress) -> list[Json]:
     done: dict[str, Json] = {}
-    for task, future in completed(pool, draw, [DrawTask(figure.name, data) for figure in FIGURES]):
+    for task, future in completed(
+        pool, draw_paper_figure, [DrawTask(figure.name, data) for figure in FIGURES]
+    ):
         done[task.name] = future.result()
         tell("figures", len(done), len(FIGURES))
     return [done[figure.name] for figure in FIGURES]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from tribolab.campaign.store.data_files import write_data
-from tribolab.campaign.surfaces.scans import spectra, usable_scans
-from tribolab.campaign.surfaces.stage import sources_of
+from tribolab.campaign.surfaces.scans import spectra_of_scans, usable_scans
+from tribolab.campaign.surfaces.stage import sources_of_surface
 from tribolab.errors import AnalysisError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.io.netcdf import read_netcdf
@@ -86,7 +86,7 @@ def _origin(task: Task) -> dict[str, str]:
     """
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
-        return named_sources(sources_of(task.scans)) | {"config_sha256": sha256_of(config)}
+        return named_sources(sources_of_surface(task.scans)) | {"config_sha256": sha256_of(config)}
     constants = (xu2026.system, xu2026.surface(task.surface))
     config = {"constants": [asdict(constant) for constant in constants], "forces": task.forces}
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
@@ -105,7 +105,7 @@ def _spectrum(task: Task) -> Computed:
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
-    return spectra(task.scans, checked.scans, _LOWEST_WAVENUMBER)[0], []
+    return spectra_of_scans(task.scans, checked.scans, _LOWEST_WAVENUMBER)[0], []
 
 
 def _wet(task: Task) -> Computed:

@@ -41,7 +41,7 @@ def page_trace(
     """Return what the page draws of a run; parameters as of `trace` and `finer_trace`."""
     shared = shared_parts(run, friction)
     return PageTrace(
-        as_text(trace(run, segments, friction, points, shared)),
+        script_json(trace(run, segments, friction, points, shared)),
         finer_trace(run, segments, friction, points, fine_size, shared),
     )
 
@@ -165,7 +165,7 @@ def finer_trace(
     shared = shared or shared_parts(run, friction)
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
-        text = as_text(_signals(run, segments, shared, finer))
+        text = script_json(_signals(run, segments, shared, finer))
         if len(text) <= size:
             return text
         finer = int(0.95 * finer * size / len(text))
@@ -300,7 +300,7 @@ def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
     return tuple(word for mask, word in pairs if int(mask) & int(seen))
 
 
-def as_text(data: Any) -> str:
+def script_json(data: Any) -> str:
     """Return data as JSON that may stand in a script element: nothing in it can end that."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

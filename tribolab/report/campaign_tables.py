@@ -23,7 +23,7 @@ from tribolab.report.document.decisions import AS_FOUND
 from tribolab.report.document.document import labels
 from tribolab.report.document.models import (
     ModelRow,
-    curve_table,
+    model_curve_table,
     sensitivity_table,
     shear_stress_table,
 )
@@ -92,7 +92,7 @@ def write_tables(
     if outcome.models:
         every = list(models.values())
         short["shear_stress"] = shear_stress_table(every)
-        short["stribeck_model"] = curve_table(every)
+        short["stribeck_model"] = model_curve_table(every)
         short["model_sensitivity"] = sensitivity_table(every)
     if joints:
         short["joint_fit"] = pd.DataFrame(parameter_table_rows(joints))

@@ -39,14 +39,14 @@ _ACTIVE = tuple("=+-@\t\r\n'＝＋－＠")
 _SIGN = "'"
 
 
-def harmless(cell: Any) -> Any:
+def uncomputed(cell: Any) -> Any:
     r"""Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
 
     Numbers stay as they are, also those written as text.
 
     Examples
     --------
-    >>> harmless("=1+1"), harmless("-3.5e2"), harmless(-3.5), harmless("sb-r")
+    >>> uncomputed("=1+1"), uncomputed("-3.5e2"), uncomputed(-3.5), uncomputed("sb-r")
     ("'=1+1", '-3.5e2', -3.5, 'sb-r')
     """
     if not isinstance(cell, str) or not cell.startswith(_ACTIVE):
@@ -59,7 +59,7 @@ def harmless(cell: Any) -> Any:
 
 
 def as_it_was(cell: Any) -> Any:
-    """Undo `harmless`."""
+    """Undo `uncomputed`."""
     return cell[1:] if isinstance(cell, str) and cell.startswith(_SIGN) else cell
 
 
@@ -74,7 +74,7 @@ def write(table: pd.DataFrame, path: Path) -> None:
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
     """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
 
-    Text that a spreadsheet would compute is made `harmless`; `read` gives it back.
+    Text that a spreadsheet would compute is kept from it, see `uncomputed`; `read` gives it back.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         _append(table, file, header=True, digits=digits)
@@ -142,7 +142,7 @@ def _append(
     table: pd.DataFrame, file: IO[str], *, header: bool = False, digits: int | None = None
 ) -> None:
     float_format = None if digits is None else f"%.{digits}g"
-    safe = _mapped(table, harmless)
+    safe = _mapped(table, uncomputed)
     safe.to_csv(file, index=False, header=header, lineterminator="\n", float_format=float_format)
 
 

@@ -46,7 +46,7 @@ def compare(
     """
     with reported(debug):
         from tribolab.across.compare import compare as compared_with
-        from tribolab.across.compare_page import verdict_text, write_comparisons
+        from tribolab.across.compare_page import comparison_verdict, write_comparisons
         from tribolab.errors import ConfigError
 
         if len(folders) == 1 and not by:
@@ -67,7 +67,7 @@ def compare(
         for pair in made:
             for change in pair.changes:
                 say(f"{change.kind}: {change.what}: {change.first} → {change.second}")
-            say(verdict_text(pair))
+            say(comparison_verdict(pair))
         say(f"page: {page}")
 
 
@@ -96,13 +96,13 @@ def repeatability(
     """
     with reported(debug, audience="campaign"):
         from tribolab.across.repeatability import repeatability as repeated
-        from tribolab.across.repeatability import verdict_text
+        from tribolab.across.repeatability import repeatability_verdict
         from tribolab.across.repeatability_page import write_repeatability
 
         told = repeated(campaign, by)
         name = campaign.resolve().parent.name if campaign.is_file() else campaign.resolve().name
         page = write_repeatability(told, f"Repeatability of {name}", output)
-        say(verdict_text(told))
+        say(repeatability_verdict(told))
         say(f"page: {page}")
 
 
@@ -143,7 +143,7 @@ def history(
     """
     with reported(debug):
         from tribolab.across.history import history as followed
-        from tribolab.across.history_page import verdict_text, write_history
+        from tribolab.across.history_page import history_verdict, write_history
         from tribolab.across.watched import results_below
         from tribolab.metrology.control_charts import DEFAULT_RULES
 
@@ -156,7 +156,7 @@ def history(
             say(f"{name}: calibration due {date} ({due.reason})")
         for text in told.unread:
             say(f"tribolab: {text}", to_stderr=True)
-        say(verdict_text(told))
+        say(history_verdict(told))
         say(f"page: {page}")
     raise typer.Exit(1 if told.signalling else 0)
 

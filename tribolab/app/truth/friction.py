@@ -21,7 +21,7 @@ _HALF = 0.5
 
 
 @dataclass(frozen=True)
-class Comparison:
+class TruthComparison:
     """How well the truth was found.
 
     Parameters
@@ -44,7 +44,7 @@ class Comparison:
     within_3: float
 
 
-def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
+def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
     """Compare a campaign's results with the truth.
 
     Parameters
@@ -56,7 +56,7 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> Comparison:
 
     Returns
     -------
-    Comparison
+    TruthComparison
         A true segment counts as found if one of the same direction covers more than half of
         it; of a run that failed all segments are missed.
 
@@ -143,11 +143,11 @@ def compare_run(
     return table
 
 
-def summary(table: pd.DataFrame) -> Comparison:
+def summary(table: pd.DataFrame) -> TruthComparison:
     """Count what was found, missed and extra, and how often the truth lies within the error."""
     status = table["status"]
     errors = table["error_in_standard_errors"].abs()[status == "found"].dropna()
-    return Comparison(
+    return TruthComparison(
         table=table,
         true=int((status != "extra").sum()),
         found=int((status == "found").sum()),

@@ -35,7 +35,7 @@ _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are show
 _95 = 1.959963984540054
 
 
-def analyse(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
+def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
     """Return the groups of a model's data file, and the findings.
 
     ``curve``: the model over the campaign's speeds; ``fit``: at the measured speeds, beside the

@@ -108,7 +108,7 @@ def process_model(task: ModelTask) -> ModelRecord:
     OutputError
         If the results cannot be written.
     """
-    from tribolab.campaign.models.analysis import analyse
+    from tribolab.campaign.models.analysis import analyse_model
     from tribolab.records.model_rows import model_rows
 
     began = time.monotonic()
@@ -117,7 +117,7 @@ def process_model(task: ModelTask) -> ModelRecord:
         return ModelRecord(failed_model(model, model.missing, status="skipped"))
     curve = model.curve
     try:
-        groups, findings = analyse(model, task.folder)
+        groups, findings = analyse_model(model, task.folder)
         write_data({None: _root(model)} | groups, task.folder / model.data_file)
         adhesion = optional_data(task.folder / model.surface_file, "adhesion_loads")
         rows = model_rows(groups, curve.medium, model.normal_force, adhesion)

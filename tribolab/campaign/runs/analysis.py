@@ -54,7 +54,7 @@ class Analysed(NamedTuple):
         return groups
 
 
-def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
+def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     """Read a run, find its segments and its friction, and check it, with what was decided on it.
 
     Parameters
@@ -89,12 +89,12 @@ def analyse(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
     analysed = Analysed(signals, segments, friction, slip, said.status, *before)
     for data in analysed.groups.values():
-        data.attrs.update(labels_of(run), config_sha256=run.config_sha256)
+        data.attrs.update(run_labels(run), config_sha256=run.config_sha256)
     note_reading(run, read, signals)
     return analysed
 
 
-def labels_of(run: PlannedRun) -> dict[str, str]:
+def run_labels(run: PlannedRun) -> dict[str, str]:
     """Return what every dataset of a run is labelled with."""
     return {"run_name": run.name} | {
         key: value for key in ("surface", "medium", "mount") if (value := getattr(run, key))

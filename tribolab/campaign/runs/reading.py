@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.campaign.runs.sources import sources_of
+from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
 from tribolab.campaign.store.data_files import read_data
 from tribolab.errors import ReadError
@@ -60,7 +60,7 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
     attrs = read.attrs
     if not _is_of_its_files(run, attrs):
         return
-    mark = mark_of(run, sources_of(run, attrs))
+    mark = mark_of(run, sources_of_run(run, attrs))
     changed = {"attrs": _changed(attrs, marked.attrs)} | {
         "variables": {
             str(name): _changed(variable.attrs, marked.variables[name].attrs)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tribolab.untyped import Json
 
 
-def sources_of(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
+def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
     """Return the files of a run with the checksums that were taken while reading."""
     names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
     known = dict(zip(names, sums, strict=False))

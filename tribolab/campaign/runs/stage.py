@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 from tribolab.campaign.engine.stage import Stage
-from tribolab.campaign.runs.analysis import QUALITY, analyse, labels_of
+from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
 from tribolab.campaign.runs.reading import Earlier, mark_of
-from tribolab.campaign.runs.sources import source_of, sources_of
+from tribolab.campaign.runs.sources import source_of, sources_of_run
 from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
@@ -207,7 +207,7 @@ def process_run(task: RunTask) -> RunAnswer:
     began = time.monotonic()
     run = task.run
     try:
-        analysed = analyse(run, task.earlier)
+        analysed = analyse_run(run, task.earlier)
         signals, segments, friction, slip = (
             analysed.signals,
             analysed.segments,
@@ -247,7 +247,7 @@ def process_run(task: RunTask) -> RunAnswer:
         quality_as_found=analysed.quality_as_found,
     )
     zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
-    sources = sources_of(run, signals.attrs)
+    sources = sources_of_run(run, signals.attrs)
     record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts)
     return RunAnswer(record, trace)
 
@@ -297,4 +297,4 @@ def _root(run: PlannedRun, attrs: Json) -> xr.Dataset:
         source_sha256=attrs["source_sha256"],
         config_sha256=run.config_sha256,
     )
-    return xr.Dataset(attrs=labels_of(run) | origin | {QUALITY: attrs[QUALITY]})
+    return xr.Dataset(attrs=run_labels(run) | origin | {QUALITY: attrs[QUALITY]})

@@ -29,7 +29,7 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | f
         if np.isfinite(zeros).any():
             return {OWN: float(np.nanmedian(zeros))}
     if "friction_force_offset" in friction and method.startswith(("none: no pair", "other runs")):
-        return {LENT: as_text(lent)}
+        return {LENT: zeros_text(lent)}
     return {}
 
 
@@ -51,7 +51,7 @@ def zero_of(attrs: Mapping[str, Any], recorded: str, stated: str | None) -> RunZ
     return RunZero(instrument, None if own is None else float(own), lent)
 
 
-def as_text(zeros: Iterable[float]) -> str:
+def zeros_text(zeros: Iterable[float]) -> str:
     """Write zeros so that equal ones are equal text."""
     return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
 
@@ -84,6 +84,6 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
             if other and other.own is not None and zero.instrument == other.instrument != ""
         )
         others = others if len(others) >= FEWEST else ()
-        if as_text(others) != zero.lent:
+        if zeros_text(others) != zero.lent:
             again[name] = others
     return again

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.names import of_names
-from tribolab.campaign.settings.plan import PlannedRun, plan
-from tribolab.campaign.settings.toml_file import opened, settings_path
+from tribolab.campaign.settings.plan import PlannedRun, plan_runs
+from tribolab.campaign.settings.toml_file import open_settings, settings_path
 
 
 def load_campaign(path: str | Path) -> Campaign:
@@ -48,12 +48,12 @@ def load_campaign(path: str | Path) -> Campaign:
 def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     """Read and check a campaign file, and return its runs with it; else as `load_campaign`."""
     missing = "'tribolab demo' makes a campaign to start from"
-    file = opened(settings_path(path, "campaign.toml"), Campaign, "campaign", missing)
+    file = open_settings(settings_path(path, "campaign.toml"), Campaign, "campaign", missing)
     file.content.lies_at(file.path)
     # names first: no file is looked at with an instrument that nobody knows
     if wrong := of_names(file.content):
         raise file.error(wrong)
-    runs, wrong = plan(file.content)
+    runs, wrong = plan_runs(file.content)
     if wrong:
         raise file.error(wrong)
     return file.content, runs

@@ -92,7 +92,7 @@ class Plan(NamedTuple):
     problems: list[Problem]
 
 
-def plan(campaign: Campaign) -> Plan:
+def plan_runs(campaign: Campaign) -> Plan:
     """Resolve the patterns of a campaign into runs, in the order of the campaign file."""
     if not campaign.raw.is_dir():
         what = f"there is no folder {campaign.raw}"
@@ -158,7 +158,7 @@ def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
     ConfigError
         If its patterns match nothing.
     """
-    resolved = plan(campaign)
+    resolved = plan_runs(campaign)
     if resolved.problems:
         text = campaign.file.read_text("utf-8-sig")
         raise ConfigError(message(resolved.problems, campaign.file, text))

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tribolab.campaign.settings.fields import Si, Text
 from tribolab.campaign.settings.problems import Problem, message
-from tribolab.campaign.settings.toml_file import Opened, opened, settings_path
+from tribolab.campaign.settings.toml_file import Opened, open_settings, settings_path
 from tribolab.errors import TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
 from tribolab.untyped import Json
@@ -150,4 +150,4 @@ def review_schema() -> Json:
 
 
 def _opened(path: Path, missing: str = "") -> Opened[Review]:
-    return opened(path, Review, "review", missing)
+    return open_settings(path, Review, "review", missing)

@@ -57,7 +57,7 @@ def settings_path(path: str | Path, name: str) -> Path:
     return (path / name if path.is_dir() else path).absolute()
 
 
-def opened(path: Path, model: type[Model], kind: str, missing: str = "") -> Opened[Model]:
+def open_settings(path: Path, model: type[Model], kind: str, missing: str = "") -> Opened[Model]:
     """Read a file and check it against its model.
 
     Parameters

@@ -17,7 +17,7 @@ _ABOUT = (
 )
 
 
-class Entry(NamedTuple):
+class LedgerEntry(NamedTuple):
     """A file as it was written: size [bytes], time of its last change [ns], BLAKE2b of it."""
 
     size: int
@@ -40,7 +40,7 @@ class Ledger:
     """
 
     folder: Path
-    files: dict[str, Entry] = field(default_factory=dict)
+    files: dict[str, LedgerEntry] = field(default_factory=dict)
     folders: frozenset[str] = frozenset()
 
     @classmethod
@@ -48,7 +48,7 @@ class Ledger:
         """Read the marker of a folder; one that is missing or damaged lists nothing."""
         try:
             listed = json.loads((folder / MARKER).read_text(encoding="utf-8"))
-            files = {str(name): Entry(*entry) for name, entry in listed["files"].items()}
+            files = {str(name): LedgerEntry(*entry) for name, entry in listed["files"].items()}
             folders = frozenset(map(str, listed.get("folders", ())))
         except (OSError, ValueError, LookupError, TypeError, AttributeError):
             return cls(folder)
@@ -103,7 +103,7 @@ class Ledger:
             state, before = path.stat(), self.files.get(name)
             same = before and (before.size, before.modified) == (state.st_size, state.st_mtime_ns)
             digest = before.digest if before and same else _digest(path)
-            files[name] = Entry(state.st_size, state.st_mtime_ns, digest)
+            files[name] = LedgerEntry(state.st_size, state.st_mtime_ns, digest)
         listed = {"about": _ABOUT, "files": files, "folders": folders}
         text = json.dumps(listed, indent=0, ensure_ascii=True)
         (folder / MARKER).write_text(text + "\n", encoding="utf-8")

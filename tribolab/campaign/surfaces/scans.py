@@ -162,7 +162,7 @@ def _without_folder(message: str, path: Path) -> str:
     return message.replace(f"{path}: ", "").replace(str(path), path.name)
 
 
-def spectra(
+def spectra_of_scans(
     surface: PlannedSurface, scans: xr.Dataset, q_low: float | None
 ) -> tuple[dict[str, xr.Dataset], list[Finding]]:
     """Remove form, compute the spectra, extrapolate them and take roughness from both.

@@ -121,11 +121,11 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         return SurfaceRecord(SurfaceOutcome(surface.name, (), "skipped", findings=(note,)))
     from tribolab.campaign.surfaces.scans import usable_scans
 
-    sources = sources_of(surface)
+    sources = sources_of_surface(surface)
     checked: CheckedScans | None = None
     try:
         checked = usable_scans(surface)
-        groups, findings = analyse(surface, checked)
+        groups, findings = analyse_surface(surface, checked)
         outcome = SurfaceOutcome(
             name=surface.name,
             files=surface.labels,
@@ -153,7 +153,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
     return SurfaceRecord(outcome, sources, rows, shaping)
 
 
-def analyse(
+def analyse_surface(
     surface: PlannedSurface, checked: CheckedScans
 ) -> tuple[dict[str, xr.Dataset], list[Finding]]:
     """Return the groups of a surface's data file, and the findings.
@@ -164,14 +164,14 @@ def analyse(
         If the scans have no spectrum.
     """
     from tribolab.campaign.surfaces.contact import contact_groups, lowest_wavenumber
-    from tribolab.campaign.surfaces.scans import spectra
+    from tribolab.campaign.surfaces.scans import spectra_of_scans
 
     findings = list(checked.findings)
     q_low = lowest_wavenumber(surface)
     if q_low is None and "q_low" not in surface.roughness:
         text = "the spectrum begins where the scans do: no load and contact tell the width of both"
         findings.append(Finding("note", text))
-    groups, more = spectra(surface, checked.scans, q_low)
+    groups, more = spectra_of_scans(surface, checked.scans, q_low)
     findings += more
     contact, more = contact_groups(surface, groups["psd"])
     return {SCANS: checked.raw} | groups | contact, findings + more
@@ -198,7 +198,7 @@ def _files(surface: PlannedSurface) -> list[tuple[Path, str]]:
     return files if surface.modulus_file is None else [*files, surface.modulus_file]
 
 
-def sources_of(surface: PlannedSurface) -> tuple[Source, ...]:
+def sources_of_surface(surface: PlannedSurface) -> tuple[Source, ...]:
     """Return label, checksum and size of the scans and of the modulus file."""
     return tuple(source_of(path, label) for path, label in _files(surface))
 

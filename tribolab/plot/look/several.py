@@ -13,7 +13,7 @@ Label = str | float
 Results = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
 
 
-def labelled(
+def by_label(
     results: Results, labels: Mapping[str, Sequence[Label]], known: str
 ) -> dict[str, xr.Dataset]:
     """Return results by their labels.
@@ -35,7 +35,7 @@ def labelled(
     Examples
     --------
     >>> data = xr.Dataset({"waveform": (("run", "segment"), [["saw"], ["sine"]])}, {"run": [1, 2]})
-    >>> list(labelled(data, {}, "segment")), list(labelled([data], {"medium": ["dry"]}, "segment"))
+    >>> list(by_label(data, {}, "segment")), list(by_label([data], {"medium": ["dry"]}, "segment"))
     (['1', '2'], ['dry'])
     """
     if isinstance(results, xr.Dataset):

@@ -13,7 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.plot.look.frame import logarithmic
 from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import Label, labelled
+from tribolab.plot.look.several import Label, by_label
 from tribolab.plot.look.style import (
     BLACK,
     DOUBLE_MM,
@@ -92,7 +92,7 @@ def _chosen(
     """Return what to draw by its label."""
     if isinstance(slips, Mapping) and not isinstance(slips, xr.Dataset):
         return dict(slips)
-    return {name: (slip, segment) for name, slip in labelled(slips, labels, "segment").items()}
+    return {name: (slip, segment) for name, slip in by_label(slips, labels, "segment").items()}
 
 
 def _grid(count: int) -> tuple[PaperFigure, list[Axes]]:

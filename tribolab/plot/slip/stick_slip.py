@@ -18,7 +18,7 @@ from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
 from tribolab.plot.look.frame import colours, logarithmic
 from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import Label, Results, labelled, parts
+from tribolab.plot.look.several import Label, Results, by_label, parts
 from tribolab.plot.look.style import (
     BLACK,
     DOUBLE_MM,
@@ -248,7 +248,7 @@ def slip_events(
     >>> len(slip_events({"dry": slip}).axes), len(slip_events([slip, slip], run=[1, 2]).axes)
     (3, 3)
     """
-    every = labelled(slips, labels, "segment")
+    every = by_label(slips, labels, "segment")
     shown = {label: slip for label, slip in every.items() if slip.sizes.get("event", 0)}
     if not shown:
         raise AnalysisError("there is no event to draw")

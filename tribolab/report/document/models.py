@@ -167,7 +167,7 @@ def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     return pd.DataFrame(fits, columns=SHEAR_STRESS)
 
 
-def curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
+def model_curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return all model curves, a row per speed."""
     points = [model.labels | row for model in rows for row in model.curve]
     return pd.DataFrame(points, columns=CURVE)

@@ -90,14 +90,14 @@ class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
     @staticmethod
     def work(task: FigureTask) -> FigureRecord | None:
         """Draw one figure into the results."""
-        return draw(task)
+        return draw_figure(task)
 
     def failed(self, task: FigureTask, error: BaseException) -> Notice:
         """Return why a figure could not be drawn."""
         return Notice("error", "", f"figure {task.title}", explain(error)[0])
 
 
-def draw(task: FigureTask) -> FigureRecord | None:
+def draw_figure(task: FigureTask) -> FigureRecord | None:
     """Draw one figure, and write it with the numbers that it shows."""
     with DRAWING:
         drawn = task.draw(task.folder)

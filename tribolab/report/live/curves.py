@@ -11,7 +11,7 @@ from tribolab.records.parts import CurveOutcome
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, Style, safe
-from tribolab.report.live.points import RunPoint, at_speed, point_error, told
+from tribolab.report.live.points import RunPoint, at_speed, point_error, told_point
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import is_dry, many, number, span, speeds
@@ -123,7 +123,7 @@ def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> S
     for row in curve.points:
         points = at_speed(every, float(row["sliding_speed_m_s"] or 0.0))
         error = point_error(row, points)
-        words.append(told(row, error, points, _briefly(curve.uncertainty_says)))
+        words.append(told_point(row, error, points, _briefly(curve.uncertainty_says)))
         errors.append(error.size)
         targets.append(points[0].run if points else curve.outcome.run_names[0])
     return Series(

@@ -155,20 +155,20 @@ class LiveFigure:
         return names.pop() if len(names) == 1 else ""
 
 
-def plain(value: Any) -> Any:
+def plain_data(value: Any) -> Any:
     """Return a figure as plain data, without what is as usual and with the digits that are seen."""
     if is_dataclass(value) and not isinstance(value, type):
         values = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}
         return {
-            name: plain(item)
+            name: plain_data(item)
             for name, item in values.items()
             if item is not usual[name] and not (isinstance(item, str | tuple | list) and not item)
         }
     if isinstance(value, np.ndarray | list | tuple):
-        return [plain(item) for item in value]
+        return [plain_data(item) for item in value]
     if isinstance(value, np.generic):
-        return plain(value.item())
+        return plain_data(value.item())
     if isinstance(value, float):
         return float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None
     return value

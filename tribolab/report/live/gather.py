@@ -21,7 +21,7 @@ from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveTask, Missed, live_task
-from tribolab.report.live.shown import ShownFigure, shown
+from tribolab.report.live.shown import ShownFigure, shown_figure
 from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
 
@@ -73,7 +73,7 @@ def live_figures(
     known = Friction(curves, points, by_curve, bands, missed, surfaces)
     made = [*card_figures(known), *comparisons(known), *model_figures(known)]
     return [
-        *(shown(figure) for figure in made),
+        *(shown_figure(figure) for figure in made),
         *(figure for record in records for figure in record.figures),
     ], findings
 

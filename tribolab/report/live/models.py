@@ -24,7 +24,7 @@ from tribolab.report.live.figure import (
     thinned,
 )
 from tribolab.report.live.record import Band, LiveRecord, Missed
-from tribolab.report.live.shown import shown
+from tribolab.report.live.shown import shown_figure
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, percent
 
@@ -55,7 +55,7 @@ def record_of_models(
     drawn = [shear_stress(models, colours), sensitivity(models, colours)]
     drawn += _profiles(models, folder)
     drawn.append(_factors(models, folder, colours))
-    figures = tuple(shown(figure) for figure in drawn if figure is not None)
+    figures = tuple(shown_figure(figure) for figure in drawn if figure is not None)
     return LiveRecord(figures, bands, missed)
 
 

@@ -136,7 +136,7 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     return PointError(size, holds, within, scatter if runs > 1 else None)
 
 
-def told(
+def told_point(
     row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], says: str = ""
 ) -> str:
     """Return what the pointer reads at a point of a curve, a line for each thing.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tribolab.records.packed import deflated
-from tribolab.records.traces import as_text
-from tribolab.report.live.figure import LiveFigure, plain
+from tribolab.records.traces import script_json
+from tribolab.report.live.figure import LiveFigure, plain_data
 from tribolab.report.live.still import still
 from tribolab.words import force_text
 
@@ -47,7 +47,7 @@ class ShownFigure:
     still: str
 
 
-def shown(figure: LiveFigure) -> ShownFigure:
+def shown_figure(figure: LiveFigure) -> ShownFigure:
     """Return what the page has of a figure."""
     return ShownFigure(
         figure.id,
@@ -62,6 +62,6 @@ def shown(figure: LiveFigure) -> ShownFigure:
         tuple(map(force_text, figure.loads)),
         len(figure.panels),
         len({curve.label for curve in figure.series if curve.style != "band"}),
-        deflated(as_text(plain(figure)).encode()),
+        deflated(script_json(plain_data(figure)).encode()),
         still(figure),
     )

@@ -23,7 +23,7 @@ from tribolab.report.live.figure import (
     thinned,
 )
 from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown
+from tribolab.report.live.shown import shown_figure
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, number
 
@@ -77,7 +77,7 @@ def record_of_sliding(
         _events(opened),
         _spectrogram(opened),
     ]
-    return LiveRecord(tuple(shown(figure) for figure in figures if figure is not None))
+    return LiveRecord(tuple(shown_figure(figure) for figure in figures if figure is not None))
 
 
 def _lowest(judged: Iterable[Judged]) -> Iterable[Judged]:

@@ -16,7 +16,7 @@ from markupsafe import escape
 
 from tribolab.report.live import marks
 from tribolab.report.live.axes import Scale, scales, ticks
-from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, plain, thinned
+from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, plain_data, thinned
 from tribolab.report.live.marks import Point, coordinate
 from tribolab.words import MINUS, number
 
@@ -90,7 +90,7 @@ def _first(figure: LiveFigure) -> list[Series]:
     for curve in figure.series:
         other = figure.one_load and curve.load is not None and curve.load != figure.loads[0]
         if not other:
-            shown.append(replace(curve, x=plain(curve.x), y=plain(curve.y)))
+            shown.append(replace(curve, x=plain_data(curve.x), y=plain_data(curve.y)))
     return shown
 
 

@@ -341,7 +341,7 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
     return "; ".join(f"{name}, at {listed(loads)}" for name, loads in grouped.items())
 
 
-def oscillating(mode: Mapping[str, Any]) -> str:
+def oscillation_text(mode: Mapping[str, Any]) -> str:
     """Return in how many segments a contact sticks and slips, and how its frequency goes.
 
     Parameters

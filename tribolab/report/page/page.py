@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from tribolab.records.packed import deflated
 from tribolab.records.parts import PageTrace
-from tribolab.records.traces import as_text
+from tribolab.records.traces import script_json
 from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.answer import cards, of_nothing
 from tribolab.report.page.in_short import in_short
@@ -90,14 +90,14 @@ def _context(
     first, rest = parted(grouped_runs(every), _MOST_ROWS)
     context = dict(document) | {
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
-        "left_out": left_out(every),
+        "left_out": omitted_rows(every),
         "places": {run["name"]: place + 1 for place, run in enumerate(every)},
         "cards": cards(document),
         "short": in_short(document),
         "unnamed": of_nothing(document),
         "live": live,
         "decided": document["review"]["entries"] if "review" in document else [],
-        "review": as_text(document["review"]) if "review" in document else "",
+        "review": script_json(document["review"]) if "review" in document else "",
         "groups": first,
         "more_groups": rest,
         "said": grouped_findings(document["findings"]),
@@ -193,7 +193,7 @@ def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[Json]:
     return list(rows.values())
 
 
-def left_out(runs: Sequence[Mapping[str, Any]]) -> list[Json]:
+def omitted_rows(runs: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Return what was left out of all runs, a row per reason, the longest first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, Json] = {}

@@ -51,7 +51,7 @@ def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> Json:
     path = file.parent / REVIEW_FILE
     if not path.exists():
         return data
-    head, texts = pieces(text_of(path, ""))
+    head, texts = decision_texts(text_of(path, ""))
     entries = load_entries(path)
     touched = {run["name"]: list(run["decisions"]) for run in runs}
     rows = []
@@ -73,7 +73,7 @@ def _same(row: Mapping[str, Any], plain: Mapping[str, Any]) -> bool:
     return all(row[key] == value for key, value in plain.items() if key != "run")
 
 
-def pieces(text: str) -> tuple[str, list[str]]:
+def decision_texts(text: str) -> tuple[str, list[str]]:
     r"""Return what stands before the first decision of a review file, and each decision's text.
 
     A decision has the comment lines right above it. If decisions are not written as tables of
@@ -81,9 +81,9 @@ def pieces(text: str) -> tuple[str, list[str]]:
 
     Examples
     --------
-    >>> pieces('# Mine\n\n# late\n[[decision]]\nrun = "a"\n\n[[decision]]\nrun = "b"\n')
+    >>> decision_texts('# Mine\n\n# late\n[[decision]]\nrun = "a"\n\n[[decision]]\nrun = "b"\n')
     ('# Mine\n\n', ['# late\n[[decision]]\nrun = "a"\n\n', '[[decision]]\nrun = "b"\n'])
-    >>> pieces('decision = [{run = "a"}]')
+    >>> decision_texts('decision = [{run = "a"}]')
     ('', [])
     """
     cuts = []

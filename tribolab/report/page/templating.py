@@ -21,7 +21,7 @@ from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.report.live.points import run_error
-from tribolab.report.page.answer import conditions, oscillating
+from tribolab.report.page.answer import conditions, oscillation_text
 from tribolab.report.page.glossary import GLOSSARY, HEADS
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
@@ -81,8 +81,8 @@ def framing(
     names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
     scripts = [asset(name) for name in names]
     started = [*scripts, asset(_LIBRARY)] if draws else scripts
-    hashes = " ".join(f"'{fingerprint(script)}'" for script in started)
-    styles = " ".join(f"'{fingerprint(text)}'" for text in ((style, "") if draws else (style,)))
+    hashes = " ".join(f"'{csp_hash(script)}'" for script in started)
+    styles = " ".join(f"'{csp_hash(text)}'" for text in ((style, "") if draws else (style,)))
     policy = (
         "default-src 'none'; img-src data: blob: 'self' file:; connect-src 'none'; "
         f"base-uri 'none'; form-action 'none'; style-src {styles}; "
@@ -141,7 +141,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "trend_texts": judgement.trend_texts,
         "stress_interval": stress_interval,
         "conditions": conditions,
-        "oscillating": oscillating,
+        "oscillating": oscillation_text,
         "is_described": is_described,
         "is_steep": is_steep,
         "hurst_verdict": hurst_verdict,
@@ -159,7 +159,7 @@ def asset(name: str) -> str:
     return (files("tribolab.report") / "assets" / name).read_text(encoding="utf-8")
 
 
-def fingerprint(text: str) -> str:
+def csp_hash(text: str) -> str:
     """Return what a content security policy calls a piece of inline code."""
     digest = hashlib.sha256(text.encode()).digest()
     return "sha256-" + base64.b64encode(digest).decode()
