@@ -26,6 +26,7 @@ from tribolab.records.run_facts import stick_slip_of
 from tribolab.records.run_record import RunRecord, Waveform
 from tribolab.records.traces import finer_trace, flagged_spans, script_json, trace
 from tribolab.records.wording import plain_value, with_error
+from tribolab.report.campaign_tables import TABLES
 from tribolab.report.results import write_report
 
 SCHEMA = json.loads(
@@ -79,6 +80,13 @@ def test_schema_refuses_what_it_does_not_know(report):
     ):
         with pytest.raises(jsonschema.ValidationError):
             valid(wrong)
+
+
+def test_every_table_is_described_and_stands_in_the_readme(outcome):
+    written = {file.stem for file in (outcome.folder / "tables").glob("*.csv")}
+    assert {"friction", "findings", "sources"} <= written <= set(TABLES)
+    readme = (Path(tribolab.__file__).parents[1] / "README.md").read_text("utf-8")
+    assert [name for name in TABLES if f"{name}.csv" not in readme] == []
 
 
 def test_friction_table_is_the_data_files_to_the_last_digit(outcome):

@@ -63,7 +63,7 @@ class Conditions(Generic[Result]):
             return type(self)(chosen)
         result: Result | None = chosen.item()
         if result is None:
-            raise AnalysisError(f"nothing was measured at {condition_text(labels)}")
+            raise AnalysisError(f"nothing was measured at {labels_text(labels)}")
         return result
 
     def __iter__(self) -> Iterator[tuple[Labels, Result]]:
@@ -74,12 +74,12 @@ class Conditions(Generic[Result]):
                 yield {dim: part[dim].item() for dim in self.results.dims}, part.item()
 
 
-def condition_text(labels: Mapping[Any, object]) -> str:
+def labels_text(labels: Mapping[Any, object]) -> str:
     """Return labels with the dims that they are along.
 
     Examples
     --------
-    >>> condition_text({"surface": "Sb-R", "normal_force": 31.0})
+    >>> labels_text({"surface": "Sb-R", "normal_force": 31.0})
     'surface Sb-R, normal_force 31.0'
     """
     return ", ".join(f"{dim} {label}" for dim, label in labels.items())

@@ -90,9 +90,9 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
 
     def _task(self, name: str, condition: Condition, members: Sequence[RunCame]) -> CurveTask:
         used = [came for came in members if came.outcome.in_curves]
-        found: list[RunCame] = []
+        undecided: list[RunCame] = []
         if any(came.outcome.quality_as_found for came in members):  # somebody decided
-            found = [came for came in members if came.outcome.in_curves_as_found]
+            undecided = [came for came in members if came.outcome.in_curves_as_found]
         surface, medium, load, _ = condition
         outcome = CurveOutcome(
             name=name,
@@ -103,14 +103,14 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             run_names=tuple(came.outcome.name for came in used),
         )
         contents = [came.content for came in used]
-        if found:
-            contents += [("as found",), *(came.content for came in found)]
+        if undecided:
+            contents += [("as found",), *(came.content for came in undecided)]
         return CurveTask(
             outcome,
             tuple(came.outcome.data_file for came in used),
             self._store.folder,
             sha256_of(contents),
-            tuple(came.outcome.data_file for came in found),
+            tuple(came.outcome.data_file for came in undecided),
         )
 
     def linked(self, task: CurveTask, record: CurveRecord) -> bool:
@@ -164,12 +164,12 @@ def process_curve(task: CurveTask) -> CurveRecord:
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
     points = plain_rows(curve_table(curve))
     points_found: tuple[Row, ...] = ()
-    if (found := _as_found(task)) is not None:
-        points_found = plain_rows(curve_table(found))
+    if (undecided := _as_found(task)) is not None:
+        points_found = plain_rows(curve_table(undecided))
         if points_found == points:  # e.g. a note
             points_found = ()
         else:
-            groups[AS_FOUND] = found
+            groups[AS_FOUND] = undecided
     write_data({None: curve} | groups, task.folder / task.curve.data_file)
     return CurveRecord(
         task.curve,

@@ -77,7 +77,7 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
         return record
 
 
-def parted(came: Iterable[Record | Notice]) -> tuple[list[Record], list[Notice]]:
+def done_and_failed(came: Iterable[Record | Notice]) -> tuple[list[Record], list[Notice]]:
     """Return what was done, and why the rest was not."""
     done: list[Record] = []
     why: list[Notice] = []

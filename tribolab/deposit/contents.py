@@ -13,6 +13,7 @@ from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, ReadError
 from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import sha256_of_file
+from tribolab.report.campaign_tables import TABLES
 from tribolab.untyped import Json
 
 RESULTS = "published"  # not where `tribolab run` writes: what it makes anew stands beside
@@ -27,21 +28,6 @@ _KINDS = {
     ".pdf": "application/pdf",
     ".toml": "application/toml",
     ".txt": "text/plain",
-}
-_TABLES = {
-    "friction": "friction coefficient of every segment, with its errors",
-    "stribeck": "measured friction over sliding speed",
-    "stick_slip": "stick-slip of every segment",
-    "static_friction": "static friction at every start of sliding",
-    "roughness": "roughness of the surfaces",
-    "contact": "contact area and separation over load",
-    "adhesion": "contact area with adhesion",
-    "shear_stress": "shear stresses fitted to the measured curves",
-    "stribeck_model": "computed friction over sliding speed",
-    "sources": "raw files with their SHA-256",
-    "checks": "what every check said of every run",
-    "findings": "what a reader should know",
-    "decisions": "what a person decided on runs",
 }
 
 
@@ -144,7 +130,7 @@ def _kind(path: Path) -> str:
 def _described(name: str) -> str:
     path = Path(name)
     if path.parts[0] == "tables":
-        return f"Table: {_TABLES.get(path.stem, path.stem.replace('_', ' '))}"
+        return f"Table: {TABLES.get(path.stem, path.stem.replace('_', ' '))}"
     if path.parts[0] == "data":
         return f"Data of {path.stem.replace('_', ' ')}, with units and origin"
     if path.parts[0] == "figures":

@@ -51,7 +51,7 @@ def read_run(
     try:
         return runs.read_run(path, instrument, **said)
     except UnknownFileError as error:
-        paths = [Path(path)] if isinstance(path, PathLike) else [Path(one) for one in path]
+        paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
         if Path(error.where) != paths[0]:
             raise  # some files of the run are a known instrument's
         dialect = _drafted(paths[0], error)

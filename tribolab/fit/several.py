@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from tribolab.conditions import Conditions, Labels, condition_text, labels_along
+from tribolab.conditions import Conditions, Labels, labels_along, labels_text
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -67,7 +67,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
     def _repr_html_(self) -> str:
         """Shear stress, error and fit of each condition in a row; all numbers folded away."""
         rows = "".join(
-            f"<tr><th>{condition_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
+            f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
             f"{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
             f"{fit.degrees_of_freedom}</td><td>{fit.chi_square_p_value:.2g}</td></tr>"
             for labels, fit in self
@@ -141,7 +141,7 @@ def fit_shear_stresses(
         try:
             return fit_shear_stress(contact=contact, **mine)
         except AnalysisError as error:
-            raise AnalysisError(f"{condition_text(labels)}: {error}") from error
+            raise AnalysisError(f"{labels_text(labels)}: {error}") from error
 
     return ShearStressFits.of(coords, fitted)
 

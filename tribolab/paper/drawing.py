@@ -144,7 +144,7 @@ def dry_shear_stress(data: PaperData) -> Drawn:
     said = [f"{name}: {mean / 1e6:.3g} MPa on average" for name, mean in means.items()]
     said.append(f"Sb-R over Sb-S: {means['Sb-R'] / means['Sb-S']:.3g}")
     largest = max(
-        float((one.shear_stress_std / one.shear_stress).max()) for one in stresses.values()
+        float((known.shear_stress_std / known.shear_stress).max()) for known in stresses.values()
     )
     said.append(f"standard deviation at most {100 * largest:.2g} % of it")
     return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)

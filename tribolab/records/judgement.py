@@ -86,7 +86,7 @@ def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[
         return [(0.0, "–") for _ in rows]
     change, chance = change / typical.mean(), column("trend_p_value")
     open_ = not_decided(change, chance, column("effective_samples"))
-    return [_trend_text(*one) for one in zip(change, chance, open_, strict=True)]
+    return [_trend_text(*trend) for trend in zip(change, chance, open_, strict=True)]
 
 
 def _trend_text(change: float, chance: float, is_open: bool) -> tuple[float, str]:

@@ -38,6 +38,29 @@ _PART = (*tables.LABELS, "sliding_speed_m_s", "part", "varies", "contribution", 
 _SEGMENT = (*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
 
 
+# All that may be written, with what they say.
+TABLES = {
+    "friction": "friction coefficient of every segment, with its errors",
+    "stribeck": "measured friction over sliding speed",
+    "stribeck_as_found": "measured friction over sliding speed, without a person's decisions",
+    "uncertainty_budget": "parts of the uncertainty of every measured friction coefficient",
+    "stick_slip": "stick-slip of every segment",
+    "static_friction": "static friction at every start of sliding",
+    "roughness": "roughness of the surfaces",
+    "contact": "contact area and separation over load",
+    "adhesion": "contact area with adhesion",
+    "shear_stress": "shear stresses fitted to the measured curves",
+    "stribeck_model": "computed friction over sliding speed",
+    "model_sensitivity": "how far what is not known moves the computed friction",
+    "joint_fit": "parameters fitted to all loads of a surface in one liquid at once",
+    "model_comparison": "models that were fitted to all loads at once, compared",
+    "sources": "raw files with their SHA-256",
+    "checks": "what every check said of every run",
+    "findings": "what a reader should know",
+    "decisions": "what a person decided on runs",
+}
+
+
 class _Long(NamedTuple):
     """A table that is never in memory as a whole.
 

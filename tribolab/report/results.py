@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.engine.stage import Progress, perform, silent
 from tribolab.campaign.joint import JointFits
 from tribolab.campaign.modes import Modes
-from tribolab.campaign.recorded import parted
+from tribolab.campaign.recorded import done_and_failed
 from tribolab.records.joint_record import (
     JointRecord,
 )
@@ -102,7 +102,7 @@ def write_report(
     findings += missing
     findings += [note for curve in shown for note in curve_notices(curve)]
     stage = Modes(outcome.campaign, curves, surfaces, models, store)
-    judged, unjudged = parted(perform(stage, executor))
+    judged, unjudged = done_and_failed(perform(stage, executor))
     modes = {mode.curve: mode for mode in judged}
     findings += unjudged
     joints = perform(JointFits(outcome.campaign, curves, models, store), executor)

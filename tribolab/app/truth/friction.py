@@ -71,11 +71,11 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
         if run.name not in truth.segments:
             raise AnalysisError(f"{run.name}: the truth in {folder} knows nothing of this run")
         true = truth.segments[run.name]
-        found, origin = None, 0.0
+        friction, origin = None, 0.0
         if run.done:
-            found = read_netcdf(outcome.folder / run.data_file, group="friction")
-            origin = float(found.attrs["time_origin_s"])
-        tables.append(compare_run(run.name, true, found, origin))
+            friction = read_netcdf(outcome.folder / run.data_file, group="friction")
+            origin = float(friction.attrs["time_origin_s"])
+        tables.append(compare_run(run.name, true, friction, origin))
     return summary(pd.concat(tables, ignore_index=True))
 
 

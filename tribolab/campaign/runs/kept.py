@@ -106,8 +106,8 @@ def _with_decisions(
     facts = replace(record.facts, decisions=rows)
     outcome = replace(outcome, kept=f"{outcome.kept}; {_LATER}")
     if out and outcome.quality != REJECTED:
-        found = outcome.quality_as_found or outcome.quality
-        outcome = replace(outcome, quality=REJECTED, quality_as_found=found)
+        quality = outcome.quality_as_found or outcome.quality
+        outcome = replace(outcome, quality=REJECTED, quality_as_found=quality)
         facts = replace(facts, quality=REJECTED)
     return outcome, known._replace(record=replace(record, facts=facts))
 

@@ -166,7 +166,7 @@ def lubrication_factors(
     [0.0, 0.09, 0.35, 0.61, 0.8]
     """
     if isinstance(factors, xr.Dataset):
-        factors = {str(one): factors.sel(surface=one) for one in factors["surface"].values}
+        factors = {str(s): factors.sel(surface=s) for s in factors["surface"].values}
     chosen = colours(list(factors), surfaces)
     both = ("flow factors", "friction factors")
     with several_panels(axes, both, _side_by_side(2)) as (figure, (flow, friction)):

@@ -20,10 +20,10 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
     pairs, lost = _pairs(curve)
     parts = []
     if pairs:
-        speed, mu, found = max(pairs, key=lambda pair: abs(pair[1] / pair[2] - 1))
+        speed, mu, before = max(pairs, key=lambda pair: abs(pair[1] / pair[2] - 1))
         parts.append(
-            f"change µ by at most {percent(mu / found - 1)}: "
-            f"{number(mu, 4)} with them, {number(found, 4)} without, at {speed_text(speed)}"
+            f"change µ by at most {percent(mu / before - 1)}: "
+            f"{number(mu, 4)} with them, {number(before, 4)} without, at {speed_text(speed)}"
         )
     if lost:
         parts.append(f"leave {many(lost, 'speed')} without µ")
@@ -39,12 +39,12 @@ def _pairs(curve: CurveRecord) -> tuple[list[tuple[float, float, float]], int]:
     speeds = np.array([speed for speed, _ in now], dtype=float)
     pairs, lost = [], 0
     for row in curve.points_as_found:
-        speed, found = number_of(row, _SPEED), number_of(row, _MU)
-        if not speed or not found:
+        speed, mu = number_of(row, _SPEED), number_of(row, _MU)
+        if not speed or not mu:
             continue
         apart = np.abs(np.log(speeds / speed))
         if apart.size and apart.min() <= np.log1p(_ALIKE):
-            pairs.append((speed, float(now[int(apart.argmin())][1]), found))
+            pairs.append((speed, float(now[int(apart.argmin())][1]), mu))
         else:
             lost += 1
     return pairs, lost

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import perform
-from tribolab.campaign.recorded import parted
+from tribolab.campaign.recorded import done_and_failed
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
@@ -63,7 +63,7 @@ def live_figures(
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     models = list(rows.values())
     tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
-    records, findings = parted(perform(LiveFigures(outcome.store, tasks), executor))
+    records, findings = done_and_failed(perform(LiveFigures(outcome.store, tasks), executor))
     bands: dict[str, Band] = {}
     missed: dict[str, Missed] = {}
     for record in records:

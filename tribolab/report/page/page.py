@@ -160,7 +160,7 @@ def parted(groups: Sequence[Group], most: int) -> tuple[list[Group], list[Group]
     first: list[Group] = []
     rest: list[Group] = []
     for group in groups:
-        room = max(most - sum(len(one.runs) for one in first), 0)
+        room = max(most - sum(len(group.runs) for group in first), 0)
         if room:
             first.append(group._replace(runs=group.runs[:room]))
         if group.runs[room:]:
