@@ -15,7 +15,7 @@ from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.data_files import read_data, write_data
 from tribolab.io.runs import read_run
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 
 
 @pytest.fixture(scope="module")

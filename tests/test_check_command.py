@@ -15,8 +15,9 @@ from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.kinds import kind_of
-from tribolab.qc import run_checks, scan_checks
 from tribolab.qc.register import Check
+from tribolab.qc.run import checks as run_checks
+from tribolab.qc.scan import checks as scan_checks
 from tribolab.rig.files import scan_file
 
 

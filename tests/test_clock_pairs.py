@@ -13,7 +13,7 @@ from tribolab.errors import ReadError
 from tribolab.io.clocks.basis import play as play_of_the_fit
 from tribolab.io.clocks.merge import merge
 from tribolab.io.clocks.motion import clean_motion
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from tribolab.app.file_info import file_lines
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 
 HEAD = "Time [s],Friction force [N],Normal force [N],Position [mm]"
 TOML = """

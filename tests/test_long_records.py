@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tribolab.friction.oscillation import noise
 from tribolab.pieces import pieces
-from tribolab.qc import signals, timing
+from tribolab.qc import signals
 from tribolab.qc.flags import (
     FAIL,
     GOOD,
@@ -20,7 +20,8 @@ from tribolab.qc.flags import (
     is_uniform,
     uniform,
 )
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run import timing
+from tribolab.qc.run.checks import check_run
 
 SEVERITIES = (GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING)
 

@@ -18,7 +18,7 @@ from tribolab.qc.flags import (
     combine,
     severity_of,
 )
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 from tribolab.stamping import stamp
 
 SEVERITIES = [NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]  # from what yields to what prevails

@@ -31,7 +31,7 @@ from tribolab.io.runs import read_run
 from tribolab.io.schema_folder import schema_folder
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.manual import BIT
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 from tribolab.records.decision_rows import decision_rows
 from tribolab.report.read_results import read_results
 

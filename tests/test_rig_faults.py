@@ -10,7 +10,7 @@ from tribolab.app.checks import check_files
 from tribolab.draft.read import read
 from tribolab.errors import ConfigError, ReadError
 from tribolab.qc.register import STATUSES
-from tribolab.qc.run_checks import RUN_CHECKS, check_run
+from tribolab.qc.run.checks import RUN_CHECKS, check_run
 from tribolab.rig import (
     FAULTS,
     Protocol,

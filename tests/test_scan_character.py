@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.qc.profiles import steps
-from tribolab.qc.scan_checks import check_scans
+from tribolab.qc.scan.checks import check_scans
+from tribolab.qc.scan.profiles import steps
 from tribolab.surface.character import dominant_wave, slope_ratio, why_not_self_affine
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.psd import psd_1d, psd_2d

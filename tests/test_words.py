@@ -16,7 +16,7 @@ import tribolab as tl
 from tribolab import cli, errors
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.io.dialects.find import load_dialect
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 
 PACKAGE = Path(tl.__file__).parent
 # Who reads a docstring, or what `notebook=` and `function=` say, has Python before him.

@@ -19,7 +19,7 @@ from tribolab.friction.zero.offsets import wander
 from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.io.netcdf import read_netcdf
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 
 MU, LOAD, SPEED = 0.3, 31.0, 1e-3
 

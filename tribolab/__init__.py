@@ -40,11 +40,11 @@ _PUBLIC = {
     "error_from_blocks": "tribolab.friction.blocks",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
-    "check": "tribolab.qc.run_checks",
-    "RUN_CHECKS": "tribolab.qc.run_checks",
+    "check": "tribolab.qc.run.checks",
+    "RUN_CHECKS": "tribolab.qc.run.checks",
     "objections": "tribolab.qc.objections",
-    "check_scans": "tribolab.qc.scan_checks",
-    "check_scan_set": "tribolab.qc.scan_sets",
+    "check_scans": "tribolab.qc.scan.checks",
+    "check_scan_set": "tribolab.qc.scan.sets",
     "read_scans": "tribolab.draft.scans",
     "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
@@ -242,9 +242,9 @@ if TYPE_CHECKING:
     from tribolab.mode.several import sliding_modes
     from tribolab.mode.verdict import sliding_mode
     from tribolab.qc.objections import objections
-    from tribolab.qc.run_checks import RUN_CHECKS, check
-    from tribolab.qc.scan_checks import check_scans
-    from tribolab.qc.scan_sets import check_scan_set
+    from tribolab.qc.run.checks import RUN_CHECKS, check
+    from tribolab.qc.scan.checks import check_scans
+    from tribolab.qc.scan.sets import check_scan_set
     from tribolab.report.read_results import read_results
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus

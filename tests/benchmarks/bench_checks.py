@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 from tribolab.stamping import stamp
 
 ROWS = 1_000_000

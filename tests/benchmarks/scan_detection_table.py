@@ -12,7 +12,7 @@ import collections
 
 from tribolab import rig
 from tribolab.qc.register import STATUSES
-from tribolab.qc.scan_checks import SCAN_CHECKS, check_scans
+from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
 from tribolab.rig.scan_faults import SCAN_FAULTS, exported, strike
 from tribolab.studies import xu2026
 

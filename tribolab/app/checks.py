@@ -22,7 +22,7 @@ from tribolab.io.kinds import kind_of, repeats_by_name
 from tribolab.io.logs import group_files
 from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
-from tribolab.qc.run_checks import check_run
+from tribolab.qc.run.checks import check_run
 from tribolab.untyped import Json
 from tribolab.words import explain
 
@@ -194,7 +194,7 @@ def _check_run(task: CheckTask) -> list[Checked]:
 
 
 def _check_scans(task: CheckTask) -> list[Checked]:
-    from tribolab.qc.scan_sets import check_scan_set
+    from tribolab.qc.scan.sets import check_scan_set
 
     scans: dict[Path, xr.Dataset] = {}
     results: dict[Path, xr.Dataset] = {}
@@ -217,7 +217,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
 
 
 def _check_results(task: CheckTask) -> list[Checked]:
-    from tribolab.qc.scan_sets import check_results
+    from tribolab.qc.scan.sets import check_results
 
     try:
         results = read_tester_results(task.files[0])

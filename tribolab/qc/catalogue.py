@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tribolab.qc.register import Check
-from tribolab.qc.run_checks import RUN_CHECKS
-from tribolab.qc.scan_checks import SCAN_CHECKS
+from tribolab.qc.run.checks import RUN_CHECKS
+from tribolab.qc.scan.checks import SCAN_CHECKS
 
 PAGE_FILE = "CHECKS.md"
 _HEAD = """# The checks

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribolab.friction.coefficient.steadiness import undecided
-from tribolab.qc.run_checks import RUN_CHECKS
+from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.records.parts import BAD
 from tribolab.words import percent
 

@@ -107,7 +107,7 @@ def _examined(
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.metrology.budget import known_uncertainties, with_uncertainty
-    from tribolab.qc.run_checks import check_run
+    from tribolab.qc.run.checks import check_run
 
     let_go()
     friction = friction_coefficient(_stated(run, signals), segments, **run.friction)

@@ -312,7 +312,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on runs."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
-        from tribolab.qc.run_checks import RUN_CHECKS
+        from tribolab.qc.run.checks import RUN_CHECKS
 
         return self._of(RUN_CHECKS)
 
@@ -320,7 +320,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on scans."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
-        from tribolab.qc.scan_checks import SCAN_CHECKS
+        from tribolab.qc.scan.checks import SCAN_CHECKS
 
         return self._of(SCAN_CHECKS)
 
@@ -335,8 +335,8 @@ class Qc(Table):
         if self._by_default:
             return self
         from tribolab.qc.register import resolve_limits
-        from tribolab.qc.run_checks import RUN_CHECKS
-        from tribolab.qc.scan_checks import SCAN_CHECKS
+        from tribolab.qc.run.checks import RUN_CHECKS
+        from tribolab.qc.scan.checks import SCAN_CHECKS
 
         known = RUN_CHECKS | SCAN_CHECKS
         try:

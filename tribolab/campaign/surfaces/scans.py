@@ -12,7 +12,7 @@ from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
-from tribolab.qc.scan_sets import check_scan_set
+from tribolab.qc.scan.sets import check_scan_set
 from tribolab.records.parts import Finding, Row
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form

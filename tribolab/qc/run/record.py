@@ -10,10 +10,11 @@ import numpy as np
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.pieces import anywhere, one_by_one
-from tribolab.qc import schema, signals, timing
+from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, SUSPECT, uniform
 from tribolab.qc.register import OBJECTIONS, Check, Limit, Result, Skip, sample_result
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run import schema, timing
+from tribolab.qc.run.subject import RunSubject
 from tribolab.room import filled
 from tribolab.words import Count
 

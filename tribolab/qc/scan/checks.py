@@ -9,12 +9,13 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.qc import profiles, signals
+from tribolab.qc import signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
 from tribolab.qc.register import Check, Limit, Result, resolve_limits, results_of_checks
-from tribolab.qc.scan_instrument import INSTRUMENT_CHECKS
-from tribolab.qc.scan_subject import ScanSubject
+from tribolab.qc.scan import profiles
+from tribolab.qc.scan.instrument import INSTRUMENT_CHECKS
+from tribolab.qc.scan.subject import ScanSubject
 from tribolab.several import of_runs
 from tribolab.surface.level import level_map
 from tribolab.words import Count

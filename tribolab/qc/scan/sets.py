@@ -11,8 +11,8 @@ import xarray as xr
 
 from tribolab.qc.findings import Findings
 from tribolab.qc.register import Result
-from tribolab.qc.scan_checks import SCAN_CHECKS, check_scans
-from tribolab.qc.scan_instrument import not_computed
+from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
+from tribolab.qc.scan.instrument import not_computed
 
 _REPEATS = "repeats"
 Limits = Mapping[str, Mapping[str, str | float]]

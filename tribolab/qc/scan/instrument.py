@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.qc.register import Check, Limit, Result
-from tribolab.qc.scan_subject import ScanSubject
+from tribolab.qc.scan.subject import ScanSubject
 from tribolab.surface.roughness import roughness_parameters
 
 _COMPARED = ("Ra", "Rq")

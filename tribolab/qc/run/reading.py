@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.qc.register import Check, Limit, Result, Skip
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count
 
 

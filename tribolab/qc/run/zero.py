@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from tribolab.friction.zero.parts import Doubt
 from tribolab.qc.register import Check, Result, Skip
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run.subject import RunSubject
 
 
 def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

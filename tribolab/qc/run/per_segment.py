@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.register import Result, Skip
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count
 
 

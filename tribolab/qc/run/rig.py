@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.pieces import one_by_one
-from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run.per_segment import by_segment, status_of
+from tribolab.qc.run.subject import RunSubject
 
 
 def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

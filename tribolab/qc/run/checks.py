@@ -13,13 +13,13 @@ from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine, uniform
 from tribolab.qc.manual import BIT, MANUAL, reviewed
-from tribolab.qc.reading_checks import READING_CHECKS
-from tribolab.qc.record_checks import RECORD_CHECKS
 from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
-from tribolab.qc.rig_checks import RIG_CHECKS
-from tribolab.qc.sliding_checks import SLIDING_CHECKS
-from tribolab.qc.subject import RunSubject
-from tribolab.qc.zero_checks import ZERO_CHECKS
+from tribolab.qc.run.reading import READING_CHECKS
+from tribolab.qc.run.record import RECORD_CHECKS
+from tribolab.qc.run.rig import RIG_CHECKS
+from tribolab.qc.run.sliding import SLIDING_CHECKS
+from tribolab.qc.run.subject import RunSubject
+from tribolab.qc.run.zero import ZERO_CHECKS
 from tribolab.several import of_runs
 from tribolab.units import to_si
 

@@ -15,9 +15,9 @@ from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD
-from tribolab.qc.per_segment import by_segment, status_of
 from tribolab.qc.register import Check, Limit, Result, Skip
-from tribolab.qc.subject import RunSubject
+from tribolab.qc.run.per_segment import by_segment, status_of
+from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count
 
 

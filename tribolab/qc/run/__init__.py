@@ -1,0 +1,1 @@
+"""Checks on a run: its reading, its record, its zero, the rig, the sliding."""

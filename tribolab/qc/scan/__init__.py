@@ -1,0 +1,1 @@
+"""Checks on scans of a surface."""
