@@ -133,7 +133,7 @@ def test_the_data_file_has_curve_fit_profiles_factors_and_band(outcome):
         assert profiles[proof].dims == ("sliding_speed",)
         assert abs(profiles[proof]).max() < 1e-6
     assert (profiles.iterations > 0).all()
-    assert profiles.attrs["cells"] == curve.attrs["cells"] == 280
+    assert profiles.attrs["cells"] == curve.attrs["cells"] == 160
     low, high = shear_stress_shift(read_netcdf(file, "uncertainty"))
     assert -0.5 < low < 0 < high < 0.5
 
@@ -168,7 +168,7 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     proof = points[["residual", "load_balance", "flux_variation"]]
     assert (proof.abs() < 1e-6).all(axis=None)
     assert (points.iterations > 0).all()
-    assert (points.cells == 280).all()
+    assert (points.cells == 160).all()
     kinds = [figure["kind"] for figure in report["model_figures"]]
     assert kinds == ["curve", "shear_stress", "effect", "factors", "profiles", "sensitivity"]
     page = html.unescape((folder / "report.html").read_text("utf-8"))

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from tribolab.lubrication.factors import FactorTable, FlowFactors
+from tribolab.lubrication.flow import flow_between
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.mixed import Fields, Problem, Solution, State
+from tribolab.lubrication.parabolas import between_middles
 
 HEIGHT, WAVES, LENGTH = 0.6, 400, 1.0
 RATE = 6.0  # 6 eta v
@@ -63,18 +65,16 @@ def averaged(body: str) -> tuple[float, float]:
     factors = transverse(body)
     faces = np.linspace(0, LENGTH, 4001)
     x, cell = (faces[1:] + faces[:-1]) / 2, faces[1]
-    film, between = nominal(x), nominal(faces)
-    phi, _, entrained, _ = factors.transport(between)
-    distance = np.full(faces.size, cell)
-    distance[[0, -1]] = cell / 2
-    resistance = distance / (between**3 * phi)
-    flux = RATE * np.sum(entrained * resistance) / np.sum(resistance)
-    pressure = np.cumsum((RATE * entrained - flux) * resistance)[:-1]
+    film, width = nominal(x), np.full(x.size, cell)
+    between = between_middles(x, width)
+    flow = flow_between(between, factors, 1.0, RATE, film)
+    flux = np.sum(flow.drive / flow.conductance) / np.sum(1 / flow.conductance)
+    pressure = np.cumsum((flow.drive - flux) / flow.conductance)[:-1]
     n = film.size
-    mesh = Mesh(x, np.full(n, cell), distance, None, None)
+    mesh = Mesh(x, width, width, between, None, None, None)
     problem = Problem(mesh, factors, None, 1.0, 1.0, 1.0, 1.0, inlet_length=0.0)
     fields = Fields(np.zeros(n), pressure, np.full(n + 1, flux), n)
-    solution = Solution(RATE, State(film, 0.0, pressure), fields, 0.0, 0.0, 0.0, 0)
+    solution = Solution(RATE, State(film, 0.0, pressure), fields, flow, 0.0, 0.0, 0.0, 0)
     return pressure.sum() * cell, sum(fluid_friction(problem, solution)[0])
 
 

@@ -8,6 +8,8 @@ import xarray as xr
 from contact_cases import CONTACT, E_STAR, SURFACES, properties, reference_psd
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.integrate import simpson
+from scipy.interpolate import CubicSpline
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width
@@ -26,8 +28,8 @@ CASES = [("Smooth", 1e-6), ("Sb-S", 1e-4), ("Sb-R", 1e-3), ("Sb-R", 1e-1)]
 
 
 @functools.lru_cache
-def profile(name: str, speed: float):
-    return film_profile(CONTACT, reference_psd(name), 1.4, 310.0, speed)
+def profile(name: str, speed: float, **numerics):
+    return film_profile(CONTACT, reference_psd(name), 1.4, 310.0, speed, **numerics)
 
 
 @pytest.mark.parametrize(("name", "speed"), CASES)
@@ -49,20 +51,23 @@ def test_the_load_is_carried_and_shared_as_eq_5_says(name, speed):
 
 @pytest.mark.parametrize(("name", "speed"), CASES)
 def test_the_flux_of_eq_3_is_constant_over_the_full_film(name, speed):
-    """Taken from the printed profile alone, with phi_p and phi_s of the printed table."""
+    """Eq. (3) integrated from point to point of the printed profile, with the printed factors.
+
+    Between the points the film is a spline, which is not what the solver puts there.
+    """
     found = profile(name, speed)
     factors = flow_factors(reference_psd(name))
     full = np.flatnonzero(found.x.values < float(found.cavity_start))
-    x, u, p = (found[key].values for key in ("x", "separation", "fluid_pressure"))
-    middle = (u[1:] + u[:-1]) / 2
+    x, u, p = (found[key].values[full] for key in ("x", "separation", "fluid_pressure"))
+    fine = np.linspace(x[:-1], x[1:], 9)
+    middle = CubicSpline(x, u)(fine)
     at = factors.at(middle)
-    slope = np.diff(p) / np.diff(x)
-    flux = -(middle**3) * at.phi_p / (12 * 1.4) * slope + speed / 2 * (
-        middle + factors.rms_roughness * at.phi_s
-    )
-    inside = slice(full[0], full[-1])
-    size = np.maximum(np.abs(float(found.flux)), speed / 2 * middle[inside])
-    assert np.max(np.abs(flux[inside] - float(found.flux)) / size) < 1e-6
+    resistance = 12 * 1.4 / (middle**3 * at.phi_p)
+    entrained = speed / 2 * (middle + factors.rms_roughness * at.phi_s)
+    driven = simpson(resistance * entrained, x=fine, axis=0)
+    flux = (driven - np.diff(p)) / simpson(resistance, x=fine, axis=0)
+    size = np.maximum(np.abs(float(found.flux)), speed / 2 * (u[1:] + u[:-1]) / 2)
+    assert np.max(np.abs(flux - float(found.flux)) / size) < 5e-4
     assert float(found.flux_variation) < 1e-6
 
 
@@ -77,11 +82,9 @@ def test_no_fluid_pulls_and_the_cavity_opens_towards_the_outlet(name, speed):
     factors = flow_factors(reference_psd(name))
     entrained = speed / 2 * (u + factors.rms_roughness * factors.at(u).phi_s)
     assert np.all(np.diff(entrained[cavity]) > 0)
-    # the film ruptures in the cell whose faces entrain less and more than flows
+    # the film ruptures where as much is entrained as flows, between the cells beside the first
     first = int(np.argmax(cavity))
-    faces = (u[first - 1 : first + 1] + u[first : first + 2]) / 2
-    held, freed = speed / 2 * (faces + factors.rms_roughness * factors.at(faces).phi_s)
-    assert held <= float(found.flux) <= freed
+    assert entrained[first - 1] <= float(found.flux) <= entrained[first + 1]
 
 
 @pytest.mark.parametrize("friction_factors", [True, False])
@@ -118,8 +121,11 @@ def test_friction_is_eq_4_integrated_over_the_printed_profile(name, speed, frict
 
 @pytest.mark.parametrize(("name", "speed"), [*CASES, ("Sb-S", 1e-7)])
 def test_film_and_pressure_obey_eq_9(name, speed):
-    """Displacement by the midpoint rule with the paper's kernel, off the singular cells."""
-    found = profile(name, speed)
+    """Displacement by the midpoint rule with the paper's kernel, off the singular cells.
+
+    The rule wants more cells than the solver.
+    """
+    found = profile(name, speed, cells=400)
     x, u, p = (found[key].values for key in ("x", "separation", "pressure"))
     edges = np.concatenate([[x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]])
 
@@ -158,7 +164,7 @@ def test_the_jacobian_is_the_derivative_of_the_equations():
             residual = moved.residual.copy()
             full = slice(0, film.fields.front)
             residual[full] *= (film.scale / moved.scale)[full]
-            load = weight * (problem.mesh.width @ moved.total)
+            load = weight * (problem.mesh.weight @ moved.total)
             sides.append(np.append(residual, load))
         numeric = (sides[0] - sides[1]) / 2
         analytic = matrix @ np.append(change, constant)
@@ -176,7 +182,8 @@ def test_slow_sliding_is_the_dry_contact(name):
     assert curve.friction_coefficient_couette[0] == 0
     rest = film_profile(CONTACT, psd, 1.4, 310.0, 0.0)
     assert np.all(rest.fluid_pressure.values == 0)
-    assert float(rest.pressure.max()) == pytest.approx(float(dry.max_pressure), rel=1e-4)
+    between = CubicSpline(rest.x, rest.pressure)(dry.x)
+    assert float(between.max()) == pytest.approx(float(dry.max_pressure), rel=1e-4)
 
 
 @pytest.mark.parametrize("load", [310.0, 2110.0])

@@ -168,7 +168,7 @@ def test_smooth_surfaces_have_the_inlet_alone():
     spread = model_uncertainty(CONTACT, None, **given)
     assert spread.variation.values.tolist() == ["inlet length"]
     cut, full = (
-        stribeck_curve(CONTACT, None, **given, **more, cells=160).friction_coefficient
+        stribeck_curve(CONTACT, None, **given, **more, cells=100).friction_coefficient
         for more in ({"inlet_length": 0.07}, {})
     )
     np.testing.assert_allclose(

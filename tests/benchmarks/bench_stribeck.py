@@ -26,12 +26,10 @@ import numpy as np
 from contact_cases import CONTACT, E_STAR, reference_psd
 from threadpoolctl import threadpool_limits
 
-from tribolab.contact.line import line_kernel
 from tribolab.contact.separation import separation_table
 from tribolab.lubrication.domain import film_estimate, lubrication_problem
 from tribolab.lubrication.factors import _tabulated, flow_factors
 from tribolab.lubrication.mixed import (
-    LEAK,
     NotConvergedError,
     State,
     _rupture,
@@ -164,24 +162,24 @@ def picard(problem, couette: float, start: State, relaxation: float, steps: int 
     The pressure is a dense solve of the Reynolds equation up to the same rupture; the constant
     follows the load.
     """
+    from tribolab.lubrication.flow import flow_between  # not in every checkout that is timed
+
     mesh = problem.mesh
-    kernel = line_kernel(mesh.x, mesh.width, 1.0)
     u, c, n = start.film.copy(), start.constant, start.film.size
     for step in range(1, steps + 1):
-        between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2, u[-1:]])
-        phi, _, entrained, _ = problem.factors.transport(between * problem.gap)
-        conductance = between**3 * (phi + LEAK) / mesh.distance
+        flow = flow_between(mesh.between, problem.factors, problem.gap, couette, u)
+        conductance = flow.conductance
         matrix = np.diag(conductance[1:] + conductance[:-1])
         matrix -= np.diag(conductance[1:-1], 1) + np.diag(conductance[1:-1], -1)
-        drive = -couette * np.diff(entrained) / problem.gap
-        front = _rupture(couette * entrained / problem.gap, conductance)[0]
+        drive = -np.diff(flow.drive)
+        front = _rupture(flow.drive, conductance)[0]
         fluid = np.zeros(n)
         fluid[:front] = np.linalg.solve(matrix[:front, :front], drive[:front])
         contact = problem.separation.pressure_and_slope(u * problem.gap)[0] / problem.pressure
         total = fluid + contact
-        carried = mesh.width @ total / problem.load
+        carried = mesh.weight @ total / problem.load
         c += relaxation * (carried - 1)
-        aim = c + mesh.x**2 + kernel @ total
+        aim = c + mesh.x**2 + mesh.kernel @ total
         change = np.max(np.abs(aim - u) / u)
         if not np.isfinite(change):
             return None

@@ -333,11 +333,17 @@ def _density(
     some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
     narrow, b = 1 / height, gap / height
-    a, factor = at[1:, None] * narrow, share * narrow / np.sqrt(2 * np.pi)
-    density = np.empty_like(at)
-    np.matmul(_bell(a - b), factor, out=density[1:])
-    near = b < _FAR  # of what reaches back over u = 0
-    density[1:] += _bell(a[:, near] + b[near]) @ factor[near]
+    factor = share * narrow / np.sqrt(2 * np.pi)
+    density = np.zeros_like(at)
     ends = (first + gap) * narrow / np.sqrt(2), (first - gap) * narrow / np.sqrt(2)
     density[0] = share @ (erf(ends[0]) + erf(ends[1])) / (2 * first)
+    # single precision is twice as quick, and errs by 1e-6 of what is summed
+    last = int(np.searchsorted(at, np.max(gap + _FAR * height)))
+    unit = factor.max()
+    factor, b = (factor / unit).astype(np.float32), b.astype(np.float32)
+    a = np.multiply.outer(at[1:last].astype(np.float32), narrow.astype(np.float32))
+    near = np.flatnonzero(b < _FAR)  # of what reaches back over u = 0
+    back = _bell(a[:, near] + b[near]) @ factor[near]
+    a -= b
+    density[1:last] = unit * (_bell(a) @ factor + back)
     return density

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
@@ -21,7 +21,7 @@ from tribolab.contact.persson import (
 from tribolab.errors import AnalysisError
 from tribolab.quantities import si_values
 from tribolab.stamping import like
-from tribolab.surface.moments import rms_roughness
+from tribolab.surface.moments import cumulative
 from tribolab.units import positive
 
 _MORE_THAN_EPS = 1e-14
@@ -219,8 +219,25 @@ def separation_table(
     """
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     q, spectrum = rough_band(psd)
+    unit = _of_unit_modulus(q.tobytes(), spectrum.tobytes(), gamma, points)
+    coefficients = unit._curve.c.copy()
+    coefficients[-1] += np.log(modulus)
+    return replace(
+        unit,
+        effective_modulus=modulus,
+        table_pressure=_frozen(unit.table_pressure * modulus),
+        _curve=PPoly(coefficients, unit._curve.x),
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _of_unit_modulus(
+    q_bytes: bytes, spectrum_bytes: bytes, gamma: float, points: int
+) -> Separation:
+    """Tabulate a spectrum at E* = 1 Pa, all pressures going with E*; the last few are kept."""
+    q, spectrum = np.frombuffer(q_bytes), np.frombuffer(spectrum_bytes)
     slope, weight = slope_quadrature(q, spectrum)
-    height = rms_roughness(psd)
+    height = float(np.sqrt(2 * np.pi * cumulative(q, spectrum, 1)[-1]))
     # from where the asymptote holds to 1e-6 up to where u is below 1e-6 h_rms
     lowest = 1e-6 * min(q[0] * height, ROOT_PI * slope[-1])
     stiffness = np.concatenate(
@@ -232,7 +249,7 @@ def separation_table(
     y = stiffness[:, None] / (ROOT_PI * slope)
     u, rate = tail(y, gamma) @ weight, -(tail_slope(y, gamma) @ weight)
     curve = (u / height + np.log(-np.expm1(-u / height)))[::-1]
-    log_p = np.log(stiffness * modulus)[::-1]
+    log_p = np.log(stiffness)[::-1]
     # dU/d(ln p) = dU/du du/d(ln p)
     slopes = -height * np.expm1(-u[::-1] / height) / rate[::-1]
     chords = np.diff(log_p) / np.diff(curve)
@@ -240,9 +257,9 @@ def separation_table(
     return Separation(
         rms_roughness=height,
         decay_length=float(gamma * weight.sum()),
-        effective_modulus=modulus,
+        effective_modulus=1.0,
         gamma=gamma,
-        table_pressure=_frozen(stiffness * modulus),
+        table_pressure=_frozen(stiffness),
         table_separation=_frozen(u),
         _curve=CubicHermiteSpline(curve, log_p, np.maximum(slopes, steepest)),
     )

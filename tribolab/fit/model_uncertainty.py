@@ -23,7 +23,7 @@ from tribolab.untyped import Arguments
 from tribolab.validity import reasons_of, together
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
-_CELLS = 160  # a change needs no finer mesh than this: its error is in both curves
+_CELLS = 100  # a change needs no finer mesh than this: its error is in both curves
 _NORMAL = 1.959963984540054
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 
@@ -99,7 +99,7 @@ def model_uncertainty(
     would overstate the band; many are one-sided or bend the curve differently at both ends, so
     that a symmetric band would hide the sign; and mu spans decades and stays positive, so that
     ratios are combined. Of a variation whose two ends both raise mu the larger counts. The
-    reference for the changes is computed on the same coarser mesh, 160 cells, as the variations.
+    reference for the changes is computed on the same coarser mesh, 100 cells, as the variations.
 
     The refitted sigma_f is that of least squares with equal weights, as in `fit_shear_stress`.
 

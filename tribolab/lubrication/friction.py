@@ -30,14 +30,16 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     u, fields, mesh = solution.state.film, solution.fields, problem.mesh
     if solution.couette == 0:
         return FluidFriction(0.0, 0.0), FluidFriction(0.0, 0.0)
-    # the pressure's drag from the end of the domain, where it is 0, over the cells' faces
-    between = np.concatenate([u[:1], (u[1:] + u[:-1]) / 2])
-    factors = problem.factors.at(np.stack([u, between]) * problem.gap)
-    shear = mesh.width / u
+    flow = solution.flow
+    factors = problem.factors.at(np.concatenate([u, *flow.film]) * problem.gap)
+    shear = mesh.weight / u
     # a cavity holds no more than what flows out of the full film, u* = 2 J/v
     filled = fields.flux[fields.front] / solution.couette
     shear[fields.front :] *= np.minimum(1, filled / u[fields.front :])
-    drag = between / 2 * np.diff(fields.fluid, prepend=0.0)
+    # the pressure's drag from the end of the domain, where it is 0, to where the film ruptures
+    rise = mesh.between.weight * flow.resistance * (flow.entrained - fields.flux[0])
+    rise[:, fields.front + 1 :] = 0.0
+    drag = (flow.film / 2 * rise).ravel()
     beyond = outside_drag(problem, solution)
     # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
     unit = problem.gap / (problem.half_width * problem.load)
@@ -48,5 +50,6 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
             float((dragged + beyond[1]) * unit),
         )
 
-    rough = parts((factors.phi_f + factors.phi_fs)[0] @ shear, factors.phi_fp[1] @ drag)
+    n = u.size
+    rough = parts((factors.phi_f + factors.phi_fs)[:n] @ shear, factors.phi_fp[n:] @ drag)
     return rough, parts(shear.sum(), drag.sum())

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.linalg import inv
 
-from tribolab.contact.line import line_kernel
+from tribolab.lubrication.parabolas import Between, between_middles, curved_kernel, curved_weights
 
-# Cells about each end of the contact: the film is made at the inlet, and what is wrong with it
-# there counts everywhere behind.
-_ENDS = ((-1, 2.5, 2.0), (1, 1.5, 1.0))  # place, weight and width over that asked for
+# Cells about each end of the contact: the film is made at the inlet, and is thinnest in the narrow
+# constriction at the outlet.
+_ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # place, weight and width over that asked for
 
 
 class Mesh(NamedTuple):
@@ -21,9 +21,11 @@ class Mesh(NamedTuple):
 
     x: np.ndarray  # middles (n)
     width: np.ndarray  # (n)
-    distance: np.ndarray  # between middles, and from the outermost ones to the ends (n + 1)
-    elastic: np.ndarray  # inverse K of the log kernel for E* = 1 beside -K 1 (n, n + 1)
-    push: np.ndarray  # load by each of its columns, width @ elastic (n + 1)
+    weight: np.ndarray  # of a value at the middles in an integral over all cells (n)
+    between: Between  # where the flow from middle to middle is summed
+    kernel: np.ndarray  # film that bends away by unit pressure at a middle, for E* = 1 (n, n)
+    elastic: np.ndarray  # its inverse K beside -K 1 (n, n + 1)
+    push: np.ndarray  # load by each of its columns, weight @ elastic (n + 1)
 
 
 @functools.lru_cache(maxsize=16)
@@ -35,8 +37,8 @@ def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: floa
     cells
         Their number.
     edge
-        Length over which the film leaves the contact's edge, in units of size b: cells are
-        finest, a twentieth of it at 300 cells, there, and three times so many at the inlet.
+        Length over which the film leaves the contact's edge, in units of size b: cells are finest
+        there, at 160 of them a sixth to a third of it at the outlet and twice that at the inlet.
     inlet, outlet
         Ends of the domain: -inlet, outlet, in units of b.
     size
@@ -61,10 +63,11 @@ def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: floa
     faces[[0, -1]] = -inlet, outlet
     faces *= size
     x, width = (faces[1:] + faces[:-1]) / 2, np.diff(faces)
-    distance = np.concatenate([[width[0] / 2], np.diff(x), [width[-1] / 2]])
-    stiffness = inv(line_kernel(x, width, 1.0))
+    weight, kernel = curved_weights(x, width), curved_kernel(x, width)
+    stiffness = inv(kernel)
     elastic = np.column_stack([stiffness, -stiffness.sum(axis=1)])
-    mesh = Mesh(x, width, distance, elastic, width @ elastic)
-    for part in mesh:
+    between = between_middles(x, width)
+    mesh = Mesh(x, width, weight, between, kernel, elastic, weight @ elastic)
+    for part in (*mesh[:3], *between, *mesh[4:]):
         part.flags.writeable = False
     return mesh

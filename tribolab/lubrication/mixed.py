@@ -8,11 +8,9 @@ import numpy as np
 from scipy.linalg import lapack
 
 from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.flow import Flow, flow_between, flux_slopes
 from tribolab.lubrication.mesh import Mesh
 
-# Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
-# closed channels has a pressure; the flow it lets through is nothing beside any other.
-LEAK = 1e-10
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
 _CONVERGED = 1e-9  # of the maximum pressure, and of the load
@@ -72,6 +70,7 @@ class Solution(NamedTuple):
     couette: float
     state: State
     fields: Fields
+    flow: Flow
     residual: float  # of p = p_contact + p_fluid, in units of the maximum pressure
     load_balance: float
     flux_variation: float  # in the full film, over the larger of flux and entrained flux
@@ -86,10 +85,10 @@ class _Film(NamedTuple):
     """The equations at one state."""
 
     fields: Fields
+    flow: Flow
     total: np.ndarray  # pressure by elasticity (n)
     yielding: np.ndarray  # slope of the contact pressure over the film (n)
-    conductance: np.ndarray  # of the faces (n + 1)
-    flux_slope: np.ndarray  # over the film at the faces (n + 1)
+    flux_slope: np.ndarray  # over the films of the four cells around (4, n + 1)
     scale: np.ndarray  # turns a cell's balance into pressure (n)
     residual: np.ndarray  # (n)
     error: float
@@ -153,18 +152,13 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     contact, yielding = _contact(problem, u)
     total = state.pressure
     fluid = total - contact
-    # flux J = -T dp/dx + couette Q through the faces; outside the domain p = 0
-    between = _at_faces(u)
-    phi, phi_slope, entrained, entrained_slope = problem.factors.transport(between * problem.gap)
-    entrained = couette * entrained / problem.gap
-    square = between * between
-    conductance = square * between * (phi + LEAK) / mesh.distance
-    steep = square * (3 * (phi + LEAK) + between * phi_slope * problem.gap)
-    rise = np.empty_like(between)
+    # flux J = drive - T (rise of p) from middle to middle; outside the domain p = 0
+    flow = flow_between(mesh.between, problem.factors, problem.gap, couette, u)
+    conductance, entrained = flow.conductance, flow.drive
+    rise = np.empty_like(conductance)
     rise[0], rise[-1] = fluid[0], -fluid[-1]
     np.subtract(fluid[1:], fluid[:-1], out=rise[1:-1])
     flux = entrained - conductance * rise
-    flux_slope = couette * entrained_slope - steep * rise / mesh.distance
     scale = 1 / (conductance[1:] + conductance[:-1])
     front, through = _rupture(entrained, conductance) if couette > 0 else (0, 0.0)
     balance = scale * (flux[1:] - flux[:-1])
@@ -175,14 +169,14 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     passing = np.append(np.full(front + 1, through), entrained[front + 1 :])
     return _Film(
         fields=Fields(contact, exact, passing, front),
+        flow=flow,
         total=total,
         yielding=yielding,
-        conductance=conductance,
-        flux_slope=flux_slope,
+        flux_slope=flux_slopes(mesh.between, flow, flux),
         scale=scale,
         residual=residual,
         error=float(np.max(np.abs(fluid - exact)) / total.max()),
-        lacking=abs(float(mesh.width @ total / problem.load - 1)),
+        lacking=abs(float(mesh.weight @ total / problem.load - 1)),
     )
 
 
@@ -196,7 +190,7 @@ def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
 
 def _lacking(problem: Problem, film: _Film) -> np.ndarray:
     """Minus the residual, and minus what the load lacks."""
-    lack = problem.mesh.width @ film.total - problem.load
+    lack = problem.mesh.weight @ film.total - problem.load
     return -np.append(film.residual, film.total.max() / problem.load * lack)
 
 
@@ -205,32 +199,25 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     mesh, n, front = problem.mesh, film.residual.size, film.fields.front
     full = film.scale.copy()
     full[front:] = 0.0
-    before, after = -full * film.conductance[:-1], -full * film.conductance[1:]
-    # a face's film is the mean of its two cells'; at the ends it is the cell's own
-    left, right = full * film.flux_slope[:-1] / 2, full * film.flux_slope[1:] / 2
+    before, after = -full * film.flow.conductance[:-1], -full * film.flow.conductance[1:]
     elastic = mesh.elastic
     matrix = np.empty((n + 1, n + 1))
     matrix[:n] = elastic
     wet = slice(1, front), slice(0, min(front, n - 1))  # cells of the full film but for the ends
     matrix[wet[0]] += before[wet[0], None] * elastic[: max(front - 1, 0)]
     matrix[wet[1]] += after[wet[1], None] * elastic[1 : wet[1].stop + 1]
-    diagonal, below, above = (matrix.ravel()[i :: n + 2] for i in (0, n + 1, 1))
-    diagonal[:n] += right - left - film.yielding
-    diagonal[0] -= left[0]
-    diagonal[n - 1] += right[-1]
-    below[: n - 1] -= before[1:] * film.yielding[:-1] + left[1:]
-    above[: n - 1] += right[:-1] - after[:-1] * film.yielding[1:]
+    left, right = full * film.flux_slope[:, :-1], full * film.flux_slope[:, 1:]
+    bands = {-2: -left[0], 2: right[3]}
+    bands |= {k: right[k + 1] - left[k + 2] for k in (-1, 0, 1)}
+    bands[0] -= film.yielding
+    bands[-1][1:] -= before[1:] * film.yielding[:-1]
+    bands[1][:-1] -= after[:-1] * film.yielding[1:]
+    flat = matrix.ravel()
+    for k, band in bands.items():  # row i, column i + k
+        first, last = max(-k, 0), n - max(k, 0)
+        flat[first * (n + 1) + first + k :: n + 2][: last - first] += band[first:last]
     matrix[n] = film.total.max() / problem.load * mesh.push
     return matrix
-
-
-def _at_faces(film: np.ndarray) -> np.ndarray:
-    """Film at the faces, the mean of the two cells beside it; at the ends the cell's own."""
-    faces = np.empty(film.size + 1)
-    faces[0], faces[-1] = film[0], film[-1]
-    np.add(film[1:], film[:-1], out=faces[1:-1])
-    faces[1:-1] *= 0.5
-    return faces
 
 
 def _rupture(entrained: np.ndarray, conductance: np.ndarray) -> tuple[int, float]:
@@ -269,21 +256,18 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
         couette=couette,
         state=state,
         fields=fields,
+        flow=film.flow,
         residual=float(np.max(np.abs(film.total - carried)) / highest),
-        load_balance=float(problem.mesh.width @ carried / problem.load - 1),
-        flux_variation=_flux_variation(problem, couette, state, fields),
+        load_balance=float(problem.mesh.weight @ carried / problem.load - 1),
+        flux_variation=_flux_variation(fields, film.flow),
         iterations=step,
     )
 
 
-def _flux_variation(problem: Problem, couette: float, state: State, fields: Fields) -> float:
+def _flux_variation(fields: Fields, flow: Flow) -> float:
     """Spread of the flux over the full film, taken anew from film and fluid pressure."""
     if fields.front < 2:
         return 0.0
-    u = (state.film[1:] + state.film[:-1]) / 2
-    phi, _, entrained, _ = problem.factors.transport(u * problem.gap)
-    slope = np.diff(fields.fluid) / np.diff(problem.mesh.x)
-    entrained = couette * entrained / problem.gap
-    flux = (entrained - u**3 * (phi + LEAK) * slope)[: fields.front]
-    size = np.maximum(np.abs(fields.flux[0]), entrained[: fields.front])
+    flux = (flow.drive[1:-1] - flow.conductance[1:-1] * np.diff(fields.fluid))[: fields.front]
+    size = np.maximum(np.abs(fields.flux[0]), flow.drive[1:-1][: fields.front])
     return float(np.max(np.abs(flux - fields.flux[0]) / size))

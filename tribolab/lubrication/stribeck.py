@@ -16,6 +16,7 @@ from tribolab.lubrication.factors import (
     RoughBody,
 )
 from tribolab.lubrication.friction import fluid_friction
+from tribolab.lubrication.parabolas import lowest, value_at
 from tribolab.lubrication.speeds import Point, System, solve_speeds
 from tribolab.lubrication.system import (
     CELLS,
@@ -255,7 +256,7 @@ def _row(
     """
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
-    real_length, otherwise = area @ mesh.width * problem.half_width
+    real_length, otherwise = area @ mesh.weight * problem.half_width
     rough, plain = fluid_friction(problem, solution)
     couette, pressure = rough if friction_factors else plain
     return {
@@ -265,8 +266,8 @@ def _row(
         "friction_per_shear_stress": real_length / force,
         "friction_per_shear_stress_other": otherwise / force,
         "contact_area_ratio": real_length / (2 * hertz),
-        "minimum_separation": film.min() * problem.gap,
-        "central_separation": np.interp(0.0, mesh.x, film) * problem.gap,
-        "solid_load_share": solid @ mesh.width / problem.load,
+        "minimum_separation": lowest(mesh.x, film) * problem.gap,
+        "central_separation": value_at(mesh.x, film, 0.0) * problem.gap,
+        "solid_load_share": solid @ mesh.weight / problem.load,
         **{name: getattr(solution, name) for name in PROOF},
     }

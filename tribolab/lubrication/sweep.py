@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_pressure
-from tribolab.contact.line import line_kernel, solve_line
+from tribolab.contact.line import solve_line
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.domain import film_estimate
@@ -57,7 +57,7 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
     """Take a state over from another mesh of the same contact: its pressure, and the film to it."""
     mesh, old = problem.mesh, before.mesh
     pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
-    pressure *= problem.load / (mesh.width @ pressure)
+    pressure *= problem.load / (mesh.weight @ pressure)
     shape = _gap_under(problem, pressure)
     thinnest = int(np.argmin(state.film))
     constant = float(state.film[thinnest] - np.interp(old.x[thinnest], mesh.x, shape))
@@ -124,7 +124,7 @@ def _cushioned(
     film = film_estimate(contact, viscosity, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
-    shape = _gap_under(problem, pressure * problem.load / (problem.mesh.width @ pressure))
+    shape = _gap_under(problem, pressure * problem.load / (problem.mesh.weight @ pressure))
     constant = film / 3 / problem.gap - float(shape.min())
     cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
     rest = solve_speed(cushion, 0.0, _bent(problem, shape + constant, constant)).state
@@ -265,7 +265,7 @@ def _extrapolation(at: list[float], aim: float) -> list[float]:
 
 def _gap_under(problem: Problem, pressure: np.ndarray) -> np.ndarray:
     mesh = problem.mesh
-    return mesh.x**2 + line_kernel(mesh.x, mesh.width, 1.0) @ pressure
+    return mesh.x**2 + mesh.kernel @ pressure
 
 
 def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) -> AnalysisError:

@@ -29,7 +29,7 @@ from tribolab.lubrication.speeds import System
 from tribolab.stamping import labelled
 from tribolab.units import positive, to_si
 
-CELLS = 280
+CELLS = 160
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
 REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "

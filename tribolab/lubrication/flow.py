@@ -1,0 +1,93 @@
+"""What flows between the middles of neighbouring cells, by the film in between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.parabolas import Between
+
+# Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
+# closed channels has a pressure; the flow it lets through is nothing beside any other.
+LEAK = 1e-10
+# Films in roughnesses: below the first a straight line lies between two of them, as flow changes
+# by decades where channels close, and from the second on a cubic through four.
+_STRAIGHT, _CURVED = 0.3, 0.6
+
+
+class Flow(NamedTuple):
+    """Resistance and entrainment at the points of `Between`, and summed from middle to middle.
+
+    Lengths along x in b, gaps in g, pressures in p; a flux is in units of g^3 p/(12 eta b).
+    The gradient of the fluid's pressure is ``resistance * (entrained - flux)`` at every point, so
+    that of a flux J the pressure rises by ``(drive - J) / conductance`` from middle to middle.
+    """
+
+    film: np.ndarray  # at the points (2, n + 1)
+    share: np.ndarray  # of the four cells around in it (2, 4, n + 1)
+    resistance: np.ndarray  # 1/(u^3 phi_p) there (2, n + 1)
+    entrained: np.ndarray  # there (2, n + 1)
+    conductance: np.ndarray  # from middle to middle (n + 1)
+    drive: np.ndarray  # what is entrained, its mean weighted by the resistance (n + 1)
+    resistance_slope: np.ndarray  # over the film (2, n + 1)
+    entrained_slope: np.ndarray  # (2, n + 1)
+
+
+def flow_between(
+    between: Between, factors: FlowFactors, gap: float, couette: float, film: np.ndarray
+) -> Flow:
+    """Sum what resists and what is entrained between the middles of cells with these films (n).
+
+    Notes
+    -----
+    Integrating dp/dx from middle to middle by two Gauss points is exact to the fourth order of a
+    cell's width; the mean of the two films in place of the film in between is so to the second.
+    """
+    u, share = _film_between(between, film, factors.rms_roughness / gap)
+    phi, phi_slope, entrained, entrained_slope = factors.transport(u * gap)
+    phi = phi + LEAK
+    resistance = 1 / (u * u * u * phi)
+    entrained = entrained * (couette / gap)
+    conductance = 1 / (between.weight * (resistance[0] + resistance[1]))
+    weighted = resistance * entrained
+    return Flow(
+        film=u,
+        share=share,
+        resistance=resistance,
+        entrained=entrained,
+        conductance=conductance,
+        drive=conductance * between.weight * (weighted[0] + weighted[1]),
+        resistance_slope=-resistance * (3 / u + phi_slope * gap / phi),
+        entrained_slope=couette * entrained_slope,
+    )
+
+
+def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
+    """Slope of the flux between middles over the film of the four cells around (4, n + 1)."""
+    steep = flow.resistance * flow.entrained_slope
+    steep += (flow.entrained - flux) * flow.resistance_slope
+    steep *= between.weight * flow.conductance
+    return np.asarray((steep[:, None] * flow.share).sum(axis=0))
+
+
+def _film_between(
+    between: Between, film: np.ndarray, roughness: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Film at the points, and the share of the four cells around in it (its slope)."""
+    around = film[between.cell]
+    u, share = (between.share * around).sum(axis=1), between.share
+    thinner = np.minimum(around[1], around[2])
+    if thinner.min() >= _CURVED * roughness:
+        return u, share
+    span = (_CURVED - _STRAIGHT) * roughness
+    part = np.clip((thinner - _STRAIGHT * roughness) / span, 0.0, 1.0)
+    line = between.straight[:, 1] * around[1] + between.straight[:, 2] * around[2]
+    bent = u - line
+    share = between.straight + part * (share - between.straight)
+    moving = np.where((part > 0) & (part < 1), bent / span, 0.0)  # part hangs on the thinner
+    first = around[1] < around[2]
+    share[:, 1] += np.where(first, moving, 0.0)
+    share[:, 2] += np.where(first, 0.0, moving)
+    return line + part * bent, share
