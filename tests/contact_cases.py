@@ -11,7 +11,6 @@ from hypothesis import settings
 
 from tribolab.contact.geometry import LineContact
 from tribolab.lubrication.stribeck import stribeck_curve
-from tribolab.lubrication.system import CELLS
 from tribolab.studies import xu2026
 from tribolab.surface.moments import rms_roughness, rms_slope
 from tribolab.surface.self_affine import psd_2d
@@ -59,7 +58,7 @@ class RandomContact(NamedTuple):
     load: float  # [N/m]
     roughness: float  # h_rms [m]
 
-    def curve(self, speeds: int = 33, cells: int = CELLS) -> xr.Dataset:
+    def curve(self, speeds: int = 33, cells: int = 160) -> xr.Dataset:
         """Over eight decades of speed; the surface is one of the paper's, stretched all ways."""
         psd = reference_psd(self.name)
         factor = self.roughness / rms_roughness(psd)
