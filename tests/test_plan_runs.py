@@ -15,7 +15,6 @@ from tribolab.metrology.planning import (
     run_variance,
     runs_for_half_interval,
     runs_for_standard_error,
-    upper_bound,
 )
 
 
@@ -56,7 +55,11 @@ def test_assurance_takes_the_pilots_own_error_in():
 
 
 def test_a_pilot_of_three_runs_may_have_found_half():
-    assert upper_bound(1.0, 3) == pytest.approx(2.1, abs=0.02)
+    # its 80 % upper bound of the spread is 2.1 times what it found: so are the runs, squared
+    sure = runs_for_standard_error(1.0, 0.1, 0.8, 3)
+    assert math.sqrt(sure / 100) == pytest.approx(2.1, abs=0.03)
+    as_likely_as_not = runs_for_standard_error(1.0, 0.1, None, 3)
+    assert as_likely_as_not / 100 == pytest.approx(1.44, abs=0.03)  # 2 over the median of chi^2_2
 
 
 def test_the_cheapest_time_is_that_of_the_closed_form():
@@ -85,13 +88,16 @@ def pilot_table(rng, runs, between, within=0.02, memory=0.5, time=100.0):
 @pytest.mark.slow
 def test_a_plan_that_is_followed_reaches_its_precision():
     rng = np.random.default_rng(2)
-    reached = []
-    for _ in range(150):
-        plan = tl.measuring_plan(pilot_table(rng, 40, 0.01), standard_error=0.002)
-        runs = int(plan.table.runs[0])
-        later = pilot_table(rng, runs, 0.01).friction_coefficient
-        reached.append(later.std(ddof=1) / math.sqrt(runs))
-    assert np.median(reached) == pytest.approx(0.002, rel=0.1)
+    reached = {"runs": [], "assured_runs": []}
+    for _ in range(200):
+        plan = tl.measuring_plan(pilot_table(rng, 4, 0.01), standard_error=0.002)
+        for name, errors in reached.items():
+            runs = int(plan.table[name][0])
+            later = pilot_table(rng, runs, 0.01).friction_coefficient
+            errors.append(later.std(ddof=1) / math.sqrt(runs))
+    assert np.median(reached["runs"]) == pytest.approx(0.002, rel=0.1)
+    sure = np.mean(np.array(reached["assured_runs"]) <= 0.002)
+    assert sure == pytest.approx(0.8, abs=3 * math.sqrt(0.16 / 200))
 
 
 def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
@@ -100,15 +106,15 @@ def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
         tl.measuring_plan(table, standard_error=0.1, half_interval=0.1)
     with pytest.raises(tl.TribolabError, match="no condition and speed has two runs"):
         tl.measuring_plan(table.head(1), standard_error=0.1)
-    few = tl.measuring_plan(table, standard_error=0.002).table
-    assert few.between_runs_std[0] > table.friction_coefficient.std(), "four runs: upper bound"
+    with pytest.raises(tl.TribolabError, match="an assurance of 1.5"):
+        tl.measuring_plan(table, standard_error=0.1, assurance=1.5)
 
 
 def test_the_command_plans_after_a_campaign(original, tmp_path):
     words = ["plan", str(original.parent / "results"), "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(cli.app, [*words, "--standard-error", "0.01"])
     assert done.exit_code == 0, done.output
-    assert "standard error of 0.01 on average" in done.stdout
+    assert "as likely as not to reach it" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"plan.html", "plan.csv"}
     done = CliRunner().invoke(cli.app, words)
     assert done.exit_code == 2 and "--standard-error or --half-interval" in done.stderr

@@ -25,12 +25,11 @@ from tribolab.metrology.planning import (
     run_variance,
     runs_for_half_interval,
     runs_for_standard_error,
-    upper_bound,
 )
 from tribolab.report.read_results import Results
 from tribolab.words import many
 
-FEW = 6  # runs of a pilot, below which its spread between runs is taken at its upper bound
+ASSURANCE = 0.8
 LONGEST = 20  # times the pilot's sliding time, what is thought of as the longest stroke
 
 
@@ -42,17 +41,22 @@ class MeasuringPlan:
     ----------
     table
         A row for each condition and speed: what the pilot told (``within_std``,
-        ``autocorrelation_time_s``, ``between_runs_std``, ``pilot_runs``), the ``runs`` that reach
-        the goal at the pilot's ``sliding_time_s``, ``cheapest_sliding_time_s`` with
-        ``cheapest_runs`` for it, and the ``time_s`` and ``cheapest_time_s`` they take in all.
+        ``autocorrelation_time_s``, ``between_runs_std``, ``pilot_runs``), the ``runs`` that are as
+        likely as not to reach the goal at the pilot's ``sliding_time_s`` and the ``assured_runs``
+        that do with assurance, ``cheapest_sliding_time_s`` with ``cheapest_runs`` and
+        ``cheapest_assured_runs`` for it, and what each of these takes in all, ``time_s``,
+        ``assured_time_s``, ``cheapest_time_s``, ``cheapest_assured_time_s``.
     goal
         What was asked for, in words.
+    assurance
+        With which chance the assured runs reach it.
     setup_time
         Of each run, beside sliding [s].
     """
 
     table: pd.DataFrame
     goal: str
+    assurance: float
     setup_time: float
 
 
@@ -61,7 +65,7 @@ def measuring_plan(
     *,
     standard_error: float | None = None,
     half_interval: float | None = None,
-    assurance: float | None = None,
+    assurance: float = ASSURANCE,
     setup_time: float = 600.0,
 ) -> MeasuringPlan:
     """Tell how many runs, and how long ones, reach a precision at each speed.
@@ -73,8 +77,7 @@ def measuring_plan(
     standard_error, half_interval
         Of the mean coefficient; or of it half the 95 % interval: one of the two.
     assurance
-        Chance with which the next campaign's own error is to come out as small, e.g. 0.8; without
-        it that is so on average.
+        Chance with which the next campaign's own error comes out as small, of the assured runs.
     setup_time
         What each run costs beside sliding [s].
 
@@ -86,15 +89,15 @@ def measuring_plan(
     Raises
     ------
     AnalysisError
-        If not one precision is asked for, or no condition has two runs.
+        If not one precision is asked for, the assurance is no chance of a half or more, or no
+        condition has two runs.
 
     Notes
     -----
     Strokes of a run at one speed count as one longer stroke. What runs differ by is their variance
-    less what their finite sliding explains. With assurance the error of the pilot's own variance is
-    in the number of runs; without, what fewer than six runs differ by is taken at its 80 % upper
-    bound, since a pilot of three may well have found half of it. The cheapest time is at most
-    twenty times the pilot's.
+    less what their finite sliding explains. Both numbers of runs hold the error of the pilot's own
+    variance: a pilot of three may well have found half of what runs differ by
+    (`runs_for_standard_error`). The cheapest time is at most twenty times the pilot's.
 
     Examples
     --------
@@ -105,36 +108,41 @@ def measuring_plan(
     ...     "friction_coefficient_std": 0.01, "autocorrelation_time_s": 0.1,
     ...     "trimmed_start_s": 0.0, "trimmed_stop_s": 10.0,
     ... })
-    >>> measuring_plan(pilot, standard_error=0.005).table.runs.tolist()
-    [7.0]
+    >>> plan = measuring_plan(pilot, standard_error=0.005)
+    >>> plan.table.runs.tolist(), plan.table.assured_runs.tolist()
+    ([7.0], [14.0])
     """
     if (standard_error is None) == (half_interval is None):
         raise AnalysisError("say one precision: a standard error, or half a 95 % interval")
     goal = standard_error if standard_error is not None else half_interval
     if goal is None or not goal > 0:
         raise AnalysisError(f"a precision of {goal}: it has to be above zero")
+    if not 0.5 <= assurance < 1:
+        raise AnalysisError(
+            f"an assurance of {assurance:g}: it is a chance from 0.5 to below 1, e.g. 0.8"
+        )
     count = runs_for_standard_error if standard_error is not None else runs_for_half_interval
     rows = []
     for text, speed, runs in _pilots(pilot):
-        told, sliding, mean = _told(runs, assured=assurance is not None)
+        told, sliding, mean = _told(runs)
         row = {"condition": text, SPEED: speed, "mean": mean, "pilot_runs": len(runs)}
         row |= {"within_std": told.within, "autocorrelation_time_s": told.memory}
         row |= {"between_runs_std": told.between, "sliding_time_s": sliding}
         cheapest = cheapest_sliding_time(told, setup_time, LONGEST * sliding)
         for name, each in (("", sliding), ("cheapest_", cheapest)):
-            needed = count(run_variance(told, each), goal, assurance, len(runs))
-            runs_needed = math.nan if needed is None else float(needed)
             row[f"{name}sliding_time_s"] = each
-            row[f"{name}runs"] = runs_needed
-            row[f"{name}time_s"] = runs_needed * (setup_time + each)
+            for sure, chance in (("", None), ("assured_", assurance)):
+                needed = count(run_variance(told, each), goal, chance, len(runs))
+                runs_needed = math.nan if needed is None else float(needed)
+                row[f"{name}{sure}runs"] = runs_needed
+                row[f"{name}{sure}time_s"] = runs_needed * (setup_time + each)
         rows.append(row)
     if not rows:
         raise AnalysisError(
             "no condition and speed has two runs: nothing tells what runs differ by"
         )
     words = "standard error" if standard_error is not None else "half 95 % interval"
-    sure = f" with {100 * assurance:.0f} % assurance" if assurance is not None else " on average"
-    return MeasuringPlan(pd.DataFrame(rows), f"{words} of {goal:g}{sure}", setup_time)
+    return MeasuringPlan(pd.DataFrame(rows), f"{words} of {goal:g}", assurance, setup_time)
 
 
 def _pilots(
@@ -183,25 +191,35 @@ def _runs(segments: pd.DataFrame) -> pd.DataFrame:
     return grouped[["mean", "variance", "memory"]].mean().join(grouped["time"].sum())
 
 
-def _told(runs: pd.DataFrame, *, assured: bool) -> tuple[Pilot, float, float]:
+def _told(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
     """Return what runs tell of the scatter, how long they slid, and their mean."""
     within = math.sqrt(float(runs["variance"].mean()))
     memory = float(np.nan_to_num(runs["memory"].mean()))
     sliding = float(runs["time"].median())
     alone = run_variance(Pilot(within, memory, 0.0), sliding)
     spread = float(runs["mean"].std(ddof=1))
-    if len(runs) < FEW and not assured:  # an assurance takes the pilot's error into account
-        spread = upper_bound(spread, len(runs))
     between = math.sqrt(max(0.0, spread**2 - alone))
     return Pilot(within, memory, between), sliding, float(runs["mean"].mean())
 
 
 def plan_text(plan: MeasuringPlan) -> str:
     """Return what a plan comes to in one sentence."""
-    runs = plan.table["cheapest_runs"]
-    if runs.isna().any():
-        return f"{plan.goal}: out of reach at {many(int(runs.isna().sum()), 'point')}"
+    table = plan.table
+    beyond = int(table["runs"].isna().sum())
+    if beyond:
+        return f"{plan.goal}: out of reach at {many(beyond, 'point')}"
+    sure = f"{100 * plan.assurance:.0f} %"
     return (
-        f"{plan.goal}: {runs.min():.0f} to {runs.max():.0f} runs at the cheapest sliding times, "
-        f"{plan.table['runs'].min():.0f} to {plan.table['runs'].max():.0f} at those of the pilot"
+        f"{plan.goal}: {_span(table['runs'])} as long as the pilot's are as likely as not to "
+        f"reach it, {_span(table['assured_runs'])} do so with a chance of {sure}; of the cheapest "
+        f"sliding times {_span(table['cheapest_runs'])} and {_span(table['cheapest_assured_runs'])}"
     )
+
+
+def _span(runs: pd.Series) -> str:
+    """Return the least and the largest number of runs, as far as they are within reach."""
+    low, high = runs.min(), runs.max()
+    if not math.isfinite(low):
+        return "runs out of reach"
+    told = many(int(low), "run") if low == high else f"{low:.0f} to {high:.0f} runs"
+    return told + (" (out of reach at some points)" if runs.isna().any() else "")

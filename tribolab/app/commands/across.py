@@ -172,11 +172,9 @@ def plan(
         typer.Option(min=0, help="Instead: half the 95 % interval.", show_default=False),
     ] = None,
     assurance: Annotated[
-        float | None,
-        typer.Option(
-            min=0.5, max=0.999, help="Chance to find it that small, e.g. 0.8.", show_default="none"
-        ),
-    ] = None,
+        float,
+        typer.Option(min=0.5, max=0.999, help="Chance to find it that small, of a sure plan."),
+    ] = 0.8,
     setup_time: Annotated[str, typer.Option(help="What each run costs beside sliding.")] = "10 min",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
@@ -185,12 +183,12 @@ def plan(
 ) -> None:
     """Tell how long to slide and how often to repeat, from what a pilot scatters.
 
-    Runs at each speed that reach a precision, at the pilot's sliding times and at those that cost
-    least in all.
+    Runs at each speed that reach a precision as likely as not, and with assurance, at the pilot's
+    sliding times and at those that cost least in all.
 
         tribolab plan results --standard-error 0.001
 
-        tribolab plan results --half-interval 0.005 --assurance 0.8 --setup-time "20 min"
+        tribolab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
     """
     with reported(debug):
         from tribolab.across.planning import measuring_plan, plan_text

@@ -16,6 +16,10 @@ from tribolab.plot.look.style import (
     keep,
 )
 
+_ASSURED = {"runs": "assured_runs", "cheapest_runs": "cheapest_assured_runs"}
+# which they are, how far beside the speed, line and filling
+_DRAWN = (("runs", 0.93, "-", None), ("cheapest_runs", 1.07, ":", "white"))
+
 
 def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> Figure:
     """Draw how many runs reach a precision at each speed.
@@ -24,7 +28,8 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
     ----------
     table
         As in `tribolab.across.planning.MeasuringPlan`: ``condition``, ``sliding_speed_m_s``,
-        ``runs`` and ``cheapest_runs``.
+        ``runs`` and ``cheapest_runs``; where there are ``assured_runs`` and
+        ``cheapest_assured_runs``, bars reach up to them.
     title
         Text above.
     ax
@@ -33,7 +38,9 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
     Returns
     -------
     matplotlib.figure.Figure
-        Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time.
+        Filled: runs that slide as long as the pilot's; open: runs of the cheapest sliding time;
+        bars up to the runs that reach the precision with assurance. Both stand a little beside
+        their speed.
 
     Raises
     ------
@@ -54,17 +61,22 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
             colour, marker = condition_style(number)
             speed = rows["sliding_speed_m_s"].to_numpy(dtype=float)
             own = {name: rows[name].to_numpy(dtype=float) for name in ("runs", "cheapest_runs")}
-            axes.plot(
-                speed, own["runs"], f"{marker}-", color=colour, markersize=4,
-                label=plain(str(condition)),
-            )  # fmt: skip
-            axes.plot(
-                speed, own["cheapest_runs"], f"{marker}:", color=colour, markersize=4,
-                markerfacecolor="white",
-            )  # fmt: skip
+            for name, shift, style, fill in _DRAWN:
+                at = shift * speed
+                axes.plot(
+                    at, own[name], f"{marker}{style}", color=colour, markersize=4,
+                    markerfacecolor=fill or colour,
+                    label=plain(str(condition)) if fill is None else None,
+                )  # fmt: skip
+                sure = _ASSURED[name]
+                if sure in rows:
+                    own[sure] = rows[sure].to_numpy(dtype=float)
+                    axes.vlines(at, own[name], own[sure], colors=colour, linewidth=1)
+                    axes.plot(at, own[sure], "_", color=colour, markersize=6)
             keep(figure, "runs", str(condition), sliding_speed_m_s=speed, **own)
         speed_axis(axes)
-        top = float(np.nanmax(table[["runs", "cheapest_runs"]].to_numpy(dtype=float), initial=2.0))
+        drawn = [name for name in (*_ASSURED, *_ASSURED.values()) if name in table]
+        top = float(np.nanmax(table[drawn].to_numpy(dtype=float), initial=2.0))
         axes.set_ylim(0.0, 1.15 * top)
         axes.set_ylabel("runs")
     return figure
