@@ -200,6 +200,27 @@ def test_groups_come_back_as_from_the_files_of_xarray(tmp_path_factory, content,
         assert {n: v.dtype for n, v in got.variables.items()} == {
             n: v.dtype for n, v in expected.variables.items()
         }
+        plain = xr.load_dataset(own, group=name, decode_times=False, mask_and_scale=False)
+        for own_name, variable in plain.variables.items():
+            assert variable.dtype == got[own_name].dtype
+            np.testing.assert_array_equal(variable.values, got[own_name].values)
+        assert set(plain.coords) == set(got.coords)
+
+
+@pytest.mark.parametrize(
+    "attribute", [{"scale_factor": 0.5}, {"_FillValue": 3.0}, {"missing_value": 3.0}]
+)
+def test_what_another_program_scaled_is_read_as_xarray_reads_it(tmp_path, attribute):
+    path = tmp_path / "other.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("time", 3)
+        fill = attribute.get("_FillValue")
+        variable = file.createVariable("force", "f8", ("time",), fill_value=fill)
+        variable.setncatts({k: v for k, v in attribute.items() if k != "_FillValue"})
+        variable.set_auto_maskandscale(False)
+        variable[:] = [1.0, 2.0, 3.0]
+    wanted = xr.load_dataset(path, decode_times=False, mask_and_scale=False)
+    assert read_netcdf(path).identical(wanted)
 
 
 @pytest.mark.parametrize(

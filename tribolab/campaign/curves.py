@@ -141,13 +141,14 @@ def process_curve(task: CurveTask) -> CurveRecord:
         If the runs make no curve.
     """
     from tribolab.friction.coefficient.repeatability import run_levels
-    from tribolab.friction.oscillation.slip_curve import stick_slip_curve
+    from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
     from tribolab.io.netcdf import read_groups
     from tribolab.records.budget_rows import budget_rows
     from tribolab.records.frames import curve_table, plain_rows
 
     with NETCDF:
-        parts = [read_groups(task.folder / n, ("friction", SLIP)) for n in task.data_files]
+        files = [task.folder / name for name in task.data_files]
+        parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
     frictions = [part["friction"] for part in parts]
     curve, known = _with_budget(frictions)
     levels: list[float | None] = []

@@ -15,6 +15,7 @@ from tribolab.errors import ReadError, TribolabError, brief, shown
 from tribolab.io.attributes import decoded
 from tribolab.io.seal import is_sealed, seal, try_out, unseal
 from tribolab.io.storage import write_into
+from tribolab.io.stored import read_plain
 from tribolab.pieces import pieces
 from tribolab.room import is_long, room
 
@@ -276,6 +277,9 @@ def _loaded(data: xr.Dataset) -> xr.Dataset:
 
 
 def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | None) -> xr.Dataset:
+    plain = read_plain(file if group is None else file[group], only)
+    if plain is not None:
+        return plain
     store = xr.backends.NetCDF4DataStore(file, group=group)
     for variable in (file if group is None else file[group]).variables.values():
         if is_long(variable.size):  # else the library keeps much of it, until the file is closed

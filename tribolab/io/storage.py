@@ -28,8 +28,9 @@ _BLOCKS, _BLOCK = 4, 2048  # samples that are tried: how many pieces, how long
 _PIECE = 16 * CHUNK  # samples that are handed to the library at once: it copies them
 _CACHE = 1 << 20  # bytes that the library keeps for a variable; whole chunks need no more
 # What xarray understands as an order rather than as a note.
-_ORDERS = {"_FillValue", "missing_value", "scale_factor", "add_offset", "coordinates", "dtype"}
-_ORDERS |= {"_Unsigned", "_Encoding"}
+COORDINATES = "coordinates"  # attribute that names the variables that are coordinates
+ORDERS = {"_FillValue", "missing_value", "scale_factor", "add_offset", COORDINATES, "dtype"}
+ORDERS |= {"_Unsigned", "_Encoding"}
 
 
 def write_into(file: netCDF4.Dataset, groups: Mapping[str | None, xr.Dataset]) -> None:
@@ -92,7 +93,7 @@ def _common(name: str, variable: xr.Variable) -> bool:
     """Whether a variable is of the kinds that results are made of: numbers and text."""
     if "/" in name or any("/" in str(dim) for dim in variable.dims):
         return False
-    if not _ORDERS.isdisjoint(variable.attrs):
+    if not ORDERS.isdisjoint(variable.attrs):
         return False
     if variable.dtype.kind == "O":  # of what an empty one holds xarray has an opinion of its own
         return variable.size > 0 and all(isinstance(value, str) for value in variable.values.flat)

@@ -10,7 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.decisions.rejected import REJECTED, kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
@@ -28,6 +28,12 @@ _MEANS = (
     "harmonic_content",
     "period_scatter",
     "oscillating_time_share",
+)
+_NUMBERS = (*_MEANS, "oscillation_swing")
+# variables of a result of `stick_slip` that make a curve: nothing else of it has to be read
+NEEDED = frozenset(
+    {"sliding_speed", "waveform", "instrument", "regularity", REJECTED, *_NUMBERS}
+    | {f"force_{name}" for name in _NUMBERS}
 )
 _FEWEST = 3  # speeds that a fit of the exponent needs
 _LEAST_ERROR = 0.01  # relative; a frequency is not known better than the speed
@@ -117,7 +123,7 @@ def stick_slip_curve(
     edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
     groups = [group for group in np.split(order, edges) if group.size]
     regular = np.concatenate([_regularity(s) for s in slips]).astype(object)
-    columns = {name: _column(slips, name) for name in (*_MEANS, "oscillation_swing")}
+    columns = {name: _column(slips, name) for name in _NUMBERS}
     rows = [_row(group, kind, regular, columns) for group in groups]
     names = list(rows[0]) if rows else [*_EMPTY]
     data = {n: ("sliding_speed", np.array([row[n] for row in rows])) for n in names}

@@ -176,8 +176,8 @@ def _estimated(
     unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
     reach = 0.5 * basis.stroke if placed else np.inf
 
-    def allowed(at: float) -> bool:
-        return abs(at - shift) <= reach and 1.0 - fit.ratio(at) < unexplained
+    def allowed(at: Array) -> NDArray[np.bool_]:
+        return (np.abs(at - shift) <= reach) & (1.0 - fit.ratios(at) < unexplained)
 
     told = shift_from_starts(logs, shift, span, allowed)
     estimate = ShiftEstimate(shift, uncertainty, ratio)

@@ -132,7 +132,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
 
 
 def shift_from_starts(
-    logs: Logs, shift: float, span: float, allowed: Callable[[float], bool]
+    logs: Logs, shift: float, span: float, allowed: Callable[[Array], NDArray[np.bool_]]
 ) -> ToldByStarts | None:
     """Shift that the starts of motion tell.
 
@@ -143,7 +143,7 @@ def shift_from_starts(
     shift, span
         Where to begin, and how far on either side of it to look [s].
     allowed
-        Whether a shift [s] is possible otherwise; `shift` itself must be.
+        Which of several shifts [s] are possible otherwise; `shift` itself must be.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def shift_from_starts(
         if not starts:
             return None
         shifts = shift + width * np.linspace(-1.0, 1.0, 161)
-        shift = _together(logs, starts, shifts[[allowed(s) for s in shifts]])
+        shift = _together(logs, starts, shifts[allowed(shifts)])
     middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
     since = np.array([start.time for start in starts]) - middle
     sampling = np.array([start.sampling for start in starts])
