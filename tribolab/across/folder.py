@@ -49,11 +49,7 @@ class Folder:
     @functools.cached_property
     def campaign(self) -> Campaign | None:
         """The campaign file as it was; None where this version does not understand it."""
-        try:
-            content = tomllib.loads(self.report["campaign"]["text"])
-            return Campaign.model_validate(content, context={"in_file": True})
-        except (ValueError, RecursionError):
-            return None
+        return _campaign(self.report["campaign"]["text"])
 
     @property
     def made_at(self) -> dt.datetime:
@@ -84,6 +80,15 @@ class Folder:
 
         path = self.path / "tables" / f"{name}.csv"
         return tables.read(path) if path.is_file() else None
+
+
+@functools.lru_cache(maxsize=8)
+def _campaign(text: str) -> Campaign | None:
+    """Read a campaign file; those of an archive are often the same."""
+    try:
+        return Campaign.model_validate(tomllib.loads(text), context={"in_file": True})
+    except (ValueError, RecursionError):
+        return None
 
 
 def open_folder(path: str | Path) -> Folder:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 from pyarrow import csv as arrow_csv
 
@@ -34,6 +33,8 @@ _FRICTION = [
     "normal_force_offset_N",
     "tilt_found_rad",
 ]
+Columns = dict[str, np.ndarray]
+_ALONE = arrow_csv.ReadOptions(use_threads=False)  # small tables: threads cost more than they save
 _SLIP = ["run", "sample_noise", "mains_amplitude"]
 
 
@@ -89,9 +90,9 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
     made: list[Observation] = []
     for name in dict.fromkeys(str(run.get("instrument", "")) for run in folder.done):
         runs = [run for run in folder.done if str(run.get("instrument", "")) == name]
-        names = [run["name"] for run in runs]
-        mine = friction[friction["run"].isin(names)]
-        noise = None if slip is None else slip[slip["run"].isin(names)]
+        names = {run["name"] for run in runs}
+        mine = _of_runs(friction, names)
+        noise = None if slip is None else _of_runs(slip, names)
         when = _began(runs, folder.made_at)
         for quantity, unit, value in _numbers(folder.campaign, runs, mine, noise):
             if np.isfinite(value):
@@ -99,7 +100,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
     return made, folder
 
 
-def _table(folder: Folder, name: str, columns: Sequence[str]) -> pd.DataFrame | None:
+def _table(folder: Folder, name: str, columns: Sequence[str]) -> Columns | None:
     """Read some columns of a table, which is a tenth of the work for all of them."""
     path = folder.path / "tables" / f"{name}.csv"
     if not path.is_file():
@@ -110,10 +111,17 @@ def _table(folder: Folder, name: str, columns: Sequence[str]) -> pd.DataFrame | 
             include_missing_columns=True,
             column_types={c: pa.string() if c == "run" else pa.float64() for c in columns},
         )
-        table: pd.DataFrame = arrow_csv.read_csv(path, convert_options=options).to_pandas()
+        table = arrow_csv.read_csv(path, _ALONE, convert_options=options)
     except (OSError, pa.ArrowInvalid) as error:
         raise ReadError(f"{path}: no table ({brief(error)})") from error
-    return table
+    pairs = zip(table.column_names, table.columns, strict=True)
+    return {name: column.to_numpy() for name, column in pairs}
+
+
+def _of_runs(table: Columns, names: Collection[str]) -> Columns:
+    """Return the rows of some runs."""
+    mine = np.array([run in names for run in table["run"]], dtype=bool)
+    return {name: column[mine] for name, column in table.items()}
 
 
 def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
@@ -130,11 +138,11 @@ def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
 def _numbers(
     campaign: Campaign | None,
     runs: Sequence[Json],
-    friction: pd.DataFrame,
-    slip: pd.DataFrame | None,
+    friction: Columns,
+    slip: Columns | None,
 ) -> Iterable[tuple[str, str, float]]:
     """Yield quantity, unit and value."""
-    column = {name: friction[name].to_numpy(dtype=float) for name in _FRICTION[1:]}
+    column = friction
     yield "zero of the friction force", "N", _middle(column["friction_force_offset_N"])
     yield "zero of the normal force", "N", _middle(column["normal_force_offset_N"])
     tilt = _middle(column["tilt_found_rad"])
@@ -148,8 +156,8 @@ def _numbers(
         ratio = column[value] / np.where(column[wanted] > 0, column[wanted], np.nan)
         yield f"set-point error of the {what}", "1", _middle(ratio) - 1
     if slip is not None:
-        yield "noise of friction", "1", _middle(slip["sample_noise"].to_numpy(dtype=float))
-        yield "hum of the mains", "1", _middle(slip["mains_amplitude"].to_numpy(dtype=float))
+        yield "noise of friction", "1", _middle(slip["sample_noise"])
+        yield "hum of the mains", "1", _middle(slip["mains_amplitude"])
     shifts = [run.get("clock_shift_s") for run in runs]
     yield "clock shift", "s", _middle(np.array([s for s in shifts if s is not None], dtype=float))
     if campaign is not None:
@@ -157,23 +165,21 @@ def _numbers(
 
 
 def _of_reference(
-    campaign: Campaign, runs: Sequence[Json], friction: pd.DataFrame
+    campaign: Campaign, runs: Sequence[Json], friction: Columns
 ) -> Iterable[tuple[str, str, float]]:
     """Yield what runs on a reference sample say."""
     reference = campaign.reference
     if reference.files is None:
         return
-    named = [
+    named = {
         run["name"]
         for run in runs
         if any(is_named(campaign, reference.files, file) for file in run["files"])
-    ]
-    mine = friction[friction["run"].isin(named)]
+    }
+    mine = _of_runs(friction, named)
     if reference.dead_weight is not None:
-        force = mine["normal_force_N"].to_numpy(dtype=float)
-        yield GAIN, "1", _middle(force) / reference.dead_weight
-    value = mine["friction_coefficient"].to_numpy(dtype=float)
-    speed = mine["sliding_speed_m_s"].to_numpy(dtype=float)
+        yield GAIN, "1", _middle(mine["normal_force_N"]) / reference.dead_weight
+    value, speed = mine["friction_coefficient"], mine["sliding_speed_m_s"]
     known = np.isfinite(value) & (speed > 0)
     if not known.any():
         return

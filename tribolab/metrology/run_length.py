@@ -19,6 +19,7 @@ from tribolab.metrology.control_charts import (
 )
 
 _SERIES, _BLOCK, _LONGEST = 4000, 250, 2000
+_SHORT, _MORE = 400, 4  # points up to which so many times as many series are affordable
 _SEED = 20260101
 
 
@@ -87,18 +88,19 @@ def _run_lengths(
 ) -> NDArray[np.float64]:
     """Points until the first signal of many simulated series."""
     rng = np.random.default_rng(_SEED)
-    usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(_SERIES), np.ones(_SERIES)
+    count = _SERIES * (_MORE if longest <= _SHORT else 1)
+    usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(count), np.ones(count)
     if baseline is not None and baseline >= FEWEST:
-        before = rng.normal(size=(_SERIES, baseline))
+        before = rng.normal(size=(count, baseline))
         centre = before.mean(axis=1)
         sigma, freedom = before.std(axis=1, ddof=1), baseline - 1.0
         if baseline >= MANY:
             sigma = np.abs(np.diff(before, axis=1)).mean(axis=1) * math.sqrt(math.pi) / 2
             freedom *= RANGE_FREEDOM
         usual = Baseline(0.0, 1.0, baseline, freedom)
-    lengths = np.full(_SERIES, np.inf)
-    running = np.arange(_SERIES)
-    series = np.zeros((_SERIES, 0))
+    lengths = np.full(count, np.inf)
+    running = np.arange(count)
+    series = np.zeros((count, 0))
     while running.size and series.shape[1] < longest:
         # from the first point on: what the rules remember is not to be cut at a block
         start = series.shape[1]
