@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,7 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
 from tribolab.report.results import write_report
+from tribolab.report.slowest import slow_segments
 from tribolab.report.tables import read, write, write_rows
 
 RUNS = [
@@ -189,3 +191,19 @@ def test_results_open_by_name_with_every_digit(made):
 def test_an_option_that_does_not_exist_is_refused_before_anything_is_read(tmp_path):
     with pytest.raises(ConfigError, match="is none of"):
         run_campaign(tmp_path / "nowhere.toml", figures="some")
+
+
+def test_strokes_that_a_person_rejected_are_not_looked_at_closely():
+    rows = [
+        {"sliding_speed_m_s": speed, "direction": direction, "rejected": rejected}
+        for speed, direction, rejected in (
+            *((1e-6, 1, 1), (1e-5, -1, 0), (1e-5, 1, 0), (1.1e-5, 1, 0), (1e-4, 1, 0)),
+            *((1e-3, 1, 0), (None, 1, 0)),
+        )
+    ]
+    outcome = SimpleNamespace(done=True, data_file="data/a.nc")
+    entry = SimpleNamespace(record=SimpleNamespace(outcome=outcome, slip=rows))
+    store = SimpleNamespace(get=lambda kind, name, record: entry if name == "a" else None)
+    curve = SimpleNamespace(run_names=("gone", "a"))
+    slow = slow_segments(curve, SimpleNamespace(store=store))
+    assert slow == ("a", "data/a.nc", ((2, 1e-5), (4, 1e-4)))

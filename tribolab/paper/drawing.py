@@ -196,7 +196,8 @@ def both_rough(data: PaperData) -> Drawn:
     return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured)
 
 
-def _all_loads(data: PaperData, name: str) -> Drawn:
+def all_loads(data: PaperData, name: str) -> Drawn:
+    """Stribeck curves of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
     off = [
@@ -210,16 +211,6 @@ def _all_loads(data: PaperData, name: str) -> Drawn:
 def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
     v = np.log(points.sliding_speed.values)
     return np.interp(v, np.log(model.sliding_speed.values), model.friction_coefficient.values)
-
-
-def loads_less_rough(data: PaperData) -> Drawn:
-    """Stribeck curves of Sb-S."""
-    return _all_loads(data, "Sb-S")
-
-
-def loads_rough(data: PaperData) -> Drawn:
-    """Stribeck curves of Sb-R."""
-    return _all_loads(data, "Sb-R")
 
 
 def shear_stress(data: PaperData) -> Drawn:
@@ -286,51 +277,28 @@ def _largest_rise(curve: xr.Dataset) -> str:
     return f"{float(rise[at]):.2g}, {100 * part:.2g} % at {v}"
 
 
-def _profiles(data: PaperData, name: str) -> Drawn:
-    profiles = data.read("wet", name, "profiles")
+def profiles(data: PaperData, name: str) -> Drawn:
+    """Profiles across the contact of a surface."""
+    across = data.read("wet", name, "profiles")
     said = _listed(
         f"{speed_text(float(v))}: smallest separation "
-        f"{1e6 * float(profiles.separation.sel(sliding_speed=v).min()):.3g} µm, "
+        f"{1e6 * float(across.separation.sel(sliding_speed=v).min()):.3g} µm, "
         f"pressures of contact and fluid at most "
         + " and ".join(
-            f"{1e-6 * float(profiles[key].sel(sliding_speed=v).max()):.3g}"
+            f"{1e-6 * float(across[key].sel(sliding_speed=v).max()):.3g}"
             for key in ("contact_pressure", "fluid_pressure")
         )
         + " MPa"
-        for v in profiles.sliding_speed.values
+        for v in across.sliding_speed.values
     )
-    return plot.film_profiles(profiles), said
+    return plot.film_profiles(across), said
 
 
-def profiles_less_rough(data: PaperData) -> Drawn:
-    """Profiles of Sb-S."""
-    return _profiles(data, "Sb-S")
-
-
-def profiles_rough(data: PaperData) -> Drawn:
-    """Profiles of Sb-R."""
-    return _profiles(data, "Sb-R")
-
-
-def _bars(data: PaperData, name: str) -> Drawn:
+def bars(data: PaperData, name: str) -> Drawn:
+    """Error bars of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (
         end(float(end(c.friction_coefficient_std.values)) for c in measured) for end in (min, max)
     )
     said = f" Standard deviation from {smallest:.2g} to {largest:.2g}."
     return plot.friction_spread(measured, surfaces=SURFACES), _friction_of(measured) + said
-
-
-def bars_less_rough(data: PaperData) -> Drawn:
-    """Error bars, Sb-S."""
-    return _bars(data, "Sb-S")
-
-
-def bars_rough(data: PaperData) -> Drawn:
-    """Error bars, Sb-R."""
-    return _bars(data, "Sb-R")
-
-
-def bars_smooth(data: PaperData) -> Drawn:
-    """Error bars, Smooth."""
-    return _bars(data, "Smooth")

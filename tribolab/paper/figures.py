@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 from tribolab.paper import drawing
@@ -168,12 +169,12 @@ FIGURES = (
     PlannedFigure(
         "stribeck_sb-s", "stribeck", "Sb-S at all loads", (COMPUTED, SIMULATED),
         "Lines: theory with the printed shear stress of each load. " + _POINTS,
-        drawing.loads_less_rough, (("shear_stress", "Sb-S", ""),),
+        partial(drawing.all_loads, name="Sb-S"), (("shear_stress", "Sb-S", ""),),
     ),
     PlannedFigure(
         "stribeck_sb-r", "stribeck", "Sb-R at all loads", (COMPUTED, SIMULATED),
         "Lines: theory with the printed shear stress of each load. " + _POINTS,
-        drawing.loads_rough, (("shear_stress", "Sb-R", ""),),
+        partial(drawing.all_loads, name="Sb-R"), (("shear_stress", "Sb-R", ""),),
     ),
     PlannedFigure(
         "shear_stress", "stribeck", "Shear stress over load", (COMPUTED, SIMULATED),
@@ -234,7 +235,7 @@ FIGURES = (
         "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),
         "The flat slides to the right: (a) mean separation, (b) pressure in the solid contact, (c) "
         "pressure in the fluid. The paper does not print its speeds; these are ours.",
-        drawing.profiles_less_rough,
+        partial(drawing.profiles, name="Sb-S"),
         (
             ("contact_max_pressure", "Sb-S", ""),
             ("contact_width", "Sb-S", ""),
@@ -244,7 +245,7 @@ FIGURES = (
     PlannedFigure(
         "profiles_sb-r", "profiles", "Across the contact of Sb-R at 310 N/m", (COMPUTED,),
         "As above, for Sb-R.",
-        drawing.profiles_rough,
+        partial(drawing.profiles, name="Sb-R"),
         (
             ("contact_max_pressure", "Sb-R", ""),
             ("contact_width", "Sb-R", ""),
@@ -254,13 +255,9 @@ FIGURES = (
     *(
         PlannedFigure(
             f"error_bars_{name.lower()}", "bars", f"{name} with error bars", (SIMULATED,),
-            _BARS, draw,
+            _BARS, partial(drawing.bars, name=name),
         )
-        for name, draw in (
-            ("Sb-S", drawing.bars_less_rough),
-            ("Sb-R", drawing.bars_rough),
-            ("Smooth", drawing.bars_smooth),
-        )
+        for name in ("Sb-S", "Sb-R", "Smooth")
     ),
 )  # fmt: skip
 BY_NAME = {figure.name: figure for figure in FIGURES}

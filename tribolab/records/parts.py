@@ -232,6 +232,11 @@ class SurfaceOutcome(HasStatus):
     kept: str = ""
 
     @property
+    def label(self) -> str:
+        """Its name; what follows from bad scans must not be taken for the others' like."""
+        return self.name + (" (bad scans)" if self.quality in ("fail", "error") else "")
+
+    @property
     def unreadable(self) -> tuple[Finding, ...]:
         """What could not be read or computed."""
         grave = ("fail", "error")

@@ -15,10 +15,9 @@ from tribolab.friction.decisions.rejected import kept
 from tribolab.io.netcdf import read_groups, read_netcdf
 from tribolab.plot.runs.signals import LOOKED_AT
 from tribolab.records.mode_record import ModeRecord, condition
-from tribolab.records.parts import number_of
-from tribolab.records.run_record import RunRecord
 from tribolab.records.wording import with_error
 from tribolab.report.figures.files import Drawn
+from tribolab.report.slowest import lowest_loads, slow_segments
 from tribolab.words import many, number, span, speed_text
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from tribolab.plot.slip.stick_slip import Trace
     from tribolab.records.parts import CurveOutcome
 
-_SLOWEST = 2  # speeds of each condition that are stacked
 _MOST_TRACES = 8
 _MOST_SPECTRA = 6
 
@@ -80,26 +78,27 @@ def plan_sliding_figures(
     """
     names = tuple(surface.name for surface in outcome.surfaces)
     files = {run.name: run.data_file for run in outcome.runs if run.done}
-    lowest = _lowest(curves)
-    slow = {curve.name: _slow_segments(curve, outcome) for curve in lowest}
+    lowest = lowest_loads(curves)
+    slow = {curve.name: slow_segments(curve, outcome) for curve in lowest}
     moving = [c for c in curves if c.name in modes and modes[c.name].moves]
-    slow |= {c.name: _slow_segments(c, outcome) for c in moving if c.name not in slow}
+    slow |= {c.name: slow_segments(c, outcome) for c in moving if c.name not in slow}
     first = {c.name: files[c.run_names[0]] for c in curves if c.run_names[0] in files}
     planned: list[tuple[str, str, str, str, list[Shown]]] = []
     for surface, stem in traces_stems(curve.surface for curve in lowest).items():
         title = f"{surface or 'Runs'}: friction over sliding distance"
         caption = f"{title}. The slowest speeds of each medium, shifted by what stands beside them."
         shown = [
-            Shown(curve.medium or run, files[run], segment)
+            Shown(curve.medium or known.run, known.file, segment)
             for curve in lowest
-            if curve.surface == surface
-            for run, segment, _ in slow[curve.name]
+            if curve.surface == surface and (known := slow[curve.name])
+            for segment, _ in known.segments
         ]
         planned.append(("traces", stem, title, caption, shown[:_MOST_TRACES]))
     spectra = [
-        Shown(f"{speed_text(speed)}, {condition(curve)}", files[run], segment)
+        Shown(f"{speed_text(speed)}, {condition(curve)}", known.file, segment)
         for curve in (moving or lowest)[:_MOST_SPECTRA]
-        for run, segment, speed in slow[curve.name][:1]
+        if (known := slow[curve.name])
+        for segment, speed in known.segments[:1]
     ]
     planned.append(("spectra", "slip_spectra", "Spectra of friction", _SPECTRA, spectra))
     runs = [Shown(condition(c), first[c.name]) for c in lowest if c.name in first]
@@ -155,38 +154,6 @@ def draw_sliding(what: SlipFigure, folder: Path) -> Drawn | None:
     figure, words, marks = drawn
     caption = " ".join([what.caption, *marks])
     return Drawn(figure, caption, f"{what.title}. {words}.", what.kind)
-
-
-def _lowest(curves: Sequence[CurveOutcome]) -> list[CurveOutcome]:
-    """Curves at the lowest load of their surface and medium."""
-    best: dict[tuple[str, str], CurveOutcome] = {}
-    for curve in curves:
-        key = curve.surface, curve.medium
-        force = curve.normal_force or 0.0
-        if key not in best or force < (best[key].normal_force or 0.0):
-            best[key] = curve
-    return list(best.values())
-
-
-def _slow_segments(curve: CurveOutcome, outcome: Outcome) -> list[tuple[str, int, float]]:
-    """Name of the first run, and its forward segments at the slowest speeds, with these."""
-    for name in curve.run_names:
-        entry = outcome.store.get("run", name, RunRecord)
-        rows = [] if entry is None else entry.record.slip
-        moving = [
-            (speed, k)
-            for k, row in enumerate(rows)
-            if not row.get("rejected")
-            and (speed := float(number_of(row, "sliding_speed_m_s") or 0.0)) > 0
-            and (number_of(row, "direction") or 0) >= 0
-        ]
-        apart: list[tuple[str, int, float]] = []
-        for speed, k in sorted(moving):
-            if not apart or speed > 1.2 * apart[-1][2]:
-                apart.append((name, k, speed))
-        if apart:
-            return apart[:_SLOWEST]
-    return []
 
 
 Made = tuple["Figure", str, list[str]]

@@ -59,20 +59,15 @@ class _Kind:
 def plan_surface_figures(surfaces: Sequence[SurfaceOutcome]) -> list[SurfaceFigure]:
     """Choose the figures for which at least one surface has data."""
     done = [surface for surface in surfaces if surface.done]
-    names = tuple(map(_label, surfaces))
+    names = tuple(surface.label for surface in surfaces)
     planned = []
     for kind, known in _KINDS.items():
-        mine = [(_label(s), s.data_file) for s in done if known.group in s.parts][:_MOST_IN_ONE]
+        mine = [(s.label, s.data_file) for s in done if known.group in s.parts][:_MOST_IN_ONE]
         if kind == "modulus":
             mine = mine[:1]  # one rubber
         if mine:
             planned.append(SurfaceFigure(kind, tuple(mine), names))
     return planned
-
-
-def _label(surface: SurfaceOutcome) -> str:
-    """Name of a surface; what follows from bad scans must not be taken for the others' like."""
-    return surface.name + (" (bad scans)" if surface.quality in ("fail", "error") else "")
 
 
 def draw_surfaces(what: SurfaceFigure, folder: Path) -> Drawn:

@@ -12,8 +12,7 @@ from tribolab.campaign.recorded import done_and_failed
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.parts import Notice, number_of
-from tribolab.records.run_record import RunRecord
+from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import Friction, card_figures, model_figures
@@ -22,14 +21,12 @@ from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveTask, Missed, live_task
 from tribolab.report.live.shown import ShownFigure, shown_figure
-from tribolab.report.live.sliding import Judged, Slow, record_of_sliding
+from tribolab.report.live.sliding import Judged, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
+from tribolab.report.slowest import slow_segments
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome
-    from tribolab.records.parts import CurveOutcome
-
-_SLOWEST = 2  # speeds of each condition whose traces are drawn
 
 
 def live_figures(
@@ -88,7 +85,7 @@ def _tasks(
 ) -> list[LiveTask]:
     """Plan what is made from data files, of each kind all at once."""
     judged = [
-        Judged(curve.outcome, modes[curve.outcome.name], _slow(outcome, curve.outcome))
+        Judged(curve.outcome, modes[curve.outcome.name], slow_segments(curve.outcome, outcome))
         for curve in curves
         if curve.outcome.name in modes
     ]
@@ -125,23 +122,3 @@ def _tasks(
             store,
         ),
     ]
-
-
-def _slow(outcome: OpenOutcome, curve: CurveOutcome) -> Slow | None:
-    """Return the first run of a curve, and its forward segments at the slowest speeds."""
-    for name in curve.run_names:
-        entry = outcome.store.get("run", name, RunRecord)
-        if entry is None or not entry.record.outcome.done:
-            continue
-        apart: list[tuple[int, float]] = []
-        moving = [
-            (float(number_of(row, "sliding_speed_m_s") or 0.0), number)
-            for number, row in enumerate(entry.record.slip)
-            if (number_of(row, "direction") or 0) >= 0
-        ]
-        for speed, number in sorted(moving):
-            if speed > 0 and (not apart or speed > 1.2 * apart[-1][1]):
-                apart.append((number, speed))
-        if apart:
-            return Slow(name, entry.record.outcome.data_file, tuple(apart[:_SLOWEST]))
-    return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,6 +25,7 @@ from tribolab.report.live.figure import (
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figure
 from tribolab.report.plain import plain_speed
+from tribolab.report.slowest import Slow, lowest_loads
 from tribolab.words import force_text, number
 
 if TYPE_CHECKING:
@@ -34,14 +35,6 @@ _MOST_EVENTS = 300
 _EXCERPT = 800  # points of a slow trace
 # Of what is looked at and of what stands beside it: in a liquid, and dry, in the same colour.
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
-
-
-class Slow(NamedTuple):
-    """A run, its data file, and its slowest forward segments with their speeds [m/s]."""
-
-    run: str
-    file: str
-    segments: tuple[tuple[int, float], ...]
 
 
 class Judged(NamedTuple):
@@ -67,7 +60,8 @@ def record_of_sliding(
         The results folder with the data files of the runs.
     """
     colours = places([*surfaces, *(contact.curve.surface for contact in judged)])
-    lowest = list(_lowest(judged))
+    by_name = {contact.curve.name: contact for contact in judged}
+    lowest = [by_name[curve.name] for curve in lowest_loads(contact.curve for contact in judged)]
     opened = [_opened(contact, colours, folder) for contact in lowest if contact.slow is not None]
     figures = [
         _waveforms(judged),
@@ -78,17 +72,6 @@ def record_of_sliding(
         _spectrogram(opened),
     ]
     return LiveRecord(tuple(shown_figure(figure) for figure in figures if figure is not None))
-
-
-def _lowest(judged: Iterable[Judged]) -> Iterable[Judged]:
-    """Return the lowest load of each surface and medium: the others slide alike or more evenly."""
-    best: dict[tuple[str, str], Judged] = {}
-    for contact in judged:
-        key = contact.curve.surface, contact.curve.medium
-        force = contact.curve.normal_force or 0.0
-        if key not in best or force < (best[key].curve.normal_force or 0.0):
-            best[key] = contact
-    return best.values()
 
 
 def _system(curve: CurveOutcome) -> str:

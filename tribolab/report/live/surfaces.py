@@ -64,7 +64,7 @@ def record_of_surfaces(
             colours[outcome.name],
             folder / outcome.data_file,
             outcome.parts,
-            outcome.name + (" (bad scans)" if outcome.quality in ("fail", "error") else ""),
+            outcome.label,
         )
         for outcome in surfaces
         if outcome.done

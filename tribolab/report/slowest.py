@@ -1,0 +1,55 @@
+"""What of stick-slip is looked at closely: the lowest load of each contact, its slowest strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from tribolab.campaign.store.outcome import Outcome
+from tribolab.records.parts import CurveOutcome, number_of
+from tribolab.records.run_record import RunRecord
+
+_SLOWEST = 2  # speeds of each condition
+_APART = 1.2  # ratio of two speeds that are not one
+
+
+class Slow(NamedTuple):
+    """A run, its data file, and its slowest forward segments with their speeds [m/s]."""
+
+    run: str
+    file: str
+    segments: tuple[tuple[int, float], ...]
+
+
+def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
+    """Return the lowest load of each surface and medium: the others slide alike or more evenly."""
+    best: dict[tuple[str, str], CurveOutcome] = {}
+    for curve in curves:
+        key = curve.surface, curve.medium
+        force = curve.normal_force or 0.0
+        if key not in best or force < (best[key].normal_force or 0.0):
+            best[key] = curve
+    return list(best.values())
+
+
+def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
+    """Return the first run of a curve, and its forward segments at the slowest speeds.
+
+    What a person rejected is not among them; None if nothing is left.
+    """
+    for name in curve.run_names:
+        entry = outcome.store.get("run", name, RunRecord)
+        if entry is None or not entry.record.outcome.done:
+            continue
+        moving = [
+            (float(number_of(row, "sliding_speed_m_s") or 0.0), number)
+            for number, row in enumerate(entry.record.slip)
+            if (number_of(row, "direction") or 0) >= 0 and not row.get("rejected")
+        ]
+        apart: list[tuple[int, float]] = []
+        for speed, number in sorted(moving):
+            if speed > 0 and (not apart or speed > _APART * apart[-1][1]):
+                apart.append((number, speed))
+        if apart:
+            return Slow(name, entry.record.outcome.data_file, tuple(apart[:_SLOWEST]))
+    return None
