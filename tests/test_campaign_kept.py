@@ -151,14 +151,14 @@ def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
     earlier.close()
     store = Store(tmp_path / "new", tmp_path / "old")
     died = replace(done, status="failed", error="WorkerDied", reason="out of memory", data_file="")
-    kept, is_kept = kept_model(store, ModelRecord(died))
-    assert is_kept and kept.outcome.done and "out of memory" in kept.outcome.kept
+    kept = kept_model(store, ModelRecord(died))
+    assert kept.outcome.done and "out of memory" in kept.outcome.kept
     assert kept.rows == ROWS
     assert (tmp_path / "new/data/model_a.nc").exists()
     wrong = ModelRecord(replace(died, error="AnalysisError"))  # an answer about the data stands
-    assert kept_model(store, wrong) == (wrong, False)
+    assert kept_model(store, wrong) == wrong
     (tmp_path / "old/data/model_a.nc").write_bytes(b"other")  # not what the record is of
-    assert kept_model(store, ModelRecord(died)) == (ModelRecord(died), False)
+    assert kept_model(store, ModelRecord(died)) == ModelRecord(died)
     store.close()
 
 

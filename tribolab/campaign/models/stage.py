@@ -92,8 +92,9 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
     def keep(self, task: ModelTask, place: int, record: ModelRecord) -> ModelOutcome:
         """Write down what came of a model, or the earlier one where it could not be computed."""
         model = task.model
-        record, is_kept = kept_model(self._store, record)
-        mark = "" if is_kept or not record.outcome.done else fingerprint_of(model.config_sha256)
+        record = kept_model(self._store, record)
+        stands = record.outcome.done and not record.outcome.kept
+        mark = fingerprint_of(model.config_sha256) if stands else ""
         self._store.put(KIND, model.name, place, mark, record)
         return record.outcome
 

@@ -6,14 +6,15 @@ says so, and since when; it is dropped when the campaign no longer names its fil
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from tribolab.records.parts import Finding, ModelOutcome, SurfaceOutcome
+from tribolab.campaign.store.catalogue import Store
+from tribolab.records.part_records import ModelRecord, SurfaceRecord
+from tribolab.records.parts import Finding
 
-Part = TypeVar("Part", SurfaceOutcome, ModelOutcome)
+Record = TypeVar("Record", SurfaceRecord, ModelRecord)
 
 # The files were read, and the answer is about what is in them: it stands.
 VERDICTS = ("AnalysisError",)
@@ -32,11 +33,35 @@ def kept_text(path: Path, why: str) -> str:
     return f"kept from {when or 'before'}: {why}"
 
 
-def kept_outcome(before: Part, text: str) -> Part:
-    """Return an earlier outcome with a finding that it is kept, and why."""
-    findings = (*_others(before.findings, before.kept), Finding("fail", text))
-    return replace(before, findings=findings, reused=False, kept=text)
+def kept_record(
+    store: Store, kind: str, earlier: Record, why: str, data_file: str = ""
+) -> Record | None:
+    """Return an earlier record with a finding that it is kept, and why.
 
+    Parameters
+    ----------
+    store
+        It has the data file of the earlier record linked among the new ones.
+    kind, earlier
+        Where it stood in the catalogue, and the record.
+    why
+        In words.
+    data_file
+        How the file is called now; by default as before.
 
-def _others(findings: Iterable[Finding], kept: str) -> list[Finding]:
-    return [finding for finding in findings if finding.message != kept]
+    Returns
+    -------
+    SurfaceRecord, ModelRecord or None
+        None if the data file is not as it was written.
+    """
+    before = earlier.outcome
+    if store.previous is None:
+        return None
+    text = kept_text(store.previous / before.data_file, why)
+    now = data_file or before.data_file
+    if not store.link(kind, before.name, before.data_file, now):
+        return None
+    findings: list[Finding] = [f for f in before.findings if f.message != before.kept]
+    findings.append(Finding("fail", text))
+    outcome = replace(before, findings=tuple(findings), reused=False, kept=text, data_file=now)
+    return replace(earlier, outcome=outcome)

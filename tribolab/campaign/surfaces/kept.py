@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.named import is_named
-from tribolab.campaign.store.kept import GONE, VERDICTS, kept_outcome, kept_text
+from tribolab.campaign.store.kept import GONE, VERDICTS, kept_record
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding
 
@@ -20,24 +19,19 @@ if TYPE_CHECKING:
 
 def kept_surface(
     campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
-) -> tuple[SurfaceRecord, bool]:
+) -> SurfaceRecord:
     """Return the earlier record of a surface some of whose files cannot be read now.
 
-    They are its scans and its modulus. Without such files, or without earlier results, the record
-    comes back as it is.
-
-    Returns
-    -------
-    tuple of SurfaceRecord and bool
-        The record, and whether it is an earlier one.
+    They are its scans and its modulus. It says in its outcome that it is kept; without such files,
+    or without earlier results, the record comes back as it is.
     """
     now = record.outcome
     known = store.before.get("surface", now.name, SurfaceRecord)
-    if known is None or store.previous is None or now.status == "skipped":
-        return record, False
+    if known is None or now.status == "skipped":
+        return record
     before, sources = known.record.outcome, known.record.sources
     if not before.done:
-        return record, False
+        return record
     patterns = next(s.scans or () for s in campaign.surface if s.name == now.name)
     names = [label for label, _, _ in sources]
     content = {checksum for _, checksum, _ in record.sources}
@@ -60,12 +54,9 @@ def kept_surface(
     if not now.done and now.error not in VERDICTS:
         why.append(now.reason)
     if not why:
-        return record, False
-    text = kept_text(store.previous / before.data_file, f"{what} cannot be read now ({why[0]})")
-    if not store.link("surface", now.name, before.data_file, planned.data_file):
-        return record, False
-    outcome = replace(kept_outcome(before, text), data_file=planned.data_file)
-    return replace(known.record, outcome=outcome), True
+        return record
+    text = f"{what} cannot be read now ({why[0]})"
+    return kept_record(store, "surface", known.record, text, planned.data_file) or record
 
 
 def _left_out(findings: Iterable[Finding], labels: Iterable[str]) -> set[str]:

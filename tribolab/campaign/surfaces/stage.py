@@ -94,8 +94,8 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         """Write down what came of a surface; earlier results stay where scans cannot be read."""
         surface = task.surface
         mark = fingerprint_of(surface.config_sha256)
-        record, is_kept = kept_surface(self._campaign, surface, self._store, record)
-        self._store.put(KIND, surface.name, place, "" if is_kept else mark, record)
+        record = kept_surface(self._campaign, surface, self._store, record)
+        self._store.put(KIND, surface.name, place, "" if record.outcome.kept else mark, record)
         files = [path for path, _ in _files(surface)]
         self._store.note_sources(zip(files, record.sources, strict=False), self._began)
         return record
