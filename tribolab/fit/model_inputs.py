@@ -18,7 +18,7 @@ from tribolab.units import positive
 
 INPUTS = ("load", "radius", "youngs_modulus")
 _STEP = 0.02  # of ln x, to both sides
-_CELLS = 160  # a change needs no finer mesh than this: its error is on both sides
+_CELLS = 100  # a change needs no finer mesh than this: its error is on both sides
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 SOLID = "friction_per_shear_stress"
 _MOVED = ("fluid_part", "solid_part", "solid_part_other")

@@ -13,7 +13,7 @@ from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
-from tribolab.fit.variations import Base, Skipped, Variation, held_fixed, variations
+from tribolab.fit.variations import Base, Changed, Skipped, Variation, held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.system import CELLS
@@ -226,7 +226,9 @@ def _all_ends(
             if end is None:
                 continue
             try:
-                changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
+                changed = _of_the_same_films(reference, end)
+                if changed is None:
+                    changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
             except AnalysisError as error:
                 where = f"varied {variation.name} ({variation.texts[j]})"
                 raise AnalysisError(error, where=where) from error
@@ -242,6 +244,19 @@ def _all_ends(
             fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
             mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
     return mu, fitted, limits
+
+
+def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
+    """Return the curve of an end that changes no film, as the reference knows it; else None."""
+    if end.keys() == {"area"}:
+        return reference.assign(
+            friction_per_shear_stress=reference["friction_per_shear_stress_other"]
+        )
+    if end == {"friction_factors": False}:
+        bare = reference["friction_without_factors"] - reference["friction_coefficient_solid"]
+        couette, pressure = _PARTS
+        return reference.assign({couette: bare, pressure: 0.0 * bare})
+    return None
 
 
 def _range(

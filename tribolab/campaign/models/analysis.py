@@ -70,16 +70,17 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     fit = inputs = None
     try:
         inputs = _inputs(model, points[points > 0], contact, psd, load, body)
-        fit = _fit(model, measured, contact, psd, load, computed, folder, inputs)
+        enhancement = _enhancement(model, folder)
+        fit = _fit(model, measured, contact, psd, load, computed, enhancement, inputs)
     except AnalysisError as error:  # recorded, as above
         findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
     if fit is not None:
         # friction that helps the motion is no model: the best that is one has no shear stress
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
-        _, low, high = _enhancement(model, folder)
+        _, low, high = enhancement
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
         other, moved = _with_other_area(computed), inputs and _with_other_area(inputs)
-        again = _fit(model, measured, contact, psd, load, other, folder, moved)
+        again = _fit(model, measured, contact, psd, load, other, enhancement, moved)
         groups["fit"] = beside(fit, measured).assign_attrs(
             **bounds,
             area=model.area,
@@ -108,10 +109,10 @@ def _fit(
     psd: xr.Dataset,
     load: float,
     computed: xr.Dataset,
-    folder: Path,
+    enhancement: tuple[float, float, float],
     inputs: xr.Dataset | None,
 ) -> ShearStressFit:
-    enhancement, low, high = _enhancement(model, folder)
+    best, low, high = enhancement
     runs = float(np.median(measured["runs"].values))
     return fit_shear_stress(
         measured,
@@ -120,9 +121,9 @@ def _fit(
         model.viscosity,
         load,
         speed_range=model.settings["fit_speeds"],
-        area_enhancement=enhancement,
+        area_enhancement=best,
         # the bounds lie unevenly: the error reaches the farther one with 95 %
-        area_enhancement_error=max(enhancement - low, high - enhancement) / _95,
+        area_enhancement_error=max(best - low, high - best) / _95,
         common_error=model.repeatability / np.sqrt(runs),
         common_freedom=model.freedom,
         curve=computed,
