@@ -126,3 +126,17 @@ def test_a_correction_takes_a_quantity_from_the_column_that_had_it(tmp_path):
         corrected(draft, "friction_force", 4)
     with pytest.raises(ReadError, match="needs a unit of normal_force"):
         corrected(draft, "normal_force", 1)
+
+
+def test_heights_without_positions_are_read_once_their_pitch_is_said(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "line.txt"
+    heights = np.sin(np.arange(200) / 9)
+    file.write_text("Z\n" + "".join(f"{z:.4f}\n" for z in heights))
+    refused = command("dialect", file.name, "--no-ask")
+    assert refused.exit_code == 3 and "how far they lie apart" in refused.output
+    done = command("dialect", file.name, "--ask", typed="2 s\n0.25 um\nnm\n")
+    assert done.exit_code == 0, done.output
+    scan = tl.read_scans(file, instrument="line.toml")
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+    np.testing.assert_allclose(scan.height[0], 1e-9 * heights, atol=1e-13)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,6 +12,7 @@ import tribolab as tl
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ReadError
 from tribolab.io.inertia import acceleration
+from tribolab.records.traces import trace
 from tribolab.rig import DryLaw
 from tribolab.rig.layouts.motion import Leg, carried_out, crank
 from tribolab.rig.layouts.record import Sensors, recorded
@@ -109,6 +112,10 @@ def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
     again = tl.read(tmp_path / "results" / "data" / "found.nc")
     assert again.attrs["moving_mass_kg"] == pytest.approx(1.2, rel=0.01)
     assert again["inertial_force"].attrs["units"] == "N"
+    report = json.loads((tmp_path / "results" / "report.json").read_text(encoding="utf-8"))
+    assert "that of 2 kg (stated) is taken out" in report["runs"][1]["inertia"]
+    drawn = trace(again, tl.find_segments(again), None, 300)["signals"]
+    assert [signal["label"] for signal in drawn][-1] == "inertia"
 
 
 def test_a_mass_without_motion_is_refused_with_the_cure(tmp_path):

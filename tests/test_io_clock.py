@@ -277,3 +277,20 @@ def test_unnamed_columns_with_a_clock_that_starts_anew_are_drafted_whole(tmp_pat
     file, _ = write(tmp_path, time - stroke * ROWS * STEP, signals, head="")
     run = drafted(file)
     np.testing.assert_allclose(run["time"], time, atol=1e-9)
+
+
+def test_a_counter_of_rows_that_wraps_is_a_clock_where_its_interval_is_stated(tmp_path):
+    """Rows that the logger lost around the wrap are a gap and not a shorter run."""
+    rows = np.arange(5000)
+    kept = ~np.isin(rows, [1022, 1023, 1024, 3071, 3072])
+    lines = (f"{row % 1024},{np.sin(row / 50):.4f},10" for row in rows[kept])
+    (tmp_path / "a.csv").write_text("Index,Fx [N],Fz [N]\n" + "\n".join(lines) + "\n")
+    (tmp_path / "mine.toml").write_text(
+        'name = "mine"\ntitle = "counter"\n[header]\nline = 1\n'
+        '[time]\nrestart = "continue"\nwrap = "2.048 s"\n[speed]\nsource = "none"\n'
+        '[[column]]\nquantity = "time"\nname = "Index"\nunit = "s"\nscale = 0.002\n'
+        '[[column]]\nquantity = "friction_force"\nname = "Fx"\n'
+        '[[column]]\nquantity = "normal_force"\nname = "Fz"\n'
+    )
+    run = tl.read(tmp_path / "a.csv", tmp_path / "mine.toml")
+    np.testing.assert_allclose(run.time, 0.002 * rows[kept], atol=1e-9)

@@ -49,9 +49,48 @@ def test_what_would_be_guessed_is_told_instead(tmp_path):
         read_scans(written(tmp_path, f"X,Z\n{ROWS}\n"))
     with pytest.raises(ReadError, match=r"how far they lie apart; .*pitch = \"0.25 um\""):
         read_scans(written(tmp_path, f"Z [um]\n{COLUMN}\n"))
-    twice = f"Raw\nX [mm],Z [um]\n{ROWS}\n\nFiltered\nX [mm],Z [um]\n{ROWS}\n"
-    with pytest.raises(ReadError, match="2 tables of heights"):
-        read_scans(written(tmp_path, twice))
+
+
+def tables(*titles):
+    """One table of heights below each title, each ten times as high as the one before."""
+    return "\n".join(
+        f"{title}\nX [mm],Z [um]\n"
+        + "\n".join(f"{0.00025 * n:.5f},{10**k * z:.4f}" for n, z in enumerate(Z))
+        + "\n"
+        for k, title in enumerate(titles)
+    )
+
+
+@pytest.mark.parametrize(
+    "titles",
+    [("Trace 1", "Trace 2", "Trace 3"), ("", "", ""), ("Ra = 0.5 um\nLine 1", "Line 2", "Line 3")],
+)
+def test_several_traces_in_a_file_are_scans_of_one_surface(tmp_path, titles):
+    path = written(tmp_path, tables(*titles))
+    scan = read_scans(path)
+    assert scan.sizes["scan"] == 3 and set(scan.file.values) == {"line.txt"}
+    assert scan.attrs["traces"] == "3"
+    for k in range(3):
+        np.testing.assert_allclose(scan.height[k], 1e-6 * 10**k * Z, rtol=0, atol=1e-10)
+    both = read_scans([path, written(tmp_path, tables("Trace 1"), "other.txt")])
+    assert list(both.file.values) == ["line.txt"] * 3 + ["other.txt"]
+    assert len(read_scans(path, stack=False)) == 3
+
+
+@pytest.mark.parametrize("titles", [("Raw", "Filtered"), ("Primary profile", "Roughness profile")])
+def test_versions_of_one_trace_are_told_apart_and_one_is_chosen(tmp_path, titles):
+    path = written(tmp_path, tables(*titles))
+    with pytest.raises(ReadError, match=f"no traces of one scan.*'{titles[0]}', '{titles[1]}'"):
+        read_scans(path)
+    toml = save_draft(draft_dialect(path), tmp_path / "own.toml")
+    text = toml.read_text()
+    toml.write_text(text.replace("[header]\n", f"[header]\nonly = '^{titles[1]}'\n"))
+    scan = read_scans(path, toml)
+    assert scan.sizes["scan"] == 1
+    np.testing.assert_allclose(scan.height[0], 1e-5 * Z, rtol=0, atol=1e-10)
+    toml.write_text(text.replace("[header]\n", "[header]\nonly = 'Waviness'\n"))
+    with pytest.raises(ReadError, match="no table's text matches 'Waviness'; there are: 'Raw'|'Pr"):
+        read_scans(path, toml)
 
 
 def dialect(tmp_path, *lines, value=""):

@@ -3,14 +3,16 @@
     python tests/benchmarks/scan_kinds.py [--write docs/scan_kinds.md]
 
 Over files that are written here with known heights, by SurfaceTopography's own writers where it
-has some, and over the measured files of ``../shared/data`` with numbers that were read off them
-independently. Wrong is a file that is not read (or not refused) as the table says, a height that
-is off by more than its last digit, a pitch that is off by 1e-6. The exit code is 1 then.
+has some, and over the measured files of ``../shared/data``, whose heights and pitch a few plain
+lines take off each file anew, by no reader of scans (`plain`). Wrong is a file that is not read
+(or not refused) as the table says, a height that is off by more than its last digit, a pitch that
+is off by 1e-6. The exit code is 1 then.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import struct
 import sys
 import tempfile
@@ -44,6 +46,9 @@ class Kind(NamedTuple):
     way: str = AT_ONCE
 
 
+Plain = tuple[np.ndarray, float]  # heights and pitch [m]
+
+
 class Row(NamedTuple):
     """A row of the table; `wrong` says why the verdict is so."""
 
@@ -66,13 +71,17 @@ def texts() -> Iterable[Kind]:
         "x and heights, units in a line of their own": f"Export\nX,Z\nmm,um\n{rows}",
         "a table of results before that of the profile": "Name,Value\nRa,0.5\n\n"
         f"X [mm],Z [um]\n{rows}",
+        "three traces, one below the other": "\n".join(
+            f"Trace {n}\nX [mm],Z [um]\n{rows}" for n in (1, 2, 3)
+        ),
         "heights alone, pitch and count before them": "Spacing: 0.25 um\nPoints: 240\n"
         f"Z [um]\n{column(LINE)}",
         "heights with decimal commas, German names": "Messpunktabstand: 0,25 µm\nHöhe [µm]\n"
         + column(LINE).replace(".", ","),
     }
     for about, text in said.items():
-        yield Kind(about, "line.txt", text.encode("latin-1"), LINE, 1e-10, DRAFTED)
+        truth = np.stack([LINE] * 3) if "three" in about else LINE
+        yield Kind(about, "line.txt", text.encode("latin-1"), truth, 1e-10, DRAFTED)
     head = "ISO 5436 - 2000 a\nPRF 1 ISO5436\nCX I 240 mm 1.0 D 2.5e-4\nCZ A 240 um 1.0 D\n\x03\n"
     smd = (head + column(LINE)).encode()
     yield Kind("SMD text (soft gauges)", "a.smd", smd, LINE, 1e-10)
@@ -192,6 +201,48 @@ class Measured(NamedTuple):
     refused: str = ""
 
 
+def pairs(lines: Iterable[str], mark: str, scales: tuple[float, float]) -> Plain:
+    """Take x and heights off the first two cells of lines."""
+    cells = (line.split(mark)[:2] for line in lines if line.strip())
+    x, heights = np.array([[float(cell) for cell in row] for row in cells]).T
+    return heights * scales[1], float(scales[0] * (x[-1] - x[0]) / (x.size - 1))
+
+
+def of_sdf(text: str) -> Plain:
+    """Take heights off the second part of an SDF text: profiles one after the other."""
+    head, body = text.split("*")[:2]
+    said = dict(line.split(" = ") for line in head.splitlines() if " = " in line)
+    return np.array(body.split(), float) * float(said["Zscale"]), float(said["Xscale"])
+
+
+def of_workbook(path: Path) -> Plain:
+    """Take the fifth and sixth column off a sheet, in mm and um."""
+    import openpyxl
+
+    sheet = openpyxl.load_workbook(path, read_only=True)["DATA"]
+    rows = [row[4:6] for row in sheet.iter_rows(values_only=True)]
+    filled = [row for row in rows if all(isinstance(cell, int | float) for cell in row)]
+    return pairs((f"{x};{z}" for x, z in filled), ";", (1e-3, 1e-6))
+
+
+def plain(path: Path) -> Plain:
+    """Read heights and pitch of a measured file without any reader of scans."""
+    if path.suffix == ".xlsx":
+        return of_workbook(path)
+    text = path.read_bytes().decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
+    if path.name.startswith("dektak"):
+        below = text.split("Scan Data\n")[1].split("\n")
+        rows = [line for line in below[1:] if re.match(r"[-\d.]+,", line)]
+        return pairs(rows, ",", (1e-6, 1e-6))
+    if path.suffix == ".sdf":
+        return of_sdf(text)
+    if path.name.startswith("gwyddion"):
+        rows = [line.split() for line in text.splitlines() if not line.startswith("#")]
+        heights = np.array(rows, float)
+        return heights, 12.34e-6 / heights.shape[1]
+    return pairs(text.splitlines(), "\t", (1e-3, 1e-6))
+
+
 MEASURED = (
     Measured(
         "bearing_profiles_MIT/NU206-RE-1.txt",
@@ -272,6 +323,12 @@ def of_measured(known: Measured) -> Row:
     faults = []
     if heights.size != known.points:
         faults.append(f"{heights.size} points, not {known.points}")
+    if known.rms:
+        own, pitch = plain(SHARED / known.file)
+        if own.size != heights.size or abs(float(np.std(own)) / known.rms - 1) > 1e-5:
+            faults.append(f"plainly read {own.size} points, rms height {np.std(own):.6g} m")
+        if abs(pitch / known.pitch - 1) > 1e-3:  # rounded positions
+            faults.append(f"plainly read pitch {pitch:.6g} m")
     if known.rms and abs(float(np.nanstd(heights)) / known.rms - 1) > 1e-5:
         faults.append(f"rms height {float(np.nanstd(heights)):.6g} m, not {known.rms:.6g}")
     if known.pitch and abs(scan.attrs["pitch_m"] / known.pitch - 1) > 1e-5:
@@ -303,6 +360,7 @@ PAGE = """# Files of profiles and maps
 Made by `tests/benchmarks/scan_kinds.py` over files with known heights and over measured ones.
 *At once*: `tl.read_scans(file)` reads it; *by its header*: as an unknown text that says all itself;
 *named or described*: with `instrument=`; *refused*: in one sentence that says what is missing.
+Heights and pitch of the measured profiles are those that a few plain lines take off the files.
 
 {table}
 

@@ -204,7 +204,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
             if path in task.results:
                 results[path] = read_tester_results(path)
             else:
-                scans[path] = read_scan(path, task.instrument)
+                scans |= read_scan(path, task.instrument)
         except ConfigError:
             raise
         except (TribolabError, OSError) as error:

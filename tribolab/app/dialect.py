@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.draft.columns.follows import SAYS_SPEED
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
-from tribolab.draft.dialect.draft import Draft
+from tribolab.draft.dialect.draft import Draft, holds_heights
 from tribolab.draft.model import DraftColumn, other_units
 from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
@@ -55,6 +55,8 @@ def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     """
     if draft.layout is None or draft.understood is None:
         return draft
+    if draft.kind == "table" and holds_heights(draft):
+        return _ask_for_pitch(draft, ask, say)
     for name, words in (_SCAN if draft.kind == "scan" else _RUN).items():
         draft = _ask_for(draft, name, words, ask, say)
     return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
@@ -75,16 +77,37 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft
     names = {column.quantity for column in understood.columns if column.used}
     if speed is not None or "rotation_speed" not in names or names & SAYS_SPEED:
         return draft
+    radius = _ask_length("what is the radius of the track, with its unit?", "radius", ask, say)
+    return written(draft, layout, understood._replace(radius=radius)) if radius else draft
+
+
+def _ask_for_pitch(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
+    """Ask how far heights lie apart that stand in a file without positions."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    question = "how far do neighbouring heights lie apart, with its unit?"
+    pitch = _ask_length(question, "pitch", ask, say)
+    if not pitch:
+        return draft
+    heights = understood.columns[0]._replace(quantity="height", used=True, guessed=(), note="")
+    heights = heights._replace(unit=_ask_unit(heights, "height", ask), fill_in="", options=())
+    understood = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
+    return written(draft, layout, understood)._replace(answer="")
+
+
+def _ask_length(question: str, name: str, ask: Ask, say: Callable[[str], None]) -> str:
+    """Ask for a length until it is one; "" if it is not known."""
     while True:
-        typed = ask(f"what is the radius of the track, with its unit? ({NONE}: not known)", NONE)
-        if typed.strip() == NONE:
-            return draft
+        typed = ask(f"{question} ({NONE}: not known)", NONE).strip()
+        if typed == NONE:
+            return ""
         try:
-            positive(typed, "m", "the radius")
+            positive(typed, "m", f"the {name}")
         except TribolabError as error:
             say(str(error.what))
             continue
-        return written(draft, layout, understood._replace(radius=typed.strip()))
+        return typed
 
 
 def _ask_for(draft: Draft, name: str, words: str, ask: Ask, say: Callable[[str], None]) -> Draft:

@@ -89,12 +89,12 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         return record
 
 
-def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
-    """Read a scan; what turns out to be none is told about as a run would be."""
-    from tribolab.draft.scans import read_scans
+def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
+    """Read the traces of a scan; what turns out to be none is told about as a run would be."""
+    from tribolab.draft.scans import read_traces
 
     try:
-        [scan] = read_scans([path], instrument, stack=False)
+        return read_traces(path, instrument)
     except ReadError as error:
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             # a map or profile, but for its units
@@ -107,7 +107,6 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> Any:
                     raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
                 raise
         raise
-    return scan
 
 
 def _is_text(path: Path) -> bool:
@@ -118,7 +117,8 @@ def _is_text(path: Path) -> bool:
 
 
 def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
-    scan = read_scan(path, instrument)
+    traces = list(read_scan(path, instrument).values())
+    scan = traces[0]
     name = str(scan.attrs.get("instrument", ""))
     axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
     lines = [
@@ -126,6 +126,8 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
         f"  {'profile' if axes == ['x'] else 'map'} of "
         f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
     ]
+    if len(traces) > 1:
+        lines.append(f"  {len(traces)} traces stand in the file, of the first:")
     for axis in axes:
         values = scan[axis].values
         length = float(values[-1] - values[0])

@@ -50,7 +50,8 @@ class Understood(NamedTuple):
     With `period` the column of time held intervals; its numbers are their sums by now.
     `radius` (with its unit) and `drive` are what a person said of a track and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
-    where no column is a position, `pitch_pattern` the distance of a profile's points.
+    where no column is a position, `pitch_pattern` the distance of a profile's points, or `pitch` is
+    what a person said of it.
     """
 
     kind: Kind
@@ -67,6 +68,7 @@ class Understood(NamedTuple):
     drive: str = ""
     pitch_pattern: str = ""
     pitch_unit: str = ""
+    pitch: str = ""
 
 
 _UNITS = {

@@ -69,14 +69,15 @@ def read_scans(
     x_unit, height_unit
         Units of positions and heights, for files that state none and have no dialect.
     stack
-        False: return a list with a dataset for each file, which may differ in pitch and length.
+        False: return a list with a dataset for each file, or for each trace in one, which may
+        differ in pitch and length.
 
     Returns
     -------
     xarray.Dataset or list of xarray.Dataset
         Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
-        names as ``file`` (scan). One map: ``height`` [m] (y, x), several: (scan, y, x). Missing
-        heights are NaN.
+        names as ``file`` (scan); of several traces in a file each is a scan. One map:
+        ``height`` [m] (y, x), several: (scan, y, x). Missing heights are NaN.
         Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
         ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
         has them. Attributes that differ between stacked scans are joined by ``"; "``.
@@ -104,22 +105,51 @@ def read_scans(
     files = files_of(paths)
     units = {"x_unit": x_unit, "height_unit": height_unit}
     if instrument is not None:
-        scans = read_known_scans(files, instrument, **units)
+        read = [read_known_scans([file], instrument, **units) for file in files]
     else:
-        scans = [_read(file, units) for file in files]
-    return stacked(files, scans) if stack else [stamp(scan) for scan in scans]
+        read = [_read(file, units) for file in files]
+    traces = [(file, scan) for file, scans in zip(files, read, strict=True) for scan in scans]
+    if not stack:
+        return [stamp(scan) for _, scan in traces]
+    return stacked([file for file, _ in traces], [scan for _, scan in traces])
 
 
-def _read(file: Path, units: dict[str, str | None]) -> xr.Dataset:
+def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, xr.Dataset]:
+    """Read all scans of one file, each by a name of its own.
+
+    Parameters
+    ----------
+    path
+        The file.
+    instrument
+        As for `read_scans`.
+
+    Returns
+    -------
+    dict
+        Of a file with one scan that by the file's path; of several traces each by a path that the
+        trace would have: "line.txt, trace 2".
+
+    Raises
+    ------
+    ReadError
+        As for `read_scans`.
+    """
+    scans = read_scans([path], instrument, stack=False)
+    if len(scans) == 1:
+        return {path: scans[0]}
+    return {path.with_name(f"{path.name}, trace {k}"): scan for k, scan in enumerate(scans, 1)}
+
+
+def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
     try:
-        [scan] = read_known_scans([file], **units)
+        return read_known_scans([file], **units)
     except ReadError as error:
         dialect = None if any(units.values()) else _drafted(file, error)
         if dialect is None:
             raise
-        [scan] = read_known_scans([file], dialect)
-        return scan.assign_attrs(instrument=DRAFTED, to_keep_it=how_to_keep(file))
-    return scan
+        told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
+        return [scan.assign_attrs(told) for scan in read_known_scans([file], dialect)]
 
 
 def _drafted(file: Path, error: ReadError) -> Dialect | None:

@@ -15,6 +15,7 @@ from tribolab.records.run_facts import (
     counting,
     drift_of,
     findings_of,
+    inertia_said,
     left_out,
     main_quantity,
     position_range,
@@ -74,18 +75,11 @@ def notices_of(
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", "left out", f"{entry.reason}: {text}")
-    if "moving_mass_kg" in run.attrs:
-        say("note", "inertia", _inertia(run.attrs))
+    if inertia := inertia_said(run.attrs):
+        say("note", "inertia", inertia)
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
     return notices
-
-
-def _inertia(attrs: Mapping[str, Any]) -> str:
-    error = attrs.get("moving_mass_sem_kg")
-    mass = f"{attrs['moving_mass_kg']:.4g}" + (f" ± {error:.2g}" if error is not None else "")
-    largest = f"{attrs['inertial_force_largest_N']:.3g}"
-    return f"that of {mass} kg ({attrs['moving_mass_source']}) is taken out: up to {largest} N"
 
 
 def _of_check(name: str, row: Mapping[str, Any]) -> Notice:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -98,6 +99,7 @@ def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
         clock_shift_s=shift.get("clock_shift_s"),
         clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
         clock_shift_source=str(attrs.get("clock_shift_source", "")),
+        inertia=inertia_said(attrs),
         history=str(attrs.get("history", "")),
     )
 
@@ -141,6 +143,22 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
         highlights=tuple(_highlights(speed, value, std, sem, alone)),
     )
+
+
+def inertia_said(attrs: Mapping[str, Any]) -> str:
+    """Say what of a run's friction force was the inertia of a moving mass; "" if none is known.
+
+    Parameters
+    ----------
+    attrs
+        Attributes of the run.
+    """
+    if "moving_mass_kg" not in attrs:
+        return ""
+    error = attrs.get("moving_mass_sem_kg")
+    mass = f"{attrs['moving_mass_kg']:.4g}" + (f" ± {error:.2g}" if error is not None else "")
+    largest = f"{attrs['inertial_force_largest_N']:.3g}"
+    return f"that of {mass} kg ({attrs['moving_mass_source']}) is taken out: up to {largest} N"
 
 
 def stick_slip_of(slip: xr.Dataset) -> Waveform:

@@ -159,6 +159,7 @@ class RunFacts:
     clock_shift_s: float | None = None
     clock_shift_uncertainty_s: float | None = None
     clock_shift_source: str = ""
+    inertia: str = ""
     history: str = ""
     highlights: tuple[Highlight, ...] = ()
     omitted: tuple[LeftOut, ...] = ()

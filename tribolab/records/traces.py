@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
+_LABELS = {**_MOTION, "inertial_force": "inertia"}
 _MOST_SPANS = 400
 _FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal takes
 _FINEST = 24_000  # points of a signal that the page zooms into
@@ -181,6 +182,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int)
         if name in run and _varies(np.asarray(run[name], float)):
             signals.append((name, np.asarray(run[name], float)))
             break
+    if "inertial_force" in run:
+        signals.append(("inertial_force", np.asarray(run["inertial_force"], float)))
     let_go()
     packed = []
     for name, values in one_by_one(signals):
@@ -192,7 +195,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int)
         packed.append(
             {
                 "name": name,
-                "label": _MOTION.get(name, known.long_name),
+                "label": _LABELS.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
                 **packed_points(clock.places(chosen), levels, deflate=True),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.draft.scans import read_scans
+from tribolab.draft.scans import read_traces
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
@@ -66,10 +66,9 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
     AnalysisError
         If no scan is left.
     """
-    scans, findings = _read(surface)
+    scans, findings, label = _read(surface)
     if not scans:
         raise AnalysisError("; ".join(f.message for f in findings) or "it has no scans")
-    label = dict(zip(surface.files, surface.labels, strict=True))
     checked = dict(zip(scans, check_scan_set(list(scans.values()), **surface.quality), strict=True))
     for path, said in checked.items():
         findings += _objections(label[path], said)
@@ -112,21 +111,28 @@ def _as_row(scan: str, said: FindingRow) -> Row:
     }
 
 
-def _read(surface: PlannedSurface) -> tuple[dict[Path, xr.Dataset], list[Finding]]:
-    """Read each scan alone; a finding for each that cannot be read."""
-    scans, findings = {}, []
+def _read(
+    surface: PlannedSurface,
+) -> tuple[dict[Path, xr.Dataset], list[Finding], dict[Path, str]]:
+    """Read each scan alone; a finding for each that cannot be read, and what each is called."""
+    scans: dict[Path, xr.Dataset] = {}
+    findings: list[Finding] = []
+    called: dict[Path, str] = {}
     for path, label in zip(surface.files, surface.labels, strict=True):
         try:
-            [scan] = read_scans([path], surface.instrument, stack=False)
-            fill_dropouts(scan)
+            traces = read_traces(path, surface.instrument)
+            for scan in traces.values():
+                fill_dropouts(scan)
         except TribolabError as error:
             reason = _without_folder(error.told("campaign"), path)
             findings.append(Finding("fail", f"scan {label} is left out: {reason}"))
             continue
-        if "tip_radius" in surface.roughness and "tip_radius_m" not in scan.attrs:
-            scan = scan.assign_attrs(tip_radius_m=surface.roughness["tip_radius"])
-        scans[path] = scan
-    return scans, findings
+        for trace, scan in traces.items():
+            if "tip_radius" in surface.roughness and "tip_radius_m" not in scan.attrs:
+                scan = scan.assign_attrs(tip_radius_m=surface.roughness["tip_radius"])
+            scans[trace] = scan
+            called[trace] = label + trace.name.removeprefix(path.name)
+    return scans, findings, called
 
 
 def _shape(scan: xr.Dataset) -> tuple[Any, ...]:

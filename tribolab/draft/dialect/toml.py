@@ -70,6 +70,8 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
         f"# guessed: {_comment(guess)}"
         for guess in (*layout.notes, *layout.guesses, *understood.guesses)
     ]
+    if understood.pitch:
+        lines.append(f"pitch = {_text(understood.pitch)}")
     if understood.pitch_pattern:
         lines.append('pitch_value = "pitch"    # its heights have no positions')
     if layout.others:

@@ -60,6 +60,9 @@ class Header(Strict):
         1, description="for units = 'row': in which line below the names, from 1"
     )
     repeats: bool = Field(False, description="a header block stands at each step")
+    only: Pattern | None = Field(
+        None, description="profiles only: of several tables those whose title matches this"
+    )
     step: Pattern | None = Field(
         None, description="group 1 is the step's number in the text before its header"
     )

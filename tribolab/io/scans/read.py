@@ -55,7 +55,7 @@ def read_known_scans(
     Returns
     -------
     list of xarray.Dataset
-        One for each file: ``height`` [m] (x) or (y, x).
+        One for each file, or for each trace in it: ``height`` [m] (x) or (y, x).
 
     Raises
     ------
@@ -69,7 +69,7 @@ def read_known_scans(
             f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height', and "
             f"there is no pitch); those that do are {scanning}"
         )
-    return [_read(file, dialect, x_unit, height_unit) for file in files]
+    return [scan for file in files for scan in _read(file, dialect, x_unit, height_unit)]
 
 
 def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
@@ -96,15 +96,20 @@ def _every_dialect() -> tuple[Dialect, ...]:
 
 def _read(
     path: Path, dialect: Dialect | None, x_unit: str | None, height_unit: str | None
-) -> xr.Dataset:
+) -> list[xr.Dataset]:
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file")
     if dialect is None:
         dialect = _recognised(path)
     if dialect is not None:
-        scan, sha256 = _by_dialect(path, dialect)
+        scans, sha256 = _by_dialect(path, dialect)
     else:
-        scan, sha256 = read_undescribed(path, x_unit, height_unit), sha256_of_file(path)
+        scans, sha256 = [read_undescribed(path, x_unit, height_unit)], sha256_of_file(path)
+    return [_finished(path, scan, sha256) for scan in scans]
+
+
+def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
+    """Return a scan that was read, if it can be one, with what is known of it."""
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
     refuse_impossible(path, scan)
@@ -152,36 +157,39 @@ def _recognised(path: Path) -> Dialect | None:
     return fitting[0] if fitting else None
 
 
-def _by_dialect(path: Path, dialect: Dialect) -> tuple[xr.Dataset, str]:
+def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
     from tribolab.io.content.read import read_content
     from tribolab.io.content.values import single_values
+    from tribolab.io.scans.traces import traces_of
 
     content = read_content(path, dialect)
-    if len(content.pieces) != 1:
-        raise ReadError(
-            f"{path}: {len(content.pieces)} tables of heights stand in the file, one is wanted; "
-            "keep the one that is meant, or describe the file in a dialect without 'repeats', "
-            "which reads the first"
-        )
-    columns = content.pieces[0].columns
+    pieces = traces_of(path, content.pieces, dialect)
     attrs = {"instrument": dialect.name, **single_values(content, dialect)}
     if content.not_used:
         attrs["columns_not_used"] = "; ".join(content.not_used)
     if content.left_out:
         attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in content.left_out.items())
+    if len(pieces) > 1:
+        attrs["traces"] = str(len(pieces))
+    return [_scan(path, piece.columns, attrs, dialect) for piece in pieces], content.sha256
+
+
+def _scan(
+    path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
+) -> xr.Dataset:
+    """Return the scan that one table is."""
     if "y" in columns:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
-        return scan.assign_attrs(attrs), content.sha256
+        return scan.assign_attrs(attrs)
     if "x" not in columns:
         pitch, height = _stated_pitch(path, dialect, attrs), columns["height"]
         if height.size < 2:
             raise ReadError(f"{path}: a profile needs at least two points, it has {height.size}")
         x = pitch * np.arange(height.size, dtype=float)
-        return xr.Dataset({"height": ("x", height)}, {"x": x}, attrs), content.sha256
+        return xr.Dataset({"height": ("x", height)}, {"x": x}, attrs)
     pitch, height, evened = even(str(path), columns["x"], columns["height"])
     x = pitch * np.arange(height.size, dtype=float)
-    scan = xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
-    return scan, content.sha256
+    return xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
 
 
 def _stated_pitch(path: Path, dialect: Dialect, attrs: Mapping[str, str | float]) -> float:

@@ -44,7 +44,8 @@ report.Trace = (() => {
 
   const unpack = (level) => Promise.all(level.signals.map((signal) => (signal.deflated ? report.unpacked : report.bytes)(signal.data)));
   const plain = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
-  const concerns = (span, row) => /velocity|speed|position/.test(span.signal) === row > 0;
+  const moves = (name) => /velocity|speed|position/.test(name);
+  const concerns = (span, signal) => moves(span.signal) === moves(signal.name) && signal.name !== "inertial_force";
 
   return class extends report.Chart {
     async read() {
@@ -103,7 +104,7 @@ report.Trace = (() => {
             box(row, inner, outer, colour, 0.12);
           }
           // what a person rejected is hatched
-          for (const flag of this.trace.flags) if (concerns(flag, row) && flag.checks.join() !== "manual") box(row, flag.start_s, flag.stop_s, tone[flag.severity], 0.35);
+          for (const flag of this.trace.flags) if (concerns(flag, this.trace.signals[row]) && flag.checks.join() !== "manual") box(row, flag.start_s, flag.stop_s, tone[flag.severity], 0.35);
         }
         return [...shapes, ...(this.review?.marks() ?? [])];
       };
@@ -135,7 +136,7 @@ report.Trace = (() => {
       return { tickvals: fit.map((v) => Math.asinh(v / signal.linear_below)), ticktext: fit.map(name) };
     }
 
-    get height() { return this.full ? innerHeight - 160 : this.trace.signals.length > 1 ? 420 : 300; }
+    get height() { return this.full ? innerHeight - 160 : 180 + 120 * Math.max(1, this.trace.signals.length); }
 
     // The reader zoomed by hand: what is drawn follows, and the finer trace is unpacked if need be.
     follow() {
