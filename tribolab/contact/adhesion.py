@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface, work_value
+from tribolab.contact.area import AreaTheory
 from tribolab.errors import AnalysisError
 from tribolab.several import one, over_dims
 from tribolab.stamping import labelled, stamp
@@ -25,6 +26,7 @@ def adhesion(
     effective_modulus: str | float,
     work_of_adhesion: str | float | xr.DataArray,
     *,
+    area: AreaTheory = "persson",
     kappa: float = 0.4,
     c_a: float = 1.0,
     nodes: int = 200,
@@ -45,6 +47,8 @@ def adhesion(
     work_of_adhesion
         Work of adhesion gamma_0 of smooth surfaces [J/m2], e.g. ``"51 mJ/m^2"``; a DataArray over
         (medium), or any dims that the result will have.
+    area
+        Theory of the contact area without adhesion, see `tribolab.contact.area.area_of`.
     kappa
         Elastic energy reduction factor at vanishing contact [1], 0 to 1.
     c_a
@@ -83,6 +87,9 @@ def adhesion(
     for a smooth rubber contact) is taken as the limit p -> 0: area proportional to p, or constant
     if gamma_eff(1) > 0.
 
+    With another theory of the `area` Eq. (11) is solved as it stands, and the area of that theory
+    grows by the ratio that comes out, at most to complete contact.
+
     References
     ----------
     .. [1] R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the
@@ -106,13 +113,17 @@ def adhesion(
     least = surface.small_pressure
     pushed = np.maximum(flat, least)
     solved = balance(surface, pushed, np.full(flat.size, work), max_iterations)
-    without = surface.without_adhesion(pushed)[:, -1]
+    free, touching = surface.without_adhesion(pushed, area), solved.area.copy()
+    if area != "persson":
+        touching = np.minimum(free * touching / surface.without_adhesion(pushed), 1.0)
+        # no wave adds to the contact that longer ones leave
+        touching = np.maximum.accumulate(touching[:, ::-1], axis=1)[:, ::-1]
+    without = free[:, -1]
     share = flat / pushed  # 1, but for pressures so small that the area is proportional to them
     sticks = solved.start > 0
-    area = solved.area.copy()
-    area[:, 1:] *= np.where(sticks, 1.0, share)[:, None]
     with np.errstate(divide="ignore"):
-        ratio = solved.area[:, -1] / without / np.where(sticks, share, 1.0)
+        ratio = touching[:, -1] / without / np.where(sticks, share, 1.0)
+    touching[:, 1:] *= np.where(sticks, 1.0, share)[:, None]
 
     dims: tuple[Hashable, ...] = over.dims
     shape, q = over.shape, surface.wavenumber
@@ -122,10 +133,10 @@ def adhesion(
         return both, values.reshape(*shape, q.size)
 
     data = {
-        "contact_area_ratio": (dims, area[:, -1].reshape(shape)),
+        "contact_area_ratio": (dims, touching[:, -1].reshape(shape)),
         "contact_area_ratio_no_adhesion": (dims, (without * share).reshape(shape)),
         "area_enhancement": (dims, ratio.reshape(shape)),
-        "apparent_contact_area_ratio": over_both(area),
+        "apparent_contact_area_ratio": over_both(touching),
         "effective_work_of_adhesion": over_both(solved.binding),
         "root_search_steps": (dims, solved.iterations.reshape(shape)),
         "balance_residual": (dims, solved.residual.reshape(shape)),
@@ -139,6 +150,7 @@ def adhesion(
         .assign_coords(magnification=("wavenumber", q / q[0])),
         **valid,
         work_of_adhesion_J_m2=work,
+        area=area,
         **parameters(surface),
     )
 

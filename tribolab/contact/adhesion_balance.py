@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.special import erf, erfcx
+from scipy.special import erfcx
 
+from tribolab.contact.area import AreaTheory, area_of
 from tribolab.contact.first_passage import Diffusion
 from tribolab.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
@@ -101,10 +102,10 @@ class Interface:
         """Growth of the surface by its slopes, int (1 + xi^2 x)^(1/2) exp(-x) dx in Eq. (11)."""
         return float(1 + np.sqrt(np.pi) / 2 * self.slope * erfcx(1 / self.slope))
 
-    def without_adhesion(self, pressure: np.ndarray) -> np.ndarray:
-        """P(q) of Eqs. (6) and (7) at the nodes (k, n)."""
+    def without_adhesion(self, pressure: np.ndarray, theory: AreaTheory = "persson") -> np.ndarray:
+        """P(q) of Eqs. (6) and (7), or of another theory, at the nodes (k, n)."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            area = erf(pressure[:, None] / np.sqrt(2 * self.diffusion.time))
+            area = area_of(pressure[:, None] / np.sqrt(2 * self.diffusion.time), theory)
         area[:, 0] = 1.0
         return area
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from scipy.special import erf
 
 from tribolab.contact.adhesion import adhesion
+from tribolab.contact.area import AreaTheory, area_of
 from tribolab.errors import AnalysisError
 from tribolab.rubber.modulus import Modulus, TabulatedModulus
 from tribolab.rubber.temperature import flash_temperature
@@ -34,6 +35,7 @@ def viscoelastic_friction(
     poisson_ratio: float = 0.5,
     complete_contact: bool = False,
     work_of_adhesion: str | float | None = None,
+    area: AreaTheory = "persson",
 ) -> xr.Dataset:
     """Viscoelastic friction coefficient and contact area of rubber sliding on a rough surface.
 
@@ -53,6 +55,8 @@ def viscoelastic_friction(
         Take contact as complete at every wavenumber (P = S = 1), as adhesion may make it.
     work_of_adhesion
         [J/m2]: adhesion then adds to the contact at every wavenumber, as it does at rest.
+    area
+        Theory of P, see `tribolab.contact.area.area_of`.
 
     Returns
     -------
@@ -64,14 +68,15 @@ def viscoelastic_friction(
     ------
     AnalysisError
         If a speed is negative, a pressure not above zero and finite, or Poisson's ratio is not
-        above -1 and at most 0.5.
+        above -1 and at most 0.5; or if there is no such theory of the area.
 
     Notes
     -----
     With ``e(omega) = E(omega)/((1 - nu^2) sigma_0)``: ``mu = (1/2) int q^3 C S P dq
     int_0^{2 pi} cos(phi) Im e(q v cos phi) dphi``, ``P = erf(1/(2 sqrt(G)))``,
     ``S = 1/2 + P^2/2``, ``G = (1/8) int q^3 C dq int_0^{2 pi} |e(q v cos phi)|^2 dphi`` [1]_.
-    At rest G is that of the elastic contact with the relaxed modulus. With adhesion P is that of
+    At rest G is that of the elastic contact with the relaxed modulus. Another theory of the area
+    has another function of 1/(2 sqrt(G)) in place of the error function. With adhesion P is that of
     sliding times P_adh/P of `adhesion` at rest, with the relaxed modulus, at each wavenumber; at
     most 1. So the growth counts where the loss is made: it is larger for short waves than for long
     ones, and friction grows by less than the whole contact area does. That the rubber is stiffer
@@ -111,25 +116,26 @@ def viscoelastic_friction(
     growth = None
     if work > 0 and not complete_contact:
         growth = _growth(over, psd, float(modulus(0.0).real) / (1 - poisson_ratio**2), work)
-    shape_of = poisson_ratio, complete_contact, growth
-    friction, area = _solved(speed, over, psd, modulus, *shape_of)
-    rise = _heating(friction, area, speed, over, psd)
+    shape_of = poisson_ratio, complete_contact, growth, area
+    friction, touching = _solved(speed, over, psd, modulus, *shape_of)
+    rise = _heating(friction, touching, speed, over, psd)
     valid = examine("viscoelastic_friction", slope=rms_slope(psd), heating=rise)
     if isinstance(modulus, TabulatedModulus):
         other = _solved(speed, over, psd, modulus.continued, *shape_of)
-        valid = together([valid, _outside((friction, area), other, speed, modulus)])
+        valid = together([valid, _outside((friction, touching), other, speed, modulus)])
     dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
     return stamp(
         xr.Dataset(
             {
                 "friction_coefficient": (dims, friction.reshape(shape)),
-                "contact_area_ratio": (dims, area.reshape(shape)),
+                "contact_area_ratio": (dims, touching.reshape(shape)),
             },
             coords={**over.coords, **speed.coords},
         ),
         poisson_ratio=poisson_ratio,
         complete_contact=int(complete_contact),
         work_of_adhesion_J_m2=work,
+        area=area,
         modulus=repr(modulus),
         **valid,
     )
@@ -143,6 +149,7 @@ def _solved(
     poisson_ratio: float,
     complete_contact: bool,
     growth: np.ndarray | None,
+    theory: AreaTheory,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
     q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
@@ -151,7 +158,7 @@ def _solved(
     relative = 1 / ((1 - poisson_ratio**2) * over.values.reshape(*over.shape, 1, 1))
     g = relative**2 / 8 * cumulative(q, spectrum * stored, 3)
     with np.errstate(divide="ignore"):
-        area = np.ones_like(g) if complete_contact else erf(1 / (2 * np.sqrt(g)))
+        area = np.ones_like(g) if complete_contact else area_of(1 / (2 * np.sqrt(g)), theory)
     if growth is not None:
         area = np.minimum(area * growth, 1.0)
     integrand = spectrum * area * (1 + area**2) / 2 * lost
