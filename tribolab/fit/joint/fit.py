@@ -86,7 +86,7 @@ def fit_shear_stress_jointly(
     v0 = 10 um/s, F0 the geometric mean of the loads. Level is an error that all points of a load
     (or run) share, r one that neighbouring speeds share, e that of each point. Beforehand, and
     with `JointPriors` for the numbers, ln sigma_0, n, m and ln eta are normal, and the sizes of
-    level and r half-normal. The posterior is a mixture of normals, see `posterior_of`.
+    level and r as Rayleigh's. The posterior is a mixture of normals, see `posterior_of`.
 
     References
     ----------

@@ -26,7 +26,8 @@ from tribolab.stamping import stamp
 
 _ENDS = 0.025, 0.975
 _NORMAL = 1.959963984540054
-_HALF_NORMAL = 0.03133797, 2.24140273  # quantiles at these ends, over the scale
+_RAYLEIGH = 0.22502413, 2.71620258  # quantiles at these ends, over the scale
+_NOTHING = 1e-9  # of an interval
 _DRAWN = 61  # speeds of a drawn curve
 
 
@@ -37,7 +38,7 @@ def fit_loads(
     *,
     common_error: float = 0.0,
     spectrum_error: Mapping[str, xr.Dataset] | None = None,
-    area_ratio_error: float = 0.0,
+    area_ratio_error: float | Mapping[str, float] = 0.0,
     speed_range: tuple[float, float] = (0.0, np.inf),
 ) -> JointFit:
     """Fit shear stress, exponents and viscosity to the curves of all loads at once.
@@ -55,7 +56,8 @@ def fit_loads(
     spectrum_error
         By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum.
     area_ratio_error
-        Standard error of ln of the ratio of areas that multiplies the dry curves' response.
+        Standard error of ln of the ratio of areas that multiplies the dry curves' response; one
+        for all, or by surface.
     speed_range
         Lowest and highest speed [m/s] to take.
 
@@ -84,9 +86,19 @@ def fit_loads(
         )
         for curve in curves
     ]
-    transfer = [float(np.hypot(priors.dry_over_wet, area_ratio_error))] * len(surfaces)
-    any_dry = len(wet) < len(curves)
-    parameters = parameters_of(len(surfaces), viscosity, priors, transfer if any_dry else ())
+    measured_dry = {curve.surface for curve in curves if curve.dry}
+    errors = (
+        area_ratio_error
+        if isinstance(area_ratio_error, Mapping)
+        else dict.fromkeys(surfaces, area_ratio_error)
+    )
+    transfer = [  # of a surface that was not measured dry it is held, for nothing hangs on it
+        float(np.hypot(priors.dry_over_wet, errors.get(surface, 0.0)))
+        if surface in measured_dry
+        else 0.0
+        for surface in surfaces
+    ]
+    parameters = parameters_of(len(surfaces), viscosity, priors, transfer if measured_dry else ())
     model = JointModel(measured.points, computed, parameters, reference)
     posterior = posterior_of(model, priors, parameters.mean)
     alone = _left_out(model, priors, posterior, curves)
@@ -143,10 +155,12 @@ def _marginals(
         before = parameters.spread[place]
         told = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
         value, *ends = map(float, values)
+        if abs(value) < _NOTHING * (ends[1] - ends[0]):
+            value = 0.0  # but for rounding
         marginals.append(Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], told))
     for name, scale in (("level", priors.level), ("correlated", priors.correlated)):
         value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_ENDS))
-        least, most = (scale * quantile for quantile in _HALF_NORMAL)
+        least, most = (scale * quantile for quantile in _RAYLEIGH)
         told = max(0.0, 1 - (last - first) / (most - least))
         marginals.append(Marginal(name, "", value, first, last, least, most, told))
     return marginals
