@@ -47,6 +47,8 @@ def model_uncertainty(
     inlet_length: str | float = np.inf,
     cells: int = CELLS,
     area: AreaTheory = "persson",
+    work_of_adhesion: str | float | None = None,
+    work_of_adhesion_range: tuple[str | float, str | float] | None = None,
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
@@ -67,8 +69,10 @@ def model_uncertainty(
     viscosity_range, youngs_modulus_range
         Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
         leaves them out.
-    inlet_length, cells, area
+    inlet_length, cells, area, work_of_adhesion
         As for `stribeck_curve`.
+    work_of_adhesion_range
+        Ends of what the work of adhesion [J/m2] may be, some 95 %, where it is given.
 
     Returns
     -------
@@ -126,6 +130,9 @@ def model_uncertainty(
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
     eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, "N/m", "load")
     begins = to_si(inlet_length, "m", name="inlet_length")
+    work = None
+    if work_of_adhesion is not None:
+        work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
     base = Base(
         psd=psd,
         rough_body=rough_body,
@@ -141,6 +148,10 @@ def model_uncertainty(
         ),
         inlet_length=begins,
         area=area,
+        work_of_adhesion=work,
+        work_of_adhesion_range=None
+        if work is None
+        else _range(work_of_adhesion_range, work, "J/m2", "work_of_adhesion", least=-np.inf),
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
@@ -156,6 +167,7 @@ def model_uncertainty(
         "gamma": gamma,
         "inlet_length": begins,
         "area": area,
+        "work_of_adhesion": work,
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
     with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
@@ -260,12 +272,17 @@ def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None
 
 
 def _range(
-    given: tuple[str | float, str | float] | None, value: float, unit: str, name: str
+    given: tuple[str | float, str | float] | None,
+    value: float,
+    unit: str,
+    name: str,
+    least: float = 0.0,
 ) -> tuple[float, float] | None:
-    """Return the ends of a range in SI, about the value that it is for."""
+    """Return the ends of a range in SI, about the value that it is for, both above the least."""
     if given is None:
         return None
-    low, high = (positive(end, unit, f"{name}_range") for end in given)
+    read = positive if least == 0 else to_si
+    low, high = (read(end, unit, name=f"{name}_range") for end in given)
     if not low <= value <= high:
         raise AnalysisError(
             f"{name}_range: {low:g} to {high:g} {unit} must go from below to above {value:g} {unit}"

@@ -40,6 +40,8 @@ FIXED_IF_ROUGH = (
     ("form of the flow factors", "effective-medium theory of the gaps' distribution"),
 )
 
+WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures are without it"
+
 
 class Base(NamedTuple):
     """The model that is varied."""
@@ -56,6 +58,8 @@ class Base(NamedTuple):
     youngs_modulus_range: tuple[float, float] | None
     inlet_length: float  # [m], infinite if nothing is stated
     area: AreaTheory
+    work_of_adhesion: float | None = None  # [J/m2], None if the model is without adhesion
+    work_of_adhesion_range: tuple[float, float] | None = None
 
     @property
     def spectrum(self) -> xr.Dataset:
@@ -76,6 +80,7 @@ class Changed(TypedDict, total=False):
     contact: LineContact
     inlet_length: float
     area: AreaTheory
+    work_of_adhesion: float
 
 
 class Variation(NamedTuple):
@@ -240,6 +245,20 @@ def area_theory(base: Base) -> Variation:
     )
 
 
+def work_of_adhesion(base: Base) -> Variation | Skipped:
+    """Vary the work of adhesion under the liquid over the range that is stated."""
+    name = "work of adhesion"
+    if base.work_of_adhesion_range is None:
+        return Skipped(name, "no work_of_adhesion_range was given")
+    low, high = base.work_of_adhesion_range
+    return Variation(
+        name,
+        "as stated; it hangs on surface energies and contact angles, which differ between sources",
+        (f"{1e3 * low:.3g} mJ/m²", f"{1e3 * high:.3g} mJ/m²"),
+        ({"work_of_adhesion": low}, {"work_of_adhesion": high}),
+    )
+
+
 def rough_body(base: Base) -> Variation:
     """Take the other body as the rough one: phi_s changes sign."""
     other: RoughBody = "moving" if base.rough_body == "stationary" else "stationary"
@@ -339,13 +358,17 @@ _NO_TAIL = (
 def variations(base: Base) -> list[Variation | Skipped]:
     """Return all that can be varied in a model, and what cannot with the reason."""
     rough = [] if base.psd is None else [make(base) for make in OF_ROUGHNESS]
+    if rough and base.work_of_adhesion is not None:
+        rough.append(work_of_adhesion(base))
     return [*rough, *(make(base) for make in OF_ANY)]
 
 
 def held_fixed(base: Base) -> list[Skipped]:
     """Return what no variation reaches."""
-    fixed = FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH
-    return [Skipped(name, reason) for name, reason in fixed]
+    fixed = dict(FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH)
+    if base.psd is not None and base.work_of_adhesion is not None:
+        fixed["contact area"] = WITH_ADHESION
+    return [Skipped(name, reason) for name, reason in fixed.items()]
 
 
 def _factors(base: Base, **changed: float) -> Changed:
