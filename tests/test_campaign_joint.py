@@ -10,13 +10,13 @@ import pandas as pd
 import pytest
 
 import tribolab
-from tribolab.campaign.joint import JointFits
+from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf
 from tribolab.records.joint_record import JointRecord
-from tribolab.records.part_records import CurveRecord, ModelRecord
+from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.report.figures.models import draw_model, plan_model_figures
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
@@ -88,7 +88,7 @@ def test_tables_report_page_and_figure_say_the_same(outcome):
     np.testing.assert_allclose(table["value"], [row.value for row in record.parameters])
     compared = pd.read_csv(folder / "tables/model_comparison.csv")
     names = ["power law of speed and load", "constant shear stress", "no friction factors"]
-    assert compared["model"].tolist()[:3] == names
+    assert compared["model"].tolist() == [*names, "corrected area"]
     assert compared["words"].iloc[0] == "the reference"
     page = (folder / "report.html").read_text("utf-8")
     assert "All loads in one fit" in page and record.parameters[0].words in page
@@ -105,20 +105,27 @@ def test_a_joint_fit_of_the_same_curves_is_taken_over(outcome, campaign, tmp_pat
     again = process(campaign, tmp_path, previous=outcome.folder)
     curves = [entry.record for entry in again.store.all("curve", CurveRecord)]
     models = [entry.record for entry in again.store.all("model", ModelRecord)]
-    stage = JointFits(campaign, curves, models, again.store)
+    surfaces = [entry.record for entry in again.store.all("surface", SurfaceRecord)]
+    stage = JointFits(campaign, curves, models, surfaces, again.store)
     (task,) = stage.plan()
     assert stage.known(task, 0) == record_of(outcome)
     assert (tmp_path / task.file).is_file()
     # a model that is made anew is another
-    bare = JointFits(campaign, curves, models[:1], again.store)
-    assert bare.plan() == []
+    one_load = {"curves": curves, "models": models[:1], "surfaces": surfaces}
+    (bare,) = JointFits(campaign, **one_load, store=again.store).plan()
+    assert bare.fingerprint != task.fingerprint
+    for compute in ("two loads", "never"):
+        settings = campaign.joint.model_copy(update={"compute": compute})
+        chosen = campaign.model_copy(update={"joint": settings})
+        assert JointFits(chosen, **one_load, store=again.store).plan() == []
 
 
 @pytest.mark.slow
 def test_a_fit_that_is_not_possible_is_a_note_with_the_reason(outcome, campaign):
     curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
     models = [entry.record for entry in outcome.store.all("model", ModelRecord)]
-    stage = JointFits(campaign, curves, models, outcome.store)
+    surfaces = [entry.record for entry in outcome.store.all("surface", SurfaceRecord)]
+    stage = JointFits(campaign, curves, models, surfaces, outcome.store)
     (task,) = stage.plan()
     gone = task.__class__(**vars(task) | {"measured": ("data/none.nc", "data/none.nc")})
     with pytest.raises(ReadError) as caught:

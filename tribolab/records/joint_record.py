@@ -31,6 +31,7 @@ class JointParameter:
     ]
     identified: Annotated[str, one_of("yes", "weakly", "not identified", "held fixed")]
     words: Annotated[str, means("name, median and interval as a reader would say them")]
+    surface: Annotated[str, means("of which surface, where the fit is of several")] = ""
 
 
 @dataclass(frozen=True)
@@ -61,14 +62,14 @@ class JointCorrelation:
 
 @dataclass(frozen=True)
 class JointRecord(HasStatus):
-    """The joint fit of all loads of a surface in one liquid.
+    """The joint fit of all loads of a surface, or of several surfaces, in one liquid.
 
     Parameters
     ----------
     name
         Of the fit and of its data file.
     surface, medium
-        What it is of.
+        What it is of; several surfaces with "and" between them.
     curves
         Names of the measured curves.
     status, reason
@@ -110,6 +111,7 @@ def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
     return tuple(
         JointParameter(
             parameter=marginal.name,
+            surface=marginal.surface,
             value=marginal.value,
             low=marginal.low,
             high=marginal.high,
@@ -126,7 +128,7 @@ def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
 
 def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
     """Return the correlation of every two parameters."""
-    names = [marginal.name for marginal in fit.marginals]
+    names = [" of ".join(filter(None, (m.name, m.surface))) for m in fit.marginals]
     size = len(fit.correlation)
     return tuple(
         JointCorrelation(names[i], names[j], float(fit.correlation[i, j]))
@@ -156,11 +158,12 @@ def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
     """Return the rows of the table of joint fits."""
     return [
         {
-            "surface": record.surface,
+            "fit": record.name,
+            "surface": row.surface or record.surface,
             "medium": record.medium,
             "reference_speed_m_s": record.reference_speed_m_s,
             "reference_load_N_m": record.reference_load_N_m,
-            **vars(row),
+            **{key: value for key, value in vars(row).items() if key != "surface"},
         }
         for record in records
         for row in record.parameters
@@ -170,7 +173,7 @@ def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
 def comparison_table_rows(records: Sequence[JointRecord]) -> list[Row]:
     """Return the rows of the table of compared models."""
     return [
-        {"surface": record.surface, "medium": record.medium, **vars(row)}
+        {"fit": record.name, "surface": record.surface, "medium": record.medium, **vars(row)}
         for record in records
         for row in record.models
     ]

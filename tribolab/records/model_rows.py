@@ -23,7 +23,7 @@ LABELS = ("surface", "medium", "normal_force_N")
 
 
 FITTED = {  # columns of a fit, and what they mean where the name does not say it
-    "shear_stress_Pa": "effective, for the contact area without adhesion",
+    "shear_stress_Pa": "effective, for the contact area by `area` and `adhesion`",
     "shear_stress_error_Pa": "standard error from those of the points",
     "shear_stress_common_error_Pa": "standard error that all points share: repeatability of a "
     "run's level",
@@ -31,13 +31,14 @@ FITTED = {  # columns of a fit, and what they mean where the name does not say i
     "correlation; of the common level; of the spectrum where spectrum_error_from says whence",
     "shear_stress_statistical_half_interval_Pa": "half the 95 % interval for the spectrum as it "
     "is: statistical only",
-    "area_enhancement": "real contact area with adhesion over that without",
+    "area_enhancement": "real contact area with adhesion over that of the model",
     "area_enhancement_error": "standard error that reaches the farther of the two bounds with 95 %",
     "area_enhancement_low": "least value within the bounds of spectrum and work of adhesion",
     "area_enhancement_high": "greatest value within the bounds of spectrum and work of adhesion",
     "corrected_shear_stress_Pa": "shear stress in the area that adhesion makes",
     "corrected_shear_stress_error_Pa": "",
     "area": "theory of the contact area that shear_stress_Pa is for",
+    "adhesion": 'whether the area that shear_stress_Pa is for is "with" or "without" adhesion',
     "other_area": "the theory beside it",
     "shear_stress_other_area_Pa": "effective, for the contact area of that theory",
     "chi_square": "",

@@ -133,6 +133,7 @@ class SurfaceRows:
     modulus: str
     quality: str = ""
     validity: str = ""
+    area: str = ""
 
 
 @dataclass(frozen=True)

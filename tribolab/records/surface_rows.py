@@ -72,6 +72,7 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
         str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
         quality,
         validity_of(groups.values()),
+        str(groups["contact"].attrs["area"]) if "contact" in groups else "",
     )
 
 

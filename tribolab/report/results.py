@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import Progress, perform, silent
-from tribolab.campaign.joint import JointFits
+from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
 from tribolab.records.joint_record import (
@@ -105,7 +105,7 @@ def write_report(
     judged, unjudged = done_and_failed(perform(stage, executor))
     modes = {mode.curve: mode for mode in judged}
     findings += unjudged
-    joints = perform(JointFits(outcome.campaign, curves, models, store), executor)
+    joints = perform(JointFits(outcome.campaign, curves, models, surfaces, store), executor)
     findings += [
         Notice("note", "", f"joint fit of {joint.surface} in {joint.medium}", joint.reason)
         for joint in joints

@@ -55,6 +55,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     body = {name: settings[name] for name in ("rough_body", "friction_factors")}
     body["inlet_length"] = settings["inlet_length"] or np.inf
     body["area"] = model.area
+    body["work_of_adhesion"] = model.work_of_adhesion
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
@@ -84,6 +85,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
         groups["fit"] = beside(fit, measured).assign_attrs(
             **bounds,
             area=model.area,
+            adhesion="without" if model.work_of_adhesion is None else "with",
             other_area=other_area(model.area),
             shear_stress_other_area_Pa=again.shear_stress,
         )
@@ -94,7 +96,10 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
         attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
     if model.uncertain and fit is not None and fit.shear_stress > 0:
-        ranges = ("viscosity", "viscosity_range", "youngs_modulus_range")
+        ranges = (
+            *("viscosity", "viscosity_range", "youngs_modulus_range"),
+            "work_of_adhesion_range",
+        )
         given = {name: getattr(model, name) for name in ranges} | {"load": load, **body}
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
@@ -163,7 +168,10 @@ def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Area with adhesion over that without, at the load, and the bounds on it."""
+    """Area with adhesion over that of the model, at the load, and the bounds on it.
+
+    It is 1 where the model's area is that with adhesion.
+    """
     path = folder / model.surface_file
     adhesion = optional_data(path, "adhesion_loads")
     if adhesion is None or model.curve.medium not in adhesion.medium.values:
@@ -171,6 +179,8 @@ def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float
     at = int(np.argmin(np.abs(adhesion["normal_force"].values.ravel() - model.normal_force)))
     mine = adhesion.sel(medium=model.curve.medium).isel(load=at)
     best, low, high = (float(mine[f"area_enhancement{end}"]) for end in ("", "_low", "_high"))
+    if model.work_of_adhesion is not None:
+        return 1.0, low / best, high / best
     return best, low, high
 
 
@@ -237,6 +247,7 @@ def _profiles(
             body,
             inlet_length=begins,
             area=model.area,
+            work_of_adhesion=model.work_of_adhesion,
         )
         .reset_index("x")
         .reset_coords("x")

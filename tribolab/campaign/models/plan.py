@@ -51,6 +51,8 @@ class PlannedModel:
         Relative standard uncertainty of viscosity times speed.
     input_errors
         Those of load, radius and modulus, as far as they are stated.
+    work_of_adhesion, work_of_adhesion_range
+        In the medium [J/m2], and its bounds, where [model] adhesion counts it; else None.
     missing
         What the campaign knows too little of; "" if a model can be computed.
     source, source_sha256
@@ -73,6 +75,8 @@ class PlannedModel:
     freedom: int
     abscissa_error: float = 0.0
     input_errors: Mapping[str, float] = field(default_factory=dict)
+    work_of_adhesion: float | None = None
+    work_of_adhesion_range: tuple[float, float] | None = None
     missing: str = ""
     source: str = ""
     source_sha256: str = ""
@@ -120,11 +124,14 @@ def plan_models(
     stated = {name: entry["standard"] for name, entry in campaign.uncertainty.plain().items()}
     known = {surface.outcome.name: surface for surface in surfaces}
     contact = campaign.contact.line()
-    settings = campaign.model.model_dump(exclude={"compute", "uncertainty"})
+    settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
         missing = _missing(curve, contact, surface.outcome if surface else None)
+        work, works = _adhesion(campaign, curve.medium)
+        if campaign.model.adhesion and work is None:
+            missing = missing or f"[medium.{curve.medium}] wants work_of_adhesion"
         first = not missing and (curve.surface, curve.medium) not in led
         if first:
             led.add((curve.surface, curve.medium))
@@ -137,6 +144,8 @@ def plan_models(
             youngs_modulus_range=_modulus_range(campaign),
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
             input_errors=_input_errors(stated, _modulus_range(campaign)),
+            work_of_adhesion=work,
+            work_of_adhesion_range=works,
             settings=settings,
             area=campaign.contact.area,
             leading=first,
@@ -169,6 +178,14 @@ def _input_errors(
     if modulus_range is not None and "youngs_modulus" not in errors:
         errors["youngs_modulus"] = float(np.log(modulus_range[1] / modulus_range[0]) / (2 * _95))
     return errors
+
+
+def _adhesion(campaign: Campaign, medium: str) -> tuple[float | None, tuple[float, float] | None]:
+    """Return a medium's work of adhesion and its range [J/m2] where the models count it."""
+    table = campaign.medium.get(medium)
+    if not campaign.model.adhesion or table is None or table.work_of_adhesion is None:
+        return None, None
+    return table.work_of_adhesion, table.work_of_adhesion_range
 
 
 def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | None) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from tribolab.campaign.settings.fields import (
     LabelPattern,
@@ -22,6 +22,8 @@ from tribolab.campaign.settings.fields import (
     ZeroPlace,
 )
 from tribolab.campaign.settings.media import MediumViscosity, medium_viscosity
+from tribolab.campaign.settings.table import Table
+from tribolab.campaign.settings.theory import Joint, Model, Rubber
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.io.uncertainty import Uncertainty
 from tribolab.untyped import Arguments, Json
@@ -30,12 +32,6 @@ if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
 
 SCHEMA_FILE = "campaign.schema.json"
-
-
-class Table(BaseModel):
-    """A table of the campaign file: keys that are not known are errors, nothing can be changed."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
 class About(Table):
@@ -255,45 +251,6 @@ class Calibration(Table):
     """Number or place of the certificate."""
 
 
-class Model(Table):
-    """How the model Stribeck curves beside the measured ones are computed."""
-
-    compute: bool = True
-    """Whether they are computed."""
-    slowest: Annotated[float, PositiveSi("m/s", "1 nm/s")] = 1e-9
-    """Lowest sliding speed."""
-    fastest: Annotated[float, PositiveSi("m/s", "10 cm/s")] = 0.1
-    """Highest sliding speed."""
-    points: Annotated[int, Field(ge=5, le=200)] = 33
-    """Number of speeds, evenly over their logarithm."""
-    rough_body: Literal["stationary", "moving"] = "stationary"
-    """Which body is the rough one: it sets the sign of the shear flow factor."""
-    friction_factors: bool = True
-    """Whether the fluid's friction takes the friction factors of the roughness."""
-    inlet_length: Annotated[float, PositiveSi("m", "20 mm")] | None = None
-    """Where the liquid begins, before the contact's middle; by default it is everywhere."""
-    fit_speeds: (
-        tuple[
-            Annotated[float, PositiveSi("m/s", "1 um/s")],
-            Annotated[float, PositiveSi("m/s", "1 cm/s")],
-        ]
-        | None
-    ) = None
-    """Between which speeds the shear stress is fitted; by default all that were measured."""
-    uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
-    """For which loads of a surface the model's own uncertainty is computed."""
-
-    @model_validator(mode="after")
-    def _ends_are_in_order(self) -> Self:
-        for low, high, what in (
-            (self.slowest, self.fastest, "slowest and fastest"),
-            (*(self.fit_speeds or (0.0, 1.0)), "fit_speeds"),
-        ):
-            if not low < high:
-                raise ValueError(f"{what}: {low:g} m/s is not below {high:g} m/s")
-        return self
-
-
 class Qc(Table):
     """When a finding makes the whole run count as failed."""
 
@@ -359,6 +316,8 @@ class Campaign(Table):
     friction: Friction = Friction()
     roughness: Roughness = Roughness()
     model: Model = Model()
+    joint: Joint = Joint()
+    rubber: Rubber = Rubber()
     surface: tuple[Surface, ...] = ()
     run: tuple[RunEntry, ...] = ()
     qc: Qc = Qc()

@@ -13,7 +13,7 @@ from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.lubrication.viscosity import LIQUIDS, knows_liquid
 
 if TYPE_CHECKING:
-    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.config import Campaign, Medium
 
 
 def of_names(campaign: Campaign) -> list[Problem]:
@@ -41,6 +41,7 @@ def of_names(campaign: Campaign) -> list[Problem]:
             what = f"must go from below to above {name}"
             problems.append(Problem((*where, f"{name}_range"), what))
     problems += _of_liquids(campaign)
+    problems += _of_theory(campaign)
     if not campaign.run and not any(surface.scans for surface in campaign.surface):
         what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
         problems.append(Problem(("run",), what))
@@ -78,6 +79,39 @@ def _of_liquids(campaign: Campaign) -> list[Problem]:
             key, _, what = str(error).partition(": ")
             problems.append(Problem(("medium", name, key), what))
     return problems
+
+
+def _of_theory(campaign: Campaign) -> list[Problem]:
+    """Surfaces and media that [joint] and [rubber] name, and a modulus that is stated twice."""
+    wrong = []
+    surfaces = [surface.name for surface in campaign.surface]
+    for name in campaign.joint.together:
+        if name not in surfaces:
+            what = f"no [[surface]] is called '{shown(name)}'{nearest(name, surfaces)}"
+            wrong.append(Problem(("joint", "together"), what))
+    for table, key, medium in (
+        ("joint", "dry", campaign.joint.dry),
+        ("rubber", "adhesion", campaign.rubber.adhesion),
+    ):
+        if medium is not None and medium not in campaign.medium:
+            what = f"there is no [medium.{shown(medium)}]{nearest(medium, campaign.medium)}"
+            wrong.append(Problem((table, key), what))
+        elif medium is not None and not _binds(campaign.medium[medium]):
+            what = f"[medium.{shown(medium)}] wants a work_of_adhesion above zero"
+            wrong.append(Problem((table, key), what))
+    rubber = campaign.rubber
+    file = campaign.contact.modulus_file
+    if rubber.prony_moduli and file is not None:
+        what = "there is [contact] modulus_file as well; state one of them"
+        wrong.append(Problem(("rubber", "prony_moduli"), what))
+    if rubber.temperature is not None and file is None and not rubber.prony_moduli:
+        what = "there is no modulus to shift; state [contact] modulus_file, or prony_moduli"
+        wrong.append(Problem(("rubber", "temperature"), what))
+    return wrong
+
+
+def _binds(medium: Medium) -> bool:
+    return medium.work_of_adhesion is not None and medium.work_of_adhesion > 0
 
 
 def _hint(word: str, known: Iterable[str], cure: str) -> str:

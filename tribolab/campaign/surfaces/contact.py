@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from tribolab.campaign.surfaces.rubber import no_rubber, rubber_groups
 from tribolab.contact.adhesion import adhesion
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.geometry import LineContact
@@ -24,8 +24,6 @@ from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.errors import ReadError, TribolabError
 from tribolab.records.parts import Finding, beyond_limits
-from tribolab.rubber.friction import viscoelastic_friction
-from tribolab.rubber.modulus import PDMS_STAND_IN, Modulus, read_modulus
 from tribolab.stamping import labelled, stamp
 from tribolab.validity import together
 from tribolab.words import explain
@@ -36,10 +34,6 @@ if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact
 
 Groups = dict[str, xr.Dataset]
-# what is attempted, which groups come of it, and how
-Attempt = Callable[[str, tuple[str, ...], Callable[[], tuple[xr.Dataset, ...]]], None]
-_STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
-_SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's
 _PER_DECADE = 10
 _ENDINGS = ("", "_low", "_high")
 
@@ -112,7 +106,11 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
         groups["loads"] = loads
         attempt("dry line contact", ("line",), lambda: (_lines(forces, contact, psd, theory),))
         attempt("gap", ("gap",), lambda: (_gaps(loads, psd, modulus),))
-        _rubber(surface, loads, psd, groups, findings, attempt)
+        if refused := no_rubber(surface):
+            findings.append(refused)
+        else:
+            names = ("rubber", "modulus")
+            attempt("rubber friction", names, lambda: rubber_groups(surface, loads, psd, findings))
     if not surface.media:
         text = "adhesion is not computed: no [medium.*] has a positive work_of_adhesion"
         findings.append(Finding("note", text))
@@ -147,7 +145,7 @@ def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float, theory: AreaTheo
     data = _areas(pressure, psd, modulus, theory)
     data["separation"] = mean_separation(pressure, psd, modulus)
     valid = data["contact_area_ratio"].attrs
-    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **together([valid]))
+    return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, area=theory, **together([valid]))
 
 
 def _loads(
@@ -211,7 +209,7 @@ def _adhesion(
     spectra = _bounds(psd)
     curves, points, valid = [], [], []
     for medium in surface.media:
-        solved = adhesion(pressures, psd, modulus, medium.work_of_adhesion)
+        solved = adhesion(pressures, psd, modulus, medium.work_of_adhesion, area=surface.area)
         valid.append(solved.attrs)
         curve = solved.isel(pressure=slice(1 + at_loads.size, None))
         curve = curve[["contact_area_ratio", "area_enhancement"]]
@@ -237,11 +235,12 @@ def _adhesion(
         point["pull_off"] = np.int8(macroscopic > 0)
         growth = [point["area_enhancement"].values]
         for ending, work in (("_low", medium.low), ("_high", medium.high)):
-            bound = adhesion(bounding, spectra[ending], modulus, max(work, 0))
+            bound = adhesion(bounding, spectra[ending], modulus, max(work, 0), area=surface.area)
             growth.append(bound.area_enhancement.values[1 : 1 + at_loads.size])
             if at_loads.size:  # the ratio of two areas need not be extreme where an area is
                 other = spectra["_low" if ending == "_high" else "_high"]
-                growth.append(adhesion(at_loads, other, modulus, max(work, 0)).area_enhancement)
+                solved = adhesion(at_loads, other, modulus, max(work, 0), area=surface.area)
+                growth.append(solved.area_enhancement)
             areas = bound.contact_area_ratio.values
             through = PchipInterpolator(np.log(grid[::3]), np.log(areas[1 + at_loads.size :]))
             outer = np.minimum if ending == "_low" else np.maximum
@@ -281,69 +280,3 @@ def _undecided(points: xr.Dataset) -> list[Finding]:
         for medium, undecided in zip(points.medium.values, low != high, strict=True)
         if undecided
     ]
-
-
-def _rubber(
-    surface: PlannedSurface,
-    loads: xr.Dataset,
-    psd: xr.Dataset,
-    groups: Groups,
-    findings: list[Finding],
-    attempt: Attempt,
-) -> None:
-    """Viscoelastic friction with the measured modulus, else with a stand-in for a rubber."""
-    stiffness = surface.contact["youngs_modulus"]
-    if surface.modulus_file is None and stiffness > _STIFFEST_RUBBER:
-        text = (
-            f"rubber friction is not computed: {stiffness / 1e6:.3g} MPa is no rubber; name its "
-            "modulus_file in [contact] if it is viscoelastic"
-        )
-        findings.append(Finding("note", text))
-        return
-
-    def compute() -> tuple[xr.Dataset, xr.Dataset]:
-        if surface.modulus_file is None:
-            network = replace(PDMS_STAND_IN, relaxed=stiffness)
-            origin = (
-                f"Stand-in of a PDMS network for orders of magnitude: {stiffness / 1e6:g} MPa at "
-                f"rest, {network.unrelaxed / 1e9:g} GPa as a glass, fractional Zener with tau = "
-                f"{network.relaxation_time:g} s and exponent {network.exponent:g}"
-            )
-            modulus: Modulus = network
-            omega = np.geomspace(1e-2, 1e13, 15 * _PER_DECADE + 1)
-        else:
-            path, label = surface.modulus_file
-            table = read_modulus(path)
-            modulus, origin, omega = table, label, table.angular_frequency
-            softest = omega[0]
-            findings.extend(_far_from(stiffness, float(modulus(softest).real), softest, label))
-        speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
-        ratio = surface.contact["poisson_ratio"]
-        friction = viscoelastic_friction(speed, loads.pressure, psd, modulus, ratio)
-        value = modulus(omega)
-        over_frequency = xr.Dataset(
-            {
-                "storage_modulus": ("angular_frequency", value.real),
-                "loss_modulus": ("angular_frequency", value.imag),
-            },
-            {"angular_frequency": omega},
-        )
-        friction = friction.assign(normal_force=loads.normal_force)
-        return friction.assign_attrs(modulus=origin), stamp(over_frequency, modulus=origin)
-
-    attempt("rubber friction", ("rubber", "modulus"), compute)
-    if surface.modulus_file is None:
-        text = "rubber friction is computed with a stand-in modulus: an order of magnitude only"
-        findings.append(Finding("note", text))
-
-
-def _far_from(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
-    """Say where a measured modulus cannot be that of the body whose contact is computed."""
-    if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
-        return []
-    text = (
-        f"rubber friction is computed with a modulus of {slow / 1e6:.3g} MPa at {frequency:.3g} "
-        f"rad/s ({label}), the contact with youngs_modulus = {stiffness / 1e6:.3g} MPa: are both "
-        "of the same rubber, and in the same units?"
-    )
-    return [Finding("note", text)]

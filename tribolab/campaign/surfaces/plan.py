@@ -60,6 +60,10 @@ class PlannedSurface:
         Media whose work of adhesion is known.
     modulus_file
         File of the viscoelastic modulus, and its label; None if there is none.
+    rubber
+        The table [rubber].
+    rubber_work
+        Work of adhesion [J/m2] that adds to the contact of the sliding rubber; None for none.
     quality
         Arguments of `check_scan_set`: limits, skip.
     area
@@ -79,6 +83,8 @@ class PlannedSurface:
     lowest_force: float | None
     media: tuple[PlannedMedium, ...]
     modulus_file: tuple[Path, str] | None = None
+    rubber: Arguments = field(default_factory=dict)
+    rubber_work: float | None = None
     area: AreaTheory = "persson"
     quality: Arguments = field(default_factory=dict)
     config_sha256: str = field(default="", compare=False)
@@ -110,6 +116,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
     files = distinct(f"surface_{safe_name(surface.name)}" for surface in campaign.surface)
     modulus = campaign.contact.modulus_file
     path = None if modulus is None else campaign.raw / modulus
+    sticky = campaign.rubber.adhesion
     planned = []
     for surface, file in zip(campaign.surface, files, strict=True):
         scans = scans_of(campaign, surface)
@@ -126,6 +133,8 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             ),
             "lowest_force": min(every, default=None),
             "media": media,
+            "rubber": campaign.rubber.model_dump(),
+            "rubber_work": campaign.medium[sticky].work_of_adhesion if sticky else None,
             "quality": campaign.scan_quality_options(),
         }
         shaping = facts | {

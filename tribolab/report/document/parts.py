@@ -72,6 +72,7 @@ def reported_surface(surface: SurfaceOutcome, rows: SurfaceRows | None) -> Repor
         adhesion=rows.adhesion if rows else (),
         modulus=rows.modulus if rows else "",
         validity=rows.validity if rows else "",
+        area=rows.area if rows else "",
     )
 
 

@@ -31,7 +31,10 @@ _DESCRIPTION = (
     "report.json: everything that report.html says. Numbers are in SI units, which stand in the "
     "names; what is not a number is null."
 )
-_FIT_TEXTS = ("area", "other_area", "interval_says", "judgement", "spectrum_error_from", "ratio_to")
+_FIT_TEXTS = (
+    *("area", "adhesion", "other_area", "interval_says", "judgement", "spectrum_error_from"),
+    "ratio_to",
+)
 _CHECK = ("scan", "check", "status", "variable", "message", "value", "unit", "where")
 _VALIDITY = "limits of the theory that the results leave, and what to do; empty if none"
 _QUALITY = "gravest finding of the checks on the scans that were used; empty if there are none"
@@ -137,6 +140,7 @@ class ReportedSurface(ReportedPart):
     adhesion: tuple[AdhesionRow, ...]
     modulus: Annotated[str, means("where the modulus of the rubber comes from")]
     validity: Annotated[str, means(_VALIDITY)]
+    area: Annotated[str, means("theory of the contact area; empty if there is none")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,7 @@ from tribolab.records.model_words import has_shear_stress
 from tribolab.records.parts import Row
 from tribolab.report.document.models import SHEAR_STRESS, ModelRow
 from tribolab.report.figures.files import Drawn
-from tribolab.words import force_text, is_dry, span
+from tribolab.words import force_text, is_dry, many, span
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,7 +205,7 @@ def _loads(task: _Opened) -> tuple[Figure, str]:
         if has_shear_stress(fit):
             models.append(curve.assign_attrs(labels))
     figure = plot.stribeck(measured, models, surfaces=task.figure.surfaces, title=task.figure.title)
-    return figure, f"Measured and computed at {len(task.figure.models)} loads."
+    return figure, f"Measured and computed at {many(len(task.figure.models), 'load')}."
 
 
 class _Fitted(NamedTuple):
@@ -221,7 +221,10 @@ def _joint(task: _Opened) -> tuple[Figure, str]:
     figure = plot.joint_fit(
         fit, surface=model.surface, surfaces=task.figure.surfaces, title=task.figure.title
     )
-    return figure, f"Measured and computed at {fit.curves.sizes['curve']} loads."
+    surfaces = len(set(fit.curves["surface"].values.tolist()))
+    counted = many(fit.curves.sizes["curve"], "load" if surfaces == 1 else "curve")
+    said = f"at {counted}" if surfaces == 1 else f"in {counted} of {surfaces} surfaces"
+    return figure, f"Measured and computed {said}."
 
 
 def _shear_stress(task: _Opened) -> tuple[Figure, str]:

@@ -13,6 +13,7 @@ from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, safe
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figure
+from tribolab.words import many
 
 
 def record_of_joint_fits(joints: Sequence[JointRecord], folder: Path) -> LiveRecord:
@@ -45,8 +46,8 @@ def _figure(joint: JointRecord, folder: Path) -> LiveFigure:
         "Lines: the model at each load; bands: 95 %, by the parameters and by the errors that the "
         "points of a load share. Below: measured over computed less 1; lines: what of it is "
         "ascribed to the level of a load and to neighbouring speeds.",
-        f"Measured friction of {name} at {len(joint.curves)} loads beside the joint fit, and what "
-        "is left.",
+        f"Measured friction of {name}, {many(curves.sizes['curve'], 'curve')} beside the joint "
+        "fit, and what is left.",
         (Panel(x, Axis("friction coefficient µ")), Panel(x, Axis("difference", "% of µ"))),
         tuple(series),
         width="whole",

@@ -1,0 +1,300 @@
+"""Fit the curves of one joint fit under several models, and write what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tribolab.campaign.joint.plan import JointDry, JointTask, Work
+from tribolab.campaign.store.data_files import read_data, write_data
+from tribolab.records.joint_record import JointRecord
+from tribolab.untyped import Arguments
+from tribolab.words import force_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.contact.area import AreaTheory
+    from tribolab.contact.geometry import LineContact
+    from tribolab.fit.joint.load_curve import LoadCurve
+    from tribolab.fit.joint.priors import JointPriors
+    from tribolab.records.parts import ModelOutcome
+
+_NORMAL = 1.959963984540054
+_SAME_LOAD = 0.02  # relative: of forces that are one load
+ADHESIVE = "adhesive area"
+OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; else Persson's
+_CURVE = (
+    "friction_coefficient_couette",
+    "friction_coefficient_pressure",
+    "friction_coefficient_solid",
+    "friction_without_factors",
+    "friction_per_shear_stress",
+    "friction_per_shear_stress_other",
+)
+
+
+def fitted(task: JointTask) -> JointRecord:
+    """Fit all loads together, compare models, write the data file, and return the record.
+
+    Raises
+    ------
+    TribolabError
+        If the curves cannot be fitted, or the file not be written.
+    """
+    import xarray as xr
+
+    from tribolab.fit.joint.comparison import compared
+    from tribolab.fit.joint.loads import fit_loads
+    from tribolab.records.joint_record import (
+        correlation_rows,
+        model_rows_of_comparison,
+        parameter_rows,
+    )
+
+    dry = {of.surface: contacts for of in task.dry if (contacts := _dry_contacts(task, of))}
+    given: Arguments = {
+        "spectrum_error": _bands(task),
+        "area_ratio_error": {
+            surface: max(contact.error for contact in contacts) for surface, contacts in dry.items()
+        },
+    }
+    fits = {
+        name: fit_loads(variant, task.viscosity, prior, **given)
+        for name, (variant, prior) in _variants(task, dry).items()
+    }
+    fit = next(iter(fits.values()))
+    root = xr.Dataset(attrs={"surface": task.surface, "medium": task.medium})
+    groups = {None: root, "points": fit.points, "curves": fit.curves}
+    write_data(groups, task.folder / task.file)
+    return JointRecord(
+        name=task.name,
+        surface=task.surface,
+        medium=task.medium,
+        curves=tuple(model.curve for model in task.models),
+        status="done",
+        file=task.file,
+        reference_speed_m_s=fit.reference_speed,
+        reference_load_N_m=fit.reference_load,
+        described=fit.described,
+        parameters=parameter_rows(fit),
+        correlations=correlation_rows(fit),
+        sentences=tuple(fit.words),
+        models=model_rows_of_comparison(compared(fits)),
+    )
+
+
+class DryContact(NamedTuple):
+    """What multiplies the shear stress of one load where there is no liquid.
+
+    Parameters
+    ----------
+    name, load
+        What the curve is called, and F_N/L [N/m].
+    measured
+        Its data file.
+    area, other_area
+        Real contact area over the load [1/Pa], by the theory of the fit and by the other one.
+    growth
+        Area with adhesion in the liquid over that of the model [1].
+    error
+        Standard error of ln of the ratio of areas, by the ranges of the works of adhesion.
+    """
+
+    name: str
+    load: float
+    measured: str
+    area: float
+    other_area: float
+    growth: float
+    error: float
+
+
+def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
+    """Return the dry contacts of a surface at the loads that were measured in the liquid, too."""
+    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.hertz import hertz_mean_pressure
+    from tribolab.lubrication.stribeck import stribeck_curve
+
+    wet = [m.normal_force for m in task.models if m.surface == dry.surface and m.normal_force]
+    kept = [
+        (force, file)
+        for force, file in zip(dry.normal_forces, dry.measured, strict=True)
+        if any(abs(force / other - 1) < _SAME_LOAD for other in wet)
+    ]
+    if not kept:
+        return []
+    contact = LineContact(**task.contact)
+    psd = read_data(task.folder / dry.surface_file, "psd")
+    load = np.array([contact.load(force) for force, _ in kept])
+    pressure = np.asarray(hertz_mean_pressure(load, contact))
+    without, within = (
+        _growth(pressure, psd, contact, task.area, work) for work in (dry.dry, dry.wet)
+    )
+    rest = stribeck_curve(contact, psd, task.viscosity, load, 0.0, [0.0], area=task.area)
+    at_rest, other = (rest[f"friction_per_shear_stress{end}"].values[0] for end in ("", "_other"))
+    ratio = without.value if task.adhesion else without.value / within.value
+    return [
+        DryContact(
+            name=f"{_curve_name(task, dry.surface, force)} dry",
+            load=float(load[k]),
+            measured=file,
+            area=float(at_rest[k] * ratio[k]),
+            other_area=float(other[k] * ratio[k]),
+            growth=float(1.0 if task.adhesion else within.value[k]),
+            error=float(np.hypot(without.error[k], 0.0 if task.adhesion else within.error[k])),
+        )
+        for k, (force, file) in enumerate(kept)
+    ]
+
+
+class _Growth(NamedTuple):
+    """Area with adhesion over that without (load), and the standard error of its logarithm."""
+
+    value: np.ndarray
+    error: np.ndarray
+
+
+def _growth(
+    pressure: np.ndarray, psd: xr.Dataset, contact: LineContact, area: AreaTheory, work: Work
+) -> _Growth:
+    from tribolab.contact.adhesion import adhesion
+
+    value, low, high = (
+        adhesion(pressure, psd, contact.effective_modulus, max(w, 0.0), area=area)[
+            "area_enhancement"
+        ].values
+        for w in (work.value, work.low, work.high)
+    )
+    return _Growth(value, np.log(high / low) / (2 * _NORMAL))
+
+
+def _curve_name(task: JointTask, surface: str, force: float) -> str:
+    """Call a curve by its load, and by its surface where there are several."""
+    text = force_text(force)
+    return f"{surface} at {text}" if len(task.surfaces) > 1 else text
+
+
+def _priors(task: JointTask) -> JointPriors:
+    """Return the usual priors, the viscosity's from its range where that is stated."""
+    from tribolab.fit.joint.priors import JointPriors
+
+    if task.viscosity_range is None:
+        return JointPriors()
+    low, high = task.viscosity_range
+    spread = max(np.log(task.viscosity / low), np.log(high / task.viscosity)) / _NORMAL
+    return JointPriors(viscosity_spread=float(spread))
+
+
+def _wet(task: JointTask, name: str = "") -> list[LoadCurve]:
+    """Return the curves measured in the liquid with what is computed beside them.
+
+    `name` is that of the model: "" for the usual one, or `WITHOUT_FACTORS`, or of `OTHER_AREA`.
+    """
+    from tribolab.contact.geometry import LineContact
+    from tribolab.fit.joint.comparison import WITHOUT_FACTORS
+    from tribolab.fit.joint.load_curve import LoadCurve
+    from tribolab.fit.joint.response import response_of
+
+    contact = LineContact(**task.contact)
+    curves = []
+    for model, file in zip(task.models, task.measured, strict=True):
+        assert model.normal_force is not None  # else it were not in the plan
+        computed = _computed(task, model)
+        if name == other_area_name(task):
+            other = computed["friction_per_shear_stress_other"]
+            computed = computed.assign(friction_per_shear_stress=other)
+        curves.append(
+            LoadCurve(
+                name=_curve_name(task, model.surface, model.normal_force),
+                surface=model.surface,
+                load=contact.load(model.normal_force),
+                measured=read_data(task.folder / file),
+                response=response_of(computed, friction_factors=name != WITHOUT_FACTORS),
+            )
+        )
+    return curves
+
+
+def other_area_name(task: JointTask) -> str:
+    """Return what the model with the other theory of the contact area is called."""
+    return OTHER_AREA.get(task.area, "Persson's area")
+
+
+def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
+    """Return the computed curve over the campaign's speeds and those that were measured."""
+    import xarray as xr
+
+    path = task.folder / model.data_file
+    groups = [read_data(path, name) for name in ("curve", "fit") if name in model.parts]
+    parts = [group[[name for name in _CURVE if name in group]] for group in groups]
+    curve = xr.concat(parts, "sliding_speed", join="outer", combine_attrs="override").sortby(
+        "sliding_speed"
+    )
+    return curve.assign_attrs(viscosity_Pa_s=task.viscosity)
+
+
+def _bands(task: JointTask) -> dict[str, xr.Dataset]:
+    """Return what is not known of the models, by surface, at one load for which it is computed."""
+    bands: dict[str, xr.Dataset] = {}
+    for model in task.models:
+        if "uncertainty" in model.parts and model.surface not in bands:
+            bands[model.surface] = read_data(task.folder / model.data_file, "uncertainty")
+    return bands
+
+
+Variant = tuple[Sequence["LoadCurve"], "JointPriors"]
+
+
+def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[str, Variant]:
+    """Return the models that are compared: for each its curves and priors, the usual one first."""
+    from tribolab.fit.joint.comparison import CONSTANT, POWER_LAW, WITHOUT_FACTORS
+
+    priors = _priors(task)
+    constant = replace(priors, speed_exponent=0.0, load_exponent=0.0)
+    wet, other = _wet(task), other_area_name(task)
+    usual = [*wet, *_dry(task, dry)]
+    variants: dict[str, Variant] = {
+        POWER_LAW: (usual, priors),
+        CONSTANT: (usual, constant),
+        WITHOUT_FACTORS: ([*_wet(task, WITHOUT_FACTORS), *_dry(task, dry)], priors),
+        other: ([*_wet(task, other), *_dry(task, dry, other=True)], priors),
+    }
+    known = [factor for factor in task.enhancement if factor is not None and factor > 0]
+    if len(known) == len(wet) and max(known) > 1.001:
+        larger = [
+            curve._replace(response=curve.response.enlarged(factor))
+            for curve, factor in zip(wet, known, strict=True)
+        ]
+        variants[ADHESIVE] = ([*larger, *_dry(task, dry, enlarged=True)], priors)
+    return variants
+
+
+def _dry(
+    task: JointTask,
+    contacts: Mapping[str, Sequence[DryContact]],
+    *,
+    other: bool = False,
+    enlarged: bool = False,
+) -> list[LoadCurve]:
+    """Return the curves measured without the liquid."""
+    from tribolab.fit.joint.load_curve import LoadCurve
+    from tribolab.fit.joint.response import constant_response
+
+    return [
+        LoadCurve(
+            name=dry.name,
+            surface=surface,
+            load=dry.load,
+            measured=read_data(task.folder / dry.measured),
+            response=constant_response(
+                (dry.other_area if other else dry.area) * (dry.growth if enlarged else 1.0)
+            ),
+            dry=True,
+        )
+        for surface, of_surface in contacts.items()
+        for dry in of_surface
+    ]
