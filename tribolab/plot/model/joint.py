@@ -114,16 +114,22 @@ def joint_fit(
 
 
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[tuple[str, str]]:
-    """Return colour and marker of each curve: shades of the surface's, dark at the least load."""
+    """Return colour and marker of each curve: shades of the surface's, dark at the least load.
+
+    A dry curve has the colour of the wet one at its load, and another marker.
+    """
     own = [str(name) or surface for name in curves["surface"].values]
     styles = surface_styles([*surfaces, *own])
     loads = curves["load"].values
-    looks = []
+    looks: list[tuple[str, str]] = []
+    seen: list[tuple[str, float]] = []
     for name, load in zip(own, loads, strict=True):
         beside = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(beside, load))
         colour = shade(styles[name].colour, rank, beside.size)
-        looks.append((colour, LOAD_MARKERS[rank % len(LOAD_MARKERS)]))
+        again = seen.count((name, load))  # measured dry at a load that was measured wet, too
+        seen.append((name, load))
+        looks.append((colour, LOAD_MARKERS[(rank + again * beside.size) % len(LOAD_MARKERS)]))
     return looks
 
 
