@@ -218,3 +218,13 @@ def test_half_a_stroke_is_half_and_an_amplitude_is_asked_about(said, at_once, tm
         assert "is half of a stroke" in asked(file)
         return
     assert float(tl.read(file).sliding_velocity.max()) == pytest.approx(np.pi * 5e-3, rel=0.01)
+
+
+@pytest.mark.parametrize(("share", "at_once"), [(0.02, True), (30.0, False)])
+def test_the_larger_of_two_forces_in_the_plane_is_asked_about(share, at_once, tmp_path):
+    head = "Time [s],Fx [mN],Fy [mN],Fz [mN],Speed [mm/s]"
+    file = written(tmp_path / "a.csv", head, T, FRICTION, share * FRICTION, LOAD, SPEED)
+    if at_once:  # cross-talk
+        np.testing.assert_allclose(tl.read(file).friction_force, 1e-3 * FRICTION, atol=1e-6)
+    else:
+        assert "of several columns for friction_force" in asked(file)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
-from tribolab.draft.columns.words import SURE, Match, is_axis
+from tribolab.draft.columns.words import SURE, Match, is_axis, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
@@ -31,6 +31,7 @@ _WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
 _NOISE = 0.1  # of the highest load, what a sensor without a load shows
+_ACROSS = {"fy"}
 _APART = 0.01  # relative difference of two columns that do not hold the same
 # beside friction: which of several such columns is taken changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
@@ -135,7 +136,9 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
     def is_rival(rival: _Proposal) -> bool:
         plain = not role_of(bare[rival.place][0])
         here = rival is not best and plain and rival.option.score >= SURE
-        return here and size(rival) > 0 and abs(size(rival) / size(best) - 1) > _APART
+        # across the motion a sensor shows some cross-talk: the larger force is along it
+        across = squeezed(bare[rival.place][0]) in _ACROSS and size(rival) < size(best)
+        return here and not across and size(rival) > 0 and _apart(size(rival), size(best))
 
     if not size(best):
         return rivals
@@ -146,6 +149,10 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
         else rival
         for rival in rivals
     ]
+
+
+def _apart(one_size: float, other_size: float) -> bool:
+    return abs(one_size / other_size - 1) > _APART
 
 
 def _is_spare(rivals: list[_Proposal]) -> bool:
