@@ -82,6 +82,7 @@ _PUBLIC = {
     "sliding_mode": "tribolab.mode.verdict",
     "sliding_modes": "tribolab.mode.several",
     "Mode": "tribolab.mode.model",
+    "dead_weight_gain": "tribolab.metrology.dead_weight",
     "model_inputs": "tribolab.fit.model_inputs",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
     "viscoelastic_friction": "tribolab.rubber.friction",
@@ -167,6 +168,7 @@ __all__ = [
     "sliding_mode",
     "sliding_modes",
     "Mode",
+    "dead_weight_gain",
     "model_inputs",
     "model_uncertainty",
     "viscoelastic_friction",
@@ -238,6 +240,7 @@ if TYPE_CHECKING:
     from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
     from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
+    from tribolab.metrology.dead_weight import dead_weight_gain
     from tribolab.mode.model import Mode
     from tribolab.mode.several import sliding_modes
     from tribolab.mode.verdict import sliding_mode

@@ -177,7 +177,10 @@ def _of_reference(
         if any(is_named(campaign, reference.files, file) for file in run["files"])
     }
     mine = _of_runs(friction, named)
-    if reference.dead_weight is not None:
+    gains = [run.get("dead_weight_gain") for run in runs if run["name"] in named]
+    if told := [float(gain) for gain in gains if gain is not None]:
+        yield GAIN, "1", float(np.mean(told))
+    elif reference.dead_weight is not None:
         yield GAIN, "1", _middle(mine["normal_force_N"]) / reference.dead_weight
     value, speed = mine["friction_coefficient"], mine["sliding_speed_m_s"]
     known = np.isfinite(value) & (speed > 0)

@@ -145,6 +145,10 @@ class RunFacts:
     sliding_speed_max_m_s: float | None = None
     offset: str = ""
     trim: float | None = None
+    dead_weight_gain: Annotated[
+        float | None, means("step of the normal force over the dead weight that made it")
+    ] = None
+    dead_weight_gain_sem: float | None = None
     position_range_m: tuple[float, float] | None = None
     velocity_source: str = ""
     instrument: str = ""

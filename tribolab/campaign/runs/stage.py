@@ -217,6 +217,7 @@ def process_run(task: RunTask) -> RunAnswer:
         root: dict[str | None, xr.Dataset] = {None: _root(run, signals.attrs)}
         write_data(root | analysed.groups, task.folder / task.data_file)
         facts = facts_of(signals, segments, friction, slip, analysed.friction_as_found)
+        facts = _with_dead_weight(facts, run, signals)
         notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_table(slip))
@@ -250,6 +251,19 @@ def process_run(task: RunTask) -> RunAnswer:
     sources = sources_of_run(run, signals.attrs)
     record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts)
     return RunAnswer(record, trace)
+
+
+def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
+    """Add the gain that a dead weight tells, where it is put on or taken off in the record."""
+    from tribolab.metrology.dead_weight import dead_weight_gain
+
+    if run.dead_weight is None:
+        return facts
+    try:
+        weighed = dead_weight_gain(signals, run.dead_weight)
+    except AnalysisError:  # it lies on all the time, and the load of the strokes tells the gain
+        return facts
+    return replace(facts, dead_weight_gain=weighed.gain, dead_weight_gain_sem=weighed.error)
 
 
 def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:

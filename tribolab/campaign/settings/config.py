@@ -233,7 +233,8 @@ class Reference(Table):
     files: Patterns | None = None
     """Their raw files, as in [[run]]."""
     dead_weight: Annotated[float, PositiveSi("N", "19.62 N")] | None = None
-    """The weight that loads them, where it is a dead weight: it tells the gain of the force."""
+    """The weight that loads them, where it is a dead weight: it tells the gain of the force. Put
+    on or taken off within a record that need not slide, or lying on during the strokes."""
 
 
 class Calibration(Table):

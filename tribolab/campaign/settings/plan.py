@@ -50,6 +50,8 @@ class PlannedRun:
         Where the zero of the friction signal is read, see `tribolab.read`.
     moving_mass
         Between contact and force sensor [kg], if the campaign file gives it.
+    dead_weight
+        Of the reference that it is a run of [N], where one is stated.
     segments, friction
         Arguments of `find_segments` and `friction_coefficient`.
     quality
@@ -75,6 +77,7 @@ class PlannedRun:
     instrument: str | None
     zero: str | None = None
     moving_mass: float | None = None
+    dead_weight: float | None = None
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
     quality: Arguments = field(default_factory=dict)
@@ -119,14 +122,21 @@ def plan_runs(campaign: Campaign) -> Plan:
     names = unique_names([files for _, files in groups])
     settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
     decisions = review_beside(campaign.file)
+    reference = campaign.reference
+    under = reference.files if reference.dead_weight is not None else None
+    weighed = {file for pattern in under or () for file in _matching(campaign.raw, pattern)}
     runs = tuple(
         _decided(
-            PlannedRun(
-                name=name,
-                files=tuple(files),
-                labels=tuple(label_of(campaign, file) for file in files),
-                mount=_mount(entry, files[0]),
-                **settings[id(entry)],
+            _weighed(
+                PlannedRun(
+                    name=name,
+                    files=tuple(files),
+                    labels=tuple(label_of(campaign, file) for file in files),
+                    mount=_mount(entry, files[0]),
+                    **settings[id(entry)],
+                ),
+                campaign,
+                weighed,
             ),
             decisions.get(name, ()),
         )
@@ -140,6 +150,16 @@ def _mount(entry: RunEntry, file: Path) -> str:
     if entry.mount is not None or entry.labels_in_name is None:
         return entry.mount or ""
     return NamePattern(entry.labels_in_name).labels(file.stem).get("mount", "")
+
+
+def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> PlannedRun:
+    """Return a run of a reference with its dead weight: it need not slide."""
+    weight = campaign.reference.dead_weight
+    if weight is None or weighed.isdisjoint(run.files):
+        return run
+    mark = sha256_of([run.config_sha256, weight])
+    quality = run.quality | {"skip": [*run.quality.get("skip", ()), "segments"]}
+    return replace(run, dead_weight=weight, quality=quality, config_sha256=mark)
 
 
 def _decided(run: PlannedRun, decisions: tuple[Decision, ...]) -> PlannedRun:

@@ -49,7 +49,7 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     AnalysisError
         If the zero that is wanted cannot be had.
     """
-    loops = middles(strokes.mean, strokes.load, strokes.sign, strokes.pair, strokes.time)
+    loops = _loops(strokes, known.rests)
     if loops is not None and not np.isfinite(loops.value).any():
         loops = None
     if wanted == "half loop" and loops is None:
@@ -86,6 +86,31 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     else:
         result = _from_outside(strokes, known, fold)
     return replace(result, half_loop=nothing)
+
+
+def _loops(strokes: Strokes, rests: Zeros | None) -> Middles | None:
+    """Return the middles of the loops, of loads as they were read or turned back by the tilt.
+
+    Through a tilt the load reads less one way and more the other, in proportion to friction, and
+    middles that are weighed with such loads go with friction: they would pass for a zero that
+    moves. Rests without load tell the tilt. A cross-talk that moves the middles alike leaves the
+    loads; so the loads count that let the middles agree better.
+    """
+
+    def weighed(load: np.ndarray) -> Middles | None:
+        return middles(strokes.mean, load, strokes.sign, strokes.pair, strokes.time)
+
+    seen = weighed(strokes.load)
+    if seen is None or rests is None or not np.isfinite(seen.value).sum() > 1:
+        return seen
+    force = strokes.mean - rests.at(strokes.time)[0]
+    angle = np.arctan2(force, strokes.load)[seen.member].mean(axis=1)
+    tilt = float(np.nanmedian(angle))
+    turned = weighed(strokes.load * np.cos(tilt) + force * np.sin(tilt))
+    if turned is None:
+        return seen
+    apart = [np.nanstd(loops.value - rests.at(loops.time)[0]) for loops in (seen, turned)]
+    return turned if apart[1] < apart[0] else seen
 
 
 def _constant(strokes: Strokes, value: float, error: float, words: str, method: str) -> Reference:

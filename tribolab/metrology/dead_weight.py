@@ -1,0 +1,111 @@
+"""The gain of a force channel from a dead weight that is put on and taken off."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import AnalysisError
+from tribolab.friction.statistics import estimate_of
+from tribolab.units import positive
+
+_TRIM = 0.1  # of each part with and without the weight, at both ends
+_LEAST = 20  # samples of a part that counts
+_CLEAR = 10.0  # the step over the noise: below there is no step
+
+
+class DeadWeightGain(NamedTuple):
+    """What a channel reads of a weight.
+
+    Parameters
+    ----------
+    gain
+        Step of the reading over the weight [1].
+    error
+        Its standard error from the noise and the scatter of the steps [1].
+    zero
+        Reading without the weight [N].
+    """
+
+    gain: float
+    error: float
+    zero: float
+
+
+def dead_weight_gain(
+    run: xr.Dataset, weight: str | float, signal: str = "normal_force"
+) -> DeadWeightGain:
+    """Gain of a force channel from a record in which a dead weight is put on or taken off.
+
+    Parameters
+    ----------
+    run
+        With the signal over time; it need not slide.
+    weight
+        The weight [N], or text such as ``"19.62 N"``.
+    signal
+        Which channel it loads: ``"normal_force"``, or ``"friction_force"`` over a pulley.
+
+    Returns
+    -------
+    DeadWeightGain
+
+    Raises
+    ------
+    AnalysisError
+        If the signal is not there, or shows no step from one level to another.
+
+    Notes
+    -----
+    A sample belongs to the level that it is nearer to. Each part between two changes, a tenth left
+    out at both ends, has its mean; with and without the weight the means of the parts are averaged,
+    and their difference over the weight is the gain. Its error is the larger of what the noise
+    makes, with its memory, and of what the parts scatter.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 30, 0.02)
+    >>> rng = np.random.default_rng(1)
+    >>> on = 0.3 + 20.2 * ((time > 10) & (time < 20)) + 0.01 * rng.standard_normal(time.size)
+    >>> run = xr.Dataset({"normal_force": ("time", on)}, {"time": time})
+    >>> round(dead_weight_gain(run, "20 N").gain, 3)
+    1.01
+    """
+    size = positive(weight, "N", "weight")
+    if signal not in run:
+        raise AnalysisError(f"the run has no '{signal}' that a weight could load")
+    known = np.isfinite(run[signal].values)
+    time, values = run["time"].values[known], run[signal].values[known].astype(float)
+    if values.size < 4 * _LEAST:
+        raise AnalysisError(
+            f"{values.size} samples are too few to see a weight that is put on"
+        )
+    low, high = np.percentile(values, [2.0, 98.0])
+    loaded = values > (low + high) / 2
+    ends = np.flatnonzero(np.diff(loaded.astype(int))) + 1
+    parts: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
+    noise = []
+    for piece in np.split(np.arange(values.size), ends):
+        inner = piece[int(_TRIM * piece.size) : piece.size - int(_TRIM * piece.size)]
+        if inner.size >= _LEAST:
+            told = estimate_of(time[inner], values[inner])
+            parts[bool(loaded[inner[0]])].append((told.mean, told.sem))
+            noise.append(told.std)
+    if not parts[True] or not parts[False] or high - low < _CLEAR * float(np.median(noise)):
+        raise AnalysisError(
+            "no step of a weight that is put on or taken off is seen: record some seconds without "
+            "the weight before or after those with it"
+        )
+    (on, on_error), (off, off_error) = (_level(parts[which]) for which in (True, False))
+    return DeadWeightGain((on - off) / size, float(np.hypot(on_error, off_error)) / size, off)
+
+
+def _level(parts: list[tuple[float, float]]) -> tuple[float, float]:
+    """Return the mean of some parts and its standard error."""
+    means, errors = np.array(parts).T
+    count = means.size
+    by_noise = float(np.sqrt(np.sum(errors**2))) / count
+    by_scatter = float(np.std(means, ddof=1)) / np.sqrt(count) if count > 1 else 0.0
+    return float(means.mean()), max(by_noise, float(by_scatter))
