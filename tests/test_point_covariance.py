@@ -188,3 +188,38 @@ def test_a_verdict_knows_the_errors_of_load_and_radius(truth, inputs):
 def test_inputs_that_are_not_known_are_said(errors, words):
     with pytest.raises(AnalysisError, match=words):
         model_inputs(*GIVEN, COARSE, errors)
+
+
+@pytest.mark.parametrize("size", [0.06, 0.095, 0.105, 0.14])
+def test_a_verdict_on_a_misfit_near_the_limit_is_wrong_by_chance_alone(truth, size):
+    """A model that misses by more is called sufficient, one that misses by less not, below 5 %."""
+    curve = truth[0][["friction_coefficient"]]
+    mu = curve.friction_coefficient.values
+    rng = np.random.default_rng(8)
+    shape = np.sin(np.arange(9.0))
+    miss = size * mu.max() * shape / np.sqrt(np.mean(shape**2))
+    own, shared = np.full(9, 0.005 * mu.max()), np.array([0.01 * mu, np.full(9, 0.005)])
+    verdicts, wrong = [], size > 0.1
+    for _ in range(200):
+        drawn = own * rng.standard_normal(9) + rng.standard_normal(2) @ shared
+        data = measured(mu + drawn, own, shared)
+        height = {"friction_coefficient": ("sliding_speed", mu.max() * np.ones(9))}
+        numbers = misfit_numbers(data.assign(height), curve, miss + drawn)
+        verdicts.append(is_sufficient(numbers))
+    assert np.mean([verdict is wrong for verdict in verdicts]) < 0.05
+    if abs(size - 0.1) > 0.03:
+        assert np.mean([verdict is not wrong for verdict in verdicts]) > 0.95
+        assert None not in verdicts
+
+
+def test_what_a_fitted_stress_takes_up_hides_no_misfit(truth):
+    curve = truth[0]
+    mu = curve.friction_coefficient.values
+    level = 0.05 * curve.friction_per_shear_stress.values * 0.84e6
+    data = measured(mu, np.full(9, 0.002 * mu.max()), np.array([level]))
+    off = np.full(9, 1e-3)
+    fitted, held = (
+        misfit_numbers(data, model, off)["model_misfit_resolved"]
+        for model in (curve, curve[["friction_coefficient"]])
+    )
+    assert fitted < 0.15 * held and held > 0.04

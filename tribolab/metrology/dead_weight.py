@@ -79,9 +79,7 @@ def dead_weight_gain(
     known = np.isfinite(run[signal].values)
     time, values = run["time"].values[known], run[signal].values[known].astype(float)
     if values.size < 4 * _LEAST:
-        raise AnalysisError(
-            f"{values.size} samples are too few to see a weight that is put on"
-        )
+        raise AnalysisError(f"{values.size} samples are too few to see a weight that is put on")
     low, high = np.percentile(values, [2.0, 98.0])
     loaded = values > (low + high) / 2
     ends = np.flatnonzero(np.diff(loaded.astype(int))) + 1

@@ -32,8 +32,19 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
     dict
         ``model_misfit``: root of the mean square over the largest friction [1];
         ``model_misfit_p_value``: probability that errors alone make the points miss so far, by the
-        chi-square of their full covariance; ``model_misfit_resolved``: what the errors make of such
-        a misfit [1]. NaN where they are not known.
+        chi-square of their full covariance; ``model_misfit_resolved``: by how much, with 95 %, the
+        errors move such a misfit to either side [1]. NaN where they are not known.
+
+    Notes
+    -----
+    With the true misfit d and errors e of covariance C the root of the mean square of d + e lies
+    within that of e of that of d. The sum of squares of e is taken for a multiple of chi-square
+    with its mean tr C and its variance 2 tr C^2 [1]_. What the fitted shear stress takes up, c =
+    friction per shear stress, is taken out of C: C - c c^T/(c^T C^-1 c).
+
+    References
+    ----------
+    .. [1] F. E. Satterthwaite, Biometrics Bull. 2, 110 (1946). doi:10.2307/3002019
     """
     nan = float("nan")
     mu, fine = measured["friction_coefficient"].values, np.isfinite(off)
@@ -57,16 +68,35 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
     white = errors.whitened(off[fine])
     freedom = int(fine.sum()) - _FITTED
     numbers["model_misfit_p_value"] = float(special.chdtrc(freedom, white @ white))
-    spread = np.sqrt(np.mean(np.diag(errors.covariance)))
-    numbers["model_misfit_resolved"] = float(spread / highest)
+    if "friction_per_shear_stress" in model:
+        solid = np.interp(np.log(speed), place, model["friction_per_shear_stress"].values)[fine]
+    else:
+        solid = np.zeros(fine.sum())
+    numbers["model_misfit_resolved"] = _moved(errors, solid) / float(highest)
     return numbers
+
+
+def _moved(errors: PointErrors, solid: np.ndarray) -> float:
+    """Return what the root mean square of errors stays below with 95 %, a level fitted to them."""
+    covariance = errors.covariance
+    if np.any(solid > 0):
+        taken = errors.whitened(solid)
+        covariance = covariance - np.outer(solid, solid) / float(taken @ taken)
+    mean, square = float(np.trace(covariance)), float(np.sum(covariance**2))
+    if not mean > 0:
+        return 0.0
+    scale, freedom = square / mean, mean**2 / square
+    most = scale * float(special.chdtri(freedom, _CHANCE))
+    return float(np.sqrt(most / solid.size))
 
 
 def is_sufficient(numbers: dict[str, float]) -> bool | None:
     """Return whether a model is sufficient; None where the errors are too large to tell.
 
-    A misfit that errors alone would make is none, if the errors would have shown one of a tenth
-    of the largest friction; one that they would not make counts from that tenth on.
+    A model is sufficient where its misfit, with what the errors may hide of it, stays below a
+    tenth of the largest friction, or where the errors alone would make it and would have shown one
+    of that tenth. It is not where the misfit is no chance and is more than that tenth with what the
+    errors may have added taken off.
 
     Examples
     --------
@@ -77,8 +107,13 @@ def is_sufficient(numbers: dict[str, float]) -> bool | None:
     (True, True)
     >>> is_sufficient(found(0.2, 1e-9, 0.01)), is_sufficient(found(0.2, 0.3, 0.2))
     (False, None)
+    >>> is_sufficient(found(0.09, 1e-3, 0.03)), is_sufficient(found(0.11, 1e-3, 0.03))
+    (None, None)
     """
     off, chance = numbers["model_misfit"], numbers.get("model_misfit_p_value", float("nan"))
-    if np.isnan(chance) or chance < _CHANCE:
+    if np.isnan(chance):
         return bool(off < SUFFICIENT)
-    return True if numbers["model_misfit_resolved"] < SUFFICIENT else None
+    moved = numbers["model_misfit_resolved"]
+    if off + moved < SUFFICIENT or (chance >= _CHANCE and moved < SUFFICIENT):
+        return True
+    return False if chance < _CHANCE and off - moved > SUFFICIENT else None
