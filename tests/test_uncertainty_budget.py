@@ -377,3 +377,12 @@ def test_a_stated_zero_counts_once_in_a_curve_of_one_run():
         assert float(data.uncertainty_part.sel(part="noise within the run")[0]) == (
             pytest.approx(noise, rel=1e-6)
         )
+
+
+def test_the_figure_says_where_an_uncertainty_is_statistical_only():
+    def told(stated):
+        friction = one_segment(0.1, 50.0, friction_coefficient_sem=1e-3)
+        figure = tl.plot.uncertainty_budget(tl.uncertainty_budget(friction, stated))
+        return figure.axes[0].get_yticklabels()[-1].get_text()
+
+    assert told(None) == "combined\nstatistical only" and told(gain()) == "combined"

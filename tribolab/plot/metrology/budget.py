@@ -49,7 +49,8 @@ def uncertainty_budget(
     -------
     matplotlib.figure.Figure
         Bars: by how much one standard uncertainty of each part moves the friction coefficient, in
-        per cent of it, the largest on top; below them the combined standard uncertainty.
+        per cent of it, the largest on top; below them the combined standard uncertainty, which
+        says so where nothing is stated of the calibration.
 
     Examples
     --------
@@ -77,7 +78,10 @@ def uncertainty_budget(
         axes.barh(y[-1:], share[-1:], 0.62, color=ORANGE, label="combined")
         keep(figure, "parts", "parts", part=names, contribution_percent=share)
         axes.axhline(0.5, color=GREY, linewidth=0.6)
-        axes.set_yticks(y, [plain(name) for name in names])
+        told = [plain(name) for name in names]
+        if "statistical only" in budget.says:
+            told[-1] += "\nstatistical only"
+        axes.set_yticks(y, told)
         axes.tick_params(axis="y", length=0)
         axes.set_ylim(-0.6, names.size - 0.4)
         axes.set_xlim(0, 1.08 * share.max(initial=0.0) or 1.0)
