@@ -49,7 +49,7 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     AnalysisError
         If the zero that is wanted cannot be had.
     """
-    loops = _loops(strokes, known.rests)
+    loops = middles(strokes.mean, strokes.load, strokes.sign, strokes.pair, strokes.time)
     if loops is not None and not np.isfinite(loops.value).any():
         loops = None
     if wanted == "half loop" and loops is None:
@@ -73,7 +73,7 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     if not strokes.size:
         return _constant(strokes, 0.0, 0.0, "", "none: no segment")
     if loops is not None:
-        loop = _from_loops(strokes, known, loops)
+        loop = _from_loops(strokes, known, _turned(strokes, known.rests, loops))
         nothing = loop.half_loop
     if wanted == "none":
         result = _constant(strokes, 0.0, 0.0, "not wanted", "none: not wanted")
@@ -88,29 +88,25 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     return replace(result, half_loop=nothing)
 
 
-def _loops(strokes: Strokes, rests: Zeros | None) -> Middles | None:
-    """Return the middles of the loops, of loads as they were read or turned back by the tilt.
+def _turned(strokes: Strokes, rests: Zeros | None, loops: Middles) -> Middles:
+    """Return the middles of the loops of loads turned back by the tilt, if they agree better.
 
     Through a tilt the load reads less one way and more the other, in proportion to friction, and
     middles that are weighed with such loads go with friction: they would pass for a zero that
     moves. Rests without load tell the tilt. A cross-talk that moves the middles alike leaves the
     loads; so the loads count that let the middles agree better.
     """
-
-    def weighed(load: np.ndarray) -> Middles | None:
-        return middles(strokes.mean, load, strokes.sign, strokes.pair, strokes.time)
-
-    seen = weighed(strokes.load)
-    if seen is None or rests is None or not np.isfinite(seen.value).sum() > 1:
-        return seen
+    if rests is None or not np.isfinite(loops.value).sum() > 1:
+        return loops
     force = strokes.mean - rests.at(strokes.time)[0]
-    angle = np.arctan2(force, strokes.load)[seen.member].mean(axis=1)
+    angle = np.arctan2(force, strokes.load)[loops.member].mean(axis=1)
     tilt = float(np.nanmedian(angle))
-    turned = weighed(strokes.load * np.cos(tilt) + force * np.sin(tilt))
+    load = strokes.load * np.cos(tilt) + force * np.sin(tilt)
+    turned = middles(strokes.mean, load, strokes.sign, strokes.pair, strokes.time)
     if turned is None:
-        return seen
-    apart = [np.nanstd(loops.value - rests.at(loops.time)[0]) for loops in (seen, turned)]
-    return turned if apart[1] < apart[0] else seen
+        return loops
+    apart = [np.nanstd(some.value - rests.at(some.time)[0]) for some in (loops, turned)]
+    return turned if apart[1] < apart[0] else loops
 
 
 def _constant(strokes: Strokes, value: float, error: float, words: str, method: str) -> Reference:
