@@ -58,8 +58,11 @@ class RandomContact(NamedTuple):
     load: float  # [N/m]
     roughness: float  # h_rms [m]
 
-    def curve(self, speeds: int = 33, cells: int = 160) -> xr.Dataset:
-        """Over eight decades of speed; the surface is one of the paper's, stretched all ways."""
+    def curve(self, speeds: int | np.ndarray = 33, cells: int = 160) -> xr.Dataset:
+        """Over eight decades of speed, or at speeds [m/s].
+
+        The surface is one of the paper's, stretched all ways.
+        """
         psd = reference_psd(self.name)
         factor = self.roughness / rms_roughness(psd)
         psd = psd.assign_coords(wavenumber=psd.wavenumber / factor) * factor**4
@@ -69,7 +72,7 @@ class RandomContact(NamedTuple):
             self.viscosity,
             self.load,
             1e6,
-            np.geomspace(1e-9, 1e-1, speeds),
+            np.geomspace(1e-9, 1e-1, speeds) if np.ndim(speeds) == 0 else speeds,
             cells=cells,
         )
 

@@ -17,6 +17,7 @@ from tribolab.lubrication.mixed import Problem, Solution
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in reaches of the film
 _CLASS = 100.0  # films within this factor share a mesh
+_USUAL, _MORE = 5e-3, 0.3  # edge below which a mesh has more cells, and how many to a decade
 SHORTEST = 1.5  # half-widths from the middle to where the liquid may begin
 
 
@@ -103,7 +104,7 @@ def lubrication_problem(
     film
         `film_estimate` [m] at the speed; 0 at rest.
     cells
-        Cells of the mesh.
+        Cells of the mesh; more where the roughness is thin beside the gap.
     domain
         Length of the domain over the default, see `layout`.
     inlet_length
@@ -123,6 +124,7 @@ def lubrication_problem(
             f"contact's middle, {SHORTEST * b:.3g} m here; got {inlet_length:.3g} m"
         )
     begins = inlet_length / b
+    cells = _resolving(cells, decay / gap)
     mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
     pressure = contact.effective_modulus * gap / b
     return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
@@ -158,6 +160,22 @@ def _tail(power: int, start: float, constant: float) -> float:
     n = power
     series = hyp2f1(n, n - 0.5, n + 0.5, -constant / start**2)
     return float(start ** (1 - 2 * n) / (2 * n - 1) * series)
+
+
+def _resolving(cells: int, decay: float) -> int:
+    """Cells as many to a decade, also where the contact's edge is thousandths of its width.
+
+    Parameters
+    ----------
+    cells
+        As many as are asked for.
+    decay
+        Of the contact pressure with the film, over the gap; 0 between smooth surfaces.
+    """
+    if not decay:
+        return cells
+    edge = (decay / 1.9) ** (2 / 3)
+    return round(cells * (1 + _MORE * max(np.log10(_USUAL / edge), 0.0)))
 
 
 def _rounded(value: float) -> float:

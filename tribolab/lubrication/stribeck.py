@@ -80,7 +80,8 @@ def stribeck_curve(
     gamma
         Elastic-energy reduction factor [1] of the mean separation.
     cells
-        Cells across the contact.
+        Cells across the contact; more of them where the roughness is thin beside a soft body's
+        gap.
     domain
         Length of the domain over the default: a check of the numerics, as the drag of the liquid
         beyond its ends is added in closed form.
