@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.across.history import history_of
-from tribolab.across.watched import GAIN, Observation, observations_of
+from tribolab.across.watched import GAIN, REFERENCE, Observation, observations_of
 from tribolab.metrology.control_charts import (
     CUSUM,
     EWMA,
@@ -156,6 +156,23 @@ def test_false_alarms_are_as_many_as_the_page_states():
     )
 
 
+def test_a_speed_that_scatters_between_campaigns_is_one_quantity():
+    rng = np.random.default_rng(8)
+    days = [dt.datetime(2026, 1, 5) + dt.timedelta(days=7 * week) for week in range(30)]
+    points = [
+        Observation("rig", REFERENCE, "1", day, "a", rng.normal(0.5, 0.01), speed)
+        for day in days
+        # 2.15 mm/s stands between two roundings to two digits
+        for speed in (1e-4, 2.15e-3 * rng.normal(1, 0.002))
+    ]
+    charts = history_of(points).charts
+    assert [chart.values.size for chart in charts] == [30, 30]
+    assert [chart.quantity for chart in charts] == [
+        f"{REFERENCE} at 100 µm/s",
+        f"{REFERENCE} at 2.15 mm/s",
+    ]
+
+
 def test_too_few_points_are_told_and_rules_are_known():
     told = history_of(months(np.random.default_rng(4), 8))
     assert all("too few" in chart.remark and not chart.signals.size for chart in told.charts)
@@ -202,7 +219,7 @@ def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, t
     words = ["history", str(archive), "--baseline", "18", "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(cli.app, words)
     assert done.exit_code == 1, done.output
-    assert "zero of the friction force signal" in done.stdout
+    assert "signals: zero of the friction force\n" in done.stdout
     assert "calibration due 2027-01-01 (interval)" in done.stdout
     told = tl.history(sorted(archive.iterdir()), baseline=18)
     names = {chart.quantity for chart in told.charts}

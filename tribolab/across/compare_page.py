@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from tribolab import plot
 from tribolab.across.compare import CHANGED, Comparison
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.metrology.differences import DIFFERENT, EQUIVALENT, UNDECIDED
 from tribolab.report import tables
-from tribolab.words import many, speed_text
+from tribolab.words import many, percent, speed_text
 
 _VERDICTS = (DIFFERENT, CHANGED, EQUIVALENT, UNDECIDED)
 _HEADS = (
@@ -19,7 +21,7 @@ _HEADS = (
     "First",
     "Second",
     "Difference",
-    "Together 95 %: from",
+    "95 % of all: from",
     "to",
     "Runs",
     "p of all",
@@ -32,6 +34,7 @@ def comparison_verdict(compared: Comparison) -> str:
     points = len(compared.points)
     words = {word: word for word in _VERDICTS}
     words[EQUIVALENT] += f" within {compared.margin}"
+    words[UNDECIDED] += _open_to(compared)
     counts = [
         f"{compared.counts[word]} {text}"
         for word, text in words.items()
@@ -39,6 +42,15 @@ def comparison_verdict(compared: Comparison) -> str:
     ]
     said = "; ".join(counts) or "nothing differs, and the raw data are the same"
     return f"{' and '.join(compared.names)}: {many(points, 'point')}, {said}"
+
+
+def _open_to(compared: Comparison) -> str:
+    """Say by how much the two may differ where no difference was proved."""
+    rows = compared.points[compared.points["verdict"] == UNDECIDED]
+    reach = rows[["low", "high"]].abs().max(axis=1) / rows["first"].abs()
+    if not np.isfinite(reach).any():
+        return ""
+    return f" (they may differ by up to {percent(float(reach.max()))})"
 
 
 def write_comparisons(compared: Sequence[Comparison], folder: Path) -> Path:
@@ -84,6 +96,12 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
         "Numbers of whole conditions and surfaces; each bar for itself, 95 % thin and 90 % thick.",
         f"Relative differences between {first} and {second}, a row for each number.",
     )
+    plainly = (
+        "Different: the two differ at this speed by more than chance explains. Of campaigns that "
+        "do not differ, one in twenty has a point that is called so."
+        if compared.calibration
+        else "No chance is in these differences, as the raw data are the same."
+    )
     margin = (
         f"Equivalent means: the 90 % interval of the point alone lies within {compared.margin}."
         if compared.margin
@@ -95,11 +113,12 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
         Part(
             f"points{end}",
             f"Friction over speed{said}",
-            texts=(compared.method + ".", margin),
+            texts=(plainly, margin),
             figures=(drawn,),
             tables=(_points(compared, end),),
             notes=(
-                f"The unit is the run; {compared.calibration}." if compared.calibration else "",
+                f"{compared.method}.",
+                *([f"The unit is the run; {compared.calibration}."] * bool(compared.calibration)),
             ),
         ),
         Part(

@@ -11,7 +11,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tribolab.across.watched import GAIN, REFERENCE, Observation, observations_of
+from tribolab.across.watched import (
+    GAIN,
+    REFERENCE,
+    Observation,
+    at_common_speeds,
+    observations_of,
+)
 from tribolab.campaign.settings.config import Calibration
 from tribolab.errors import AnalysisError, ReadError, TribolabError
 from tribolab.metrology.control_charts import (
@@ -213,7 +219,7 @@ def history_of(
 ) -> History:
     """Return the charts of observations; arguments as for `history`."""
     groups: dict[tuple[str, str, str], list[Observation]] = {}
-    for point in sorted(points, key=lambda point: (point.when, point.folder)):
+    for point in sorted(at_common_speeds(points), key=lambda point: (point.when, point.folder)):
         groups.setdefault((point.instrument, point.quantity, point.unit), []).append(point)
     charts = [_watched(*key, own, rules, baseline) for key, own in sorted(groups.items())]
     return History(tuple(charts), tuple(rules))

@@ -8,6 +8,7 @@ from pathlib import Path
 from tribolab import plot
 from tribolab.across.history import History, Watched, expectations
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
+from tribolab.metrology.run_length import signal_probability
 from tribolab.report import tables
 from tribolab.words import many
 
@@ -17,13 +18,19 @@ def history_verdict(told: History) -> str:
     charts = many(len(told.charts), "chart")
     if not told.signalling:
         return f"{charts}: no signal"
-    named = ", ".join(_name(chart) for chart in told.signalling[:4])
+    named = ", ".join(_name(chart, told) for chart in told.signalling[:4])
     more = len(told.signalling) - 4
-    return f"{charts}: {named}{f' and {more} more' if more > 0 else ''} signal"
+    signal = "signal" if len(told.signalling) > 1 else "signals"
+    return (
+        f"{len(told.signalling)} of {charts} {signal}: {named}"
+        f"{f' and {more} more' if more > 0 else ''}"
+    )
 
 
-def _name(chart: Watched) -> str:
-    return f"{chart.instrument}: {chart.quantity}" if chart.instrument else chart.quantity
+def _name(chart: Watched, told: History) -> str:
+    """Return the quantity, and of which instrument where there are several."""
+    several = len({other.instrument for other in told.charts}) > 1
+    return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
 
 
 def write_history(told: History, folder: Path) -> Path:
@@ -38,25 +45,39 @@ def write_history(told: History, folder: Path) -> Path:
         heading=", ".join(name or "instrument not named" for name in instruments),
         verdict=history_verdict(told),
         fine=not told.signalling,
-        parts=[_summary(told), *(_chart(chart, told) for chart in told.charts)],
+        parts=[_summary(told), *(_chart(chart, told) for chart in _ordered(told))],
     )
     return page
+
+
+def _ordered(told: History) -> list[Watched]:
+    """Return the charts: first those that signal, last those that could not be judged."""
+    return sorted(told.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
+
+
+def _verdict(chart: Watched) -> str:
+    if chart.chart is None:
+        return "not judged"
+    if not chart.signals.size:
+        return "as usual"
+    first = chart.when[chart.signals[0]].date().isoformat()
+    return f"not as usual since {first}"
 
 
 def _summary(told: History) -> Part:
     rows = [
         cells(
             (
-                _name(chart), chart.unit, len(chart.values), chart.baseline_points,
+                _name(chart, told), chart.unit, len(chart.values), chart.baseline_points,
                 float(chart.values[-1]), chart.chart.low if chart.chart else float("nan"),
                 chart.chart.high if chart.chart else float("nan"), len(chart.signals),
-                chart.when[chart.signals[0]].date().isoformat() if chart.signals.size else "–",
+                _verdict(chart),
             ),
             digits=4,
         )
-        for chart in told.charts
+        for chart in _ordered(told)
     ]  # fmt: skip
-    heads = ("Quantity", "Unit", "Points", "Baseline", "Last", "From", "To", "Signals", "First")
+    heads = ("Quantity", "Unit", "Points", "Baseline", "Last", "From", "To", "Signals", "Verdict")
     due = [
         f"{name}: calibration due {due.date.isoformat() if due.date else 'unknown'} ({due.reason})."
         for name, due in told.due.items()
@@ -65,14 +86,35 @@ def _summary(told: History) -> Part:
     return Part(
         "summary",
         "All charts",
-        texts=(f"Rules: {', '.join(told.rules)}. Each campaign is one point.", *due, *unread),
+        texts=(
+            "Each campaign is one point. The first ones say what is usual; a later one signals "
+            "where it lies further off than chance explains, or where several together do "
+            f"(rules: {', '.join(told.rules)}).{_by_chance(told)}",
+            *due,
+            *unread,
+        ),
         tables=(Sheet("All charts", "history", heads, rows),),
+    )
+
+
+def _by_chance(told: History) -> str:
+    """Say how often any chart would signal if nothing had changed."""
+    judged = [chart for chart in told.charts if chart.chart is not None]
+    if not judged:
+        return ""
+    none = 1.0
+    for chart in judged:
+        points, usual = chart.values.size - chart.baseline_points, chart.baseline_points
+        none *= 1 - signal_probability(points, told.rules, baseline=usual)
+    return (
+        f" If nothing had changed, one or more of the {many(len(judged), 'chart')} that could be "
+        f"judged would signal by chance in up to {100 * (1 - none):.0f} % of such pages."
     )
 
 
 def _chart(chart: Watched, told: History) -> Part:
     rows = chart.table()
-    name = _name(chart)
+    name = _name(chart, told)
     drawn = Picture(plot.control(rows, title=name), name, f"{name} over time.")
     said = expectations(chart, told.rules)
     texts = [said[0].upper() + said[1:] + "."]

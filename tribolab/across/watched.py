@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import datetime as dt
+import math
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,8 @@ class Observation:
         The results folder.
     value
         In that unit.
+    speed
+        At which sliding speed [m/s]; NaN of what has none.
     """
 
     instrument: str
@@ -60,6 +63,7 @@ class Observation:
     when: dt.datetime
     folder: str
     value: float
+    speed: float = math.nan
 
 
 def results_below(folders: Iterable[str | Path]) -> list[Path]:
@@ -97,6 +101,8 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
         for quantity, unit, value in _numbers(folder.campaign, runs, mine, noise):
             if np.isfinite(value):
                 made.append(Observation(name, quantity, unit, when, str(folder.path), value))
+        for value, speed in _of_reference(folder.campaign, runs, mine):
+            made.append(Observation(name, REFERENCE, "1", when, str(folder.path), value, speed))
     return made, folder
 
 
@@ -161,36 +167,71 @@ def _numbers(
     shifts = [run.get("clock_shift_s") for run in runs]
     yield "clock shift", "s", _middle(np.array([s for s in shifts if s is not None], dtype=float))
     if campaign is not None:
-        yield from _of_reference(campaign, runs, friction)
+        yield GAIN, "1", _gain(campaign, runs, friction)
+
+
+def _gain(campaign: Campaign, runs: Sequence[Json], friction: Columns) -> float:
+    """Return the gain by a dead weight: as runs on the reference tell, else by their load."""
+    mine = _reference_runs(campaign, runs)
+    gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
+    if told := [float(gain) for gain in gains if gain is not None]:
+        return float(np.mean(told))
+    weight = campaign.reference.dead_weight
+    if weight is None:
+        return float("nan")
+    return _middle(_of_runs(friction, mine)["normal_force_N"]) / weight
+
+
+def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
+    """Return the names of the runs on a reference sample."""
+    files = campaign.reference.files
+    if files is None:
+        return set()
+    return {
+        run["name"] for run in runs if any(is_named(campaign, files, file) for file in run["files"])
+    }
 
 
 def _of_reference(
-    campaign: Campaign, runs: Sequence[Json], friction: Columns
-) -> Iterable[tuple[str, str, float]]:
-    """Yield what runs on a reference sample say."""
-    reference = campaign.reference
-    if reference.files is None:
+    campaign: Campaign | None, runs: Sequence[Json], friction: Columns
+) -> Iterable[tuple[float, float]]:
+    """Yield mean friction on a reference sample and the speed, for each speed."""
+    if campaign is None:
         return
-    named = {
-        run["name"]
-        for run in runs
-        if any(is_named(campaign, reference.files, file) for file in run["files"])
-    }
-    mine = _of_runs(friction, named)
-    gains = [run.get("dead_weight_gain") for run in runs if run["name"] in named]
-    if told := [float(gain) for gain in gains if gain is not None]:
-        yield GAIN, "1", float(np.mean(told))
-    elif reference.dead_weight is not None:
-        yield GAIN, "1", _middle(mine["normal_force_N"]) / reference.dead_weight
+    mine = _of_runs(friction, _reference_runs(campaign, runs))
     value, speed = mine["friction_coefficient"], mine["sliding_speed_m_s"]
     known = np.isfinite(value) & (speed > 0)
     if not known.any():
         return
     levels = speed_levels(speed[known])
-    for level in np.unique(levels):
-        # a digit or two, so that a campaign's own mean does not make another quantity of it
-        text = speed_text(float(f"{level:.1e}"))
-        yield f"{REFERENCE} at {text}", "1", _middle(value[known][levels == level])
+    for level in np.unique(levels).tolist():
+        yield _middle(value[known][levels == level]), level
+
+
+def at_common_speeds(points: Sequence[Observation]) -> list[Observation]:
+    """Name what has a speed by the one that it has in common with other campaigns.
+
+    A campaign's own mean must not make another quantity of it.
+
+    Examples
+    --------
+    >>> day = dt.datetime(2026, 1, 1)
+    >>> points = [Observation("a", "friction", "1", day, "x", 0.5, v) for v in (2.14e-3, 2.16e-3)]
+    >>> [point.quantity for point in at_common_speeds(points)]
+    ['friction at 2.15 mm/s', 'friction at 2.15 mm/s']
+    """
+    made = [point for point in points if math.isnan(point.speed)]
+    moving: dict[tuple[str, str], list[Observation]] = {}
+    for point in points:
+        if not math.isnan(point.speed):
+            moving.setdefault((point.instrument, point.quantity), []).append(point)
+    for own in moving.values():
+        levels = speed_levels(np.array([point.speed for point in own])).tolist()
+        made += [
+            replace(point, quantity=f"{point.quantity} at {speed_text(level)}")
+            for point, level in zip(own, levels, strict=True)
+        ]
+    return made
 
 
 def _middle(values: np.ndarray) -> float:
