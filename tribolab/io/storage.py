@@ -24,7 +24,7 @@ CHUNK = 65_536  # samples; a default chunk would be the whole array
 _LONG = 1024  # values; what is shorter is stored as it is
 _COMPRESSION = 1  # noise does not become smaller by trying harder
 _WORTH = 0.95  # of the bytes; what stays longer is not worth the time that reading it back takes
-_BLOCKS, _BLOCK = 4, 2048  # samples that are tried: how many pieces, how long
+_BLOCKS, _BLOCK = 4, 1024  # samples that are tried: how many pieces, how long
 _PIECE = 16 * CHUNK  # samples that are handed to the library at once: it copies them
 _CACHE = 1 << 20  # bytes that the library keeps for a variable; whole chunks need no more
 # What xarray understands as an order rather than as a note.
