@@ -21,7 +21,6 @@ from scipy.fft import irfft, next_fast_len, rfft
 Array = NDArray[np.float64]
 
 _GRID = 1 << 14  # cells of the coarse grid over the longer log
-_TOGETHER = 4  # transforms side by side: faster than one by one, and they stay in the cache
 _OVERLAP = 0.6  # least part of the largest possible overlap
 _DECADES = 5  # slower than this many decades below the fastest is rest
 _BINS = 3  # classes per decade
@@ -82,20 +81,34 @@ def coarse_shift(
     cell = max(spans) / _GRID
     cells = [int(span / cell) + 1 for span in spans]
     where = ((force_time - force_time[0]) / cell).astype(np.int64)
-    weights = np.ones_like(force), force, force**2
-    sums = np.stack([np.bincount(where, w, cells[0]).astype(float) for w in weights])
+    sums = [np.bincount(where, weights=w, minlength=cells[0]) for w in (None, force, force**2)]
     grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
     on_grid = classes[np.clip(np.searchsorted(motion_time, grid) - 1, 0, None)]
 
-    shifts, explained = _explained_by(sums, on_grid)
-    shifts = shifts * cell + force_time[0] - motion_time[0]
-    enough = np.isfinite(explained)
+    length = next_fast_len(cells[0] + cells[1], real=True)
+    count, total, square = (rfft(s.astype(float), length) for s in sums)
+    everywhere = np.conj(rfft(np.ones(cells[1]), length))
+    number = irfft(count * everywhere, length)
+    whole = irfft(total * everywhere, length)
+    squares = irfft(square * everywhere, length)
+    between = np.zeros(length)
+    for k in np.unique(on_grid):
+        here = np.conj(rfft((on_grid == k).astype(float), length))
+        n_k, s_k = irfft(count * here, length), irfft(total * here, length)
+        between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
+    enough = number >= _OVERLAP * number.max()
+    mean_part = whole**2 / np.maximum(number, 0.5)
+    spread = np.maximum(squares - mean_part, 1e-9)
+    explained = np.where(enough, (between - mean_part) / spread, -np.inf)
+
+    lags = np.arange(length)
+    lags = np.where(lags < cells[0], lags, lags - length)
+    shifts = lags * cell + force_time[0] - motion_time[0]
     best = explained.max()
     usual = np.median(explained[enough])
     if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
         return None
-    around = np.pad(explained, 1, constant_values=-np.inf)
-    peak = (explained >= around[:-2]) & (explained >= around[2:])
+    peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
     tie = max(usual + _TIE * (best - usual), best - 0.5 * (1.0 - best) - _ALMOST_NOTHING)
     good = shifts[peak & (explained >= tie)]
     chosen = float(good[np.argmin(np.abs(good - expected))])
@@ -109,49 +122,6 @@ def coarse_shift(
         if all(abs(shift - other) > max(apart, 8.0 * cell) for other in (chosen, *rivals)):
             rivals.append(shift)
     return Coarse(chosen, 2.0 * cell, np.array(rivals))
-
-
-def _explained_by(sums: Array, classes: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array]:
-    """Lags, and the part of the variance that classes explain; -inf where the overlap is small.
-
-    Parameters
-    ----------
-    sums
-        Number, sum and sum of squares of the force samples in each cell (sum, cell).
-    classes
-        Class of the motion in each of its cells (cell).
-    """
-    cells = sums.shape[1], len(classes)
-    before = np.pad(np.cumsum(sums, axis=1), ((0, 0), (1, 0)))
-    lags = np.arange(1 - cells[1], cells[0])
-    first, last = np.maximum(lags, 0), np.minimum(lags + cells[1], cells[0])
-    number, whole, squares = before[:, last] - before[:, first]
-    enough = number >= _OVERLAP * number.max()
-    some = slice(int(np.argmax(enough)), len(lags) - int(np.argmax(enough[::-1])))
-    lags, enough = lags[some], enough[some]
-    number, whole, squares = number[some], whole[some], squares[some]
-    # long enough that what comes round again lies beyond these lags
-    least = max(*cells, cells[0] - int(lags[0]), cells[1] + int(lags[-1]))
-    length = next_fast_len(least, real=True)
-    count, total = rfft(sums[:2], length)
-    between = np.zeros(len(lags))
-    names = np.unique(classes)
-    for k in range(0, len(names), _TOGETHER):
-        here = (classes == names[k : k + _TOGETHER, None]).astype(float)
-        spectra = np.conj(rfft(here, length))
-        n_k, s_k = (_at(lags, irfft(force * spectra, length)) for force in (count, total))
-        between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0).sum(axis=0)
-    mean_part = whole**2 / np.maximum(number, 0.5)
-    spread = np.maximum(squares - mean_part, 1e-9)
-    return lags, np.where(enough, (between - mean_part) / spread, -np.inf)
-
-
-def _at(lags: NDArray[np.int64], circular: Array) -> Array:
-    """Values at lags that follow one another, of a correlation whose negative lags stand last."""
-    first, last = int(lags[0]), int(lags[-1]) + 1
-    if first >= 0 or last <= 0:
-        return circular[..., first : last or None]
-    return np.concatenate([circular[..., first:], circular[..., :last]], axis=-1)
 
 
 class Classes:
