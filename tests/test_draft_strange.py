@@ -169,6 +169,8 @@ def test_a_load_above_the_table_is_the_normal_force(said, tmp_path):
     head = f"Operator,Bob\n{said}\nTime [s],Friction force [mN],Speed [mm/s]"
     run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, SPEED))
     np.testing.assert_allclose(run.normal_force, 1.5004, rtol=1e-4)
+    said = tl.check(run).table.query("check == 'stuck' and variable == 'normal_force'")
+    assert not set(said.status) & {"suspect", "fail"}  # a stated load is no stuck sensor
 
 
 @pytest.mark.parametrize(

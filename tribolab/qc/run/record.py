@@ -134,16 +134,17 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
-    return [
-        sample_result(
-            name,
-            signals.stuck(values, limits["chance"]),
-            subject.time,
-            text,
-            fail_share=limits["fail"],
-        )
-        for name, values in one_by_one(subject.force_signals.items())
-    ]
+    stated = subject.run.attrs.get("derived", ())  # by formulas: from a load above the table
+    results = []
+    for name, values in one_by_one(subject.force_signals.items()):
+        if name in stated and np.nanmin(values) == np.nanmax(values):
+            good = uniform(values.size, GOOD)
+            told = "one value for all of the run: it is stated and not measured"
+            results.append(Result("pass", name, told, 0.0, flags=good))
+            continue
+        flags = signals.stuck(values, limits["chance"])
+        results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
+    return results
 
 
 def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
