@@ -29,7 +29,7 @@ corrects for just that, agrees within some 10 % until the contact is nearly comp
 small beside h_rms and the single surface's longest waves, of which there are few, decide it.
 
 It exits with 1 where the corrected area, mean over the seeds, is more than 5 % off anywhere, or
-where a standard error above 1.5 % leaves that open.
+where a standard error above 2 % leaves that open.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ THEORIES = ("persson", "corrected", "numerics")
 RIM = (np.pi - 1 + np.log(2)) / 24
 LIMIT = 0.05
 LIGHT = 2  # of the pressures
-LARGEST_ERROR = 0.015  # of a mean over the seeds
+LARGEST_ERROR = 0.02  # of a mean over the seeds: 5 % are then told from nothing
 
 
 def rough_surface(points: int, hurst: float, rolloff: int) -> SelfAffine:
