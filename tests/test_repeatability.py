@@ -182,5 +182,8 @@ def test_the_command_writes_a_page_and_its_tables(tmp_path, monkeypatch):
     done = CliRunner().invoke(cli.app, ["repeatability", "x", "-o", str(tmp_path / "out")])
     assert done.exit_code == 0, done.stderr
     assert "between levels of mount" in done.stdout
+    page = (tmp_path / "out/repeatability.html").read_text("utf-8")
+    assert "95 of 100 pairs differ by less than" in page
+    assert "There were only" not in page, "six mounts are enough"
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"repeatability.html", "repeatability.csv", "mandel.csv"}

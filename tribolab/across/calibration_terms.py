@@ -178,7 +178,9 @@ def terms_text(made: Sequence[CalibrationTerms]) -> str:
     if own:
         said.append(f"each of the two has its own {_listed(own)}, and both errors count")
     if shared:
-        said.append(f"{_listed(shared)} they share: only what acts on them differently counts")
+        said.append(
+            f"of {_listed(shared)}, which they share, only what acts on them differently counts"
+        )
     return "beside the scatter of the runs: " + "; ".join(said)
 
 

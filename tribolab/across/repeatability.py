@@ -27,6 +27,7 @@ from tribolab.report.read_results import Results
 from tribolab.words import many, speed_text
 
 POOLED = "all speeds"
+FEW = 5  # levels of a factor, below which what lies between them is hardly known
 
 
 @dataclass(frozen=True)
@@ -47,12 +48,15 @@ class Repeatability:
         k with their limits at 1 %.
     method
         How the components were told apart, in words.
+    levels
+        How many of each factor there were.
     """
 
     by: tuple[str, ...]
     table: pd.DataFrame
     mandel: pd.DataFrame
     method: str
+    levels: dict[str, int]
 
 
 def repeatability(
@@ -117,7 +121,11 @@ def repeatability(
         methods.append(method)
     rows.append(_pooled(rows, names))
     return Repeatability(
-        names, pd.DataFrame(rows), _mandel(runs, names[0]), "; ".join(dict.fromkeys(methods))
+        names,
+        pd.DataFrame(rows),
+        _mandel(runs, names[0]),
+        "; ".join(dict.fromkeys(methods)),
+        {name: int(runs[name].nunique()) for name in names},
     )
 
 

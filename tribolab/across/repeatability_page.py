@@ -6,8 +6,9 @@ from pathlib import Path
 
 from tribolab import plot
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
-from tribolab.across.repeatability import Repeatability, repeatability_verdict
+from tribolab.across.repeatability import FEW, Repeatability, repeatability_verdict
 from tribolab.report import tables
+from tribolab.words import many, percent
 
 
 def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path:
@@ -25,12 +26,12 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
     part = Part(
         "components",
         "Components of variance",
-        texts=(f"Told apart by {told.method}. The unit is the run.",),
+        texts=_plainly(told),
         figures=(drawn,),
         tables=(_components(told),),
         notes=(
-            "r and R: what two single runs differ by with 95 %, within and beyond a level "
-            "(ISO 5725-2: 2.8 standard deviations). The last row is relative to the mean.",
+            f"Told apart by {told.method}. The unit is the run. r and R are 2.8 standard "
+            "deviations (ISO 5725-2). The last row is relative to the mean.",
         ),
     )
     page = folder / "repeatability.html"
@@ -44,6 +45,26 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
         parts=(part, *odd),
     )
     return page
+
+
+def _plainly(told: Repeatability) -> tuple[str, ...]:
+    """Say what r and R mean here, and of which factor too few levels were seen."""
+    last = told.table.iloc[-1]
+    said = [
+        f"Of two runs that were measured alike, 95 of 100 pairs differ by less than "
+        f"{percent(float(last['repeatability_limit']))} of the mean (r); where "
+        f"{' and '.join(told.by)} change between them, by less than "
+        f"{percent(float(last['reproducibility_limit']))} (R)."
+    ]
+    few = [
+        f"{many(count, 'level')} of {name}" for name, count in told.levels.items() if count < FEW
+    ]
+    if few:
+        said.append(
+            f"There were only {' and '.join(few)}: what lies between levels, and R with it, is a "
+            "rough guess; five or more tell."
+        )
+    return tuple(said)
 
 
 def _components(told: Repeatability) -> Sheet:
