@@ -171,4 +171,8 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
     yield _Long("checks.csv", checks, ("run", *_CHECK))
     decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))
     yield _Long("decisions.csv", decided)
-    yield _Long(AS_FOUND, of_curves(lambda curve: map(plain_value, curve.points_as_found)))
+
+    def as_found(record: CurveRecord) -> Iterable[Row]:
+        return _saying(record.uncertainty_says, map(plain_value, record.points_as_found))
+
+    yield _Long(AS_FOUND, of_curves(as_found))
