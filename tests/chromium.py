@@ -28,6 +28,13 @@ OPTIONS = [
     "--hide-scrollbars",
     "--remote-debugging-port=0",
     "--remote-allow-origins=*",
+    # the tests' pages trust each other: one process draws them all, on one thread
+    "--process-per-site",
+    "--renderer-process-limit=1",
+    "--disable-site-isolation-trials",
+    "--in-process-gpu",
+    "--disable-partial-raster",
+    "--num-raster-threads=1",
 ]
 
 

@@ -1,14 +1,10 @@
-"""What comes out when a page is printed by nothing but `chromium --print-to-pdf`."""
+"""What comes out when a page is printed as soon as it has loaded."""
 
 import re
-import subprocess
 import zlib
 from pathlib import Path
 from typing import NamedTuple
 
-from chromium import BROWSER
-
-_OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync")
 _GLYPHS = re.compile(rb"/(F\d+) [\d.]+ Tf|<([0-9A-Fa-f]+)>|(?<=[\s\]>])(T[jJ]|Tm|Td)(?=\s)")
 _PAINTED = re.compile(rb"\s(?:f\*?|S)\n")
 
@@ -24,11 +20,11 @@ class Sheet(NamedTuple):
         return "".join(words.split()) in self.text
 
 
-def printed(address, folder):
+def printed(browser, address, folder):
     """Print a page as anybody may, at once and without waiting, and read the sheets."""
     file = Path(folder) / "printed.pdf"
-    command = [BROWSER, *_OPTIONS, f"--user-data-dir={folder}/printing", f"--print-to-pdf={file}"]
-    subprocess.run([*command, address], check=True, capture_output=True, timeout=120)
+    with browser.page(address) as page:
+        page.pdf(file)
     return sheets_of(file.read_bytes())
 
 

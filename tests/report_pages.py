@@ -49,7 +49,7 @@ def made(folder):
                 ],
             }
         outcome = with_run(outcome, index, (run, segments, friction))
-    write_report(outcome)
+    write_report(outcome, figures="none")  # the page draws its own
     return outcome.folder
 
 
@@ -59,7 +59,7 @@ def made_with_repeats(folder):
     runs += [("b1", "Sb-R", "glycerol", 91.0, 0.7)]
     runs += [("c1", "Sb-S", "dry", 31.0, 1.1), ("c2", "Sb-S", "dry", 31.0, 1.14)]
     outcome = made_outcome(folder, runs, "Repeats")
-    write_report(outcome)
+    write_report(outcome, figures="none")  # the page draws its own
     return outcome.folder
 
 

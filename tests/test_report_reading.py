@@ -206,7 +206,7 @@ def test_a_finger_reads_a_point_goes_to_its_run_pans_and_zooms(browser, results)
 @pytest.mark.slow
 def test_printed_at_once_the_page_has_its_figures_and_tables(browser, results, tmp_path):
     address = (results / "report.html").as_uri()
-    sheets = printed(address, tmp_path)
+    sheets = printed(browser, address, tmp_path)
     answer = next(k for k, sheet in enumerate(sheets) if sheet.has("At which speed friction falls"))
     assert answer <= 2, "two pages of answer"
     first = "".join(sheet.text for sheet in sheets[:answer])
@@ -217,19 +217,19 @@ def test_printed_at_once_the_page_has_its_figures_and_tables(browser, results, t
     assert all(title in text for title in titles if not title.endswith("overslidingspeed"))
     assert all(name in text for name in ("a1", "a2", "b1", "c1", "c2")), "the table of runs"
     assert "Everyrunindetail" not in text
-    everything = printed(f"{address}?print=all", tmp_path)
+    everything = printed(browser, f"{address}?print=all", tmp_path)
     text = "".join(sheet.text for sheet in everything)
     assert len(everything) > len(sheets) and "Everyrunindetail" in text
     assert text.count("velocity(m/s)") == 5, "a trace of every run"
 
 
 @pytest.mark.slow
-def test_the_answer_of_many_conditions_fits_on_two_sheets(tmp_path):
+def test_the_answer_of_many_conditions_fits_on_two_sheets(browser, tmp_path):
     systems = [(surface, medium) for surface in "ABCDEF" for medium in ("oil", "water", "dry")]
     runs = [(f"{s}{m}{load:g}", s, m, load, 0.8) for s, m in systems for load in (31.0, 91.0)]
     outcome = made_outcome(tmp_path, runs, "Many", samples=60)
-    write_report(outcome)
-    sheets = printed((outcome.folder / "report.html").as_uri(), tmp_path)
+    write_report(outcome, figures="none")
+    sheets = printed(browser, (outcome.folder / "report.html").as_uri(), tmp_path)
     answer = next(k for k, sheet in enumerate(sheets) if sheet.has("At which speed friction falls"))
     assert answer <= 2
     text = "".join(sheet.text for sheet in sheets[:answer])
@@ -247,7 +247,7 @@ def test_heads_of_tables_are_repeated_on_every_sheet(browser, whole, tmp_path):
     file.write_text(
         page_of(whole).replace('<div class="tabled"', f'{table}</div><div class="tabled"', 1)
     )
-    sheets = printed(file.as_uri(), tmp_path)
+    sheets = printed(browser, file.as_uri(), tmp_path)
     with_rows = [sheet for sheet in sheets if sheet.has("cell" * 5)]
     assert len(with_rows) > 1 and all(sheet.has("Head here") for sheet in with_rows)
 
