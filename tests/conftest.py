@@ -81,6 +81,22 @@ def results(whole, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def flagged_results(tmp_path_factory):
+    """Results with a flagged run, a long one and a failed one; not to be changed."""
+    from report_pages import made
+
+    return made(tmp_path_factory.mktemp("flagged"))
+
+
+@pytest.fixture(scope="session")
+def repeated_results(tmp_path_factory):
+    """Results of two conditions, one of them at two loads, with repeats; not to be changed."""
+    from report_pages import made_with_repeats
+
+    return made_with_repeats(tmp_path_factory.mktemp("repeated"))
+
+
+@pytest.fixture(scope="session")
 def two_runs(tmp_path_factory):
     """A campaign of two runs with results, recorded some time ago; tests copy it."""
     from campaigns import simulated

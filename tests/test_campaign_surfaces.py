@@ -170,6 +170,7 @@ def test_every_value_lies_between_its_bounds(outcome):
             assert float(at) == pytest.approx(getattr(row, f"contact_area_ratio_{end}"), rel=0.01)
 
 
+@pytest.mark.slow
 def test_vanishing_load_among_other_pressures_gives_the_macroscopic_work(tmp_path, profiles):
     medium = PlannedMedium("dry", 0.3, 0.25, 0.35)  # strong enough for a pull-off force
     surface = processed(tmp_path, profiles[:1], media=(medium,))

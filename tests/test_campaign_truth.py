@@ -9,9 +9,7 @@ import xarray as xr
 from campaigns import simulated
 
 from tribolab.app.demo import run_demo
-from tribolab.app.truth.friction import compare_run, compare_with_truth, summary
-from tribolab.campaign.pipeline import process
-from tribolab.campaign.settings.load import load_campaign
+from tribolab.app.truth.friction import compare_run, summary
 
 
 def true_segments():
@@ -77,11 +75,15 @@ def test_shares_count_the_segments_that_were_found():
     assert result.within_3 == pytest.approx(2 / 3)
 
 
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    """What a demo came to, and how it compares with the truth."""
+    return run_demo(simulated(tmp_path_factory.mktemp("demo")).parent, jobs=1)
+
+
 @pytest.mark.slow
-def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
-    campaign = simulated(tmp_path)
-    outcome = process(load_campaign(campaign), tmp_path / "results")
-    result = compare_with_truth(outcome, campaign.parent)
+def test_the_simulated_campaign_is_found_as_it_is(demo):
+    result = demo[1].runs
     assert (result.true, result.missed, result.extra) == (24, 0, 0)
     table = result.table
     speed = table["sliding_speed_m_s"] / table["true_sliding_speed_m_s"]
@@ -91,8 +93,8 @@ def test_the_simulated_campaign_is_found_as_it_is(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_demo_leaves_the_truth_beside_its_results(tmp_path):
-    outcome, compared = run_demo(simulated(tmp_path).parent, jobs=1)
+def test_the_demo_leaves_the_truth_beside_its_results(demo):
+    outcome, compared = demo
     tables = Path(outcome.folder) / "tables"
     for name in ("truth", "truth_surfaces", "truth_shear_stress", "paper"):
         assert pd.read_csv(tables / f"{name}.csv").shape[1] > 5, name

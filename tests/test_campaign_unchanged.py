@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 
 import pytest
-from campaigns import RUNS, copied, fingerprint, simulated
+from campaigns import RUNS, copied, fingerprint
 
 from tribolab.app.run import run_campaign
 from tribolab.campaign.runs import stage as runs_module
@@ -20,18 +20,9 @@ from tribolab.report import code
 OPTIONS = {"figures": "none", "pdf": False, "code": code.code_of_page()}
 
 
-@pytest.fixture(scope="module")
-def original(tmp_path_factory):
-    """A campaign of two runs that were recorded some time ago; not to be changed."""
-    file = simulated(tmp_path_factory.mktemp("unchanged"), repeats=1)
-    for path in (file.parent / "raw").rglob("*.csv"):
-        os.utime(path, (time.time() - 60,) * 2)
-    return file
-
-
 @pytest.fixture
-def campaign(original, tmp_path):
-    return copied(original, tmp_path)
+def campaign(two_runs, tmp_path):
+    return copied(two_runs, tmp_path)
 
 
 def run(campaign, **options):
@@ -116,6 +107,7 @@ def test_another_code_of_the_report_makes_the_page_anew_and_nothing_else(
 def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
     campaign, monkeypatch
 ):
+    shutil.rmtree(campaign.parent / "results")  # else they would be kept
     bad = campaign.parent / f"raw/friction/{RUNS[0]}_force.csv"
     bad.write_text("Lunch is at noon.\n")
     os.utime(bad, (time.time() - 60,) * 2)
@@ -139,8 +131,8 @@ def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
     assert [(one.name, one.kept) for one in done.runs if one.done] == [(RUNS[2], "")]
 
 
-def test_what_is_kept_crashed_or_not_readable_is_never_taken_for_final(original, tmp_path):
-    campaign, planned = load_and_plan(original)
+def test_what_is_kept_crashed_or_not_readable_is_never_taken_for_final(two_runs, tmp_path):
+    campaign, planned = load_and_plan(two_runs)
     store = Store(tmp_path)
     done = RunOutcome("a", ("a.csv",), "", "", None, "done", data_file="data/a.nc")
     curve = CurveOutcome("c", "", "", None, "data/c.nc", ("a",))

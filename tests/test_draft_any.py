@@ -71,6 +71,7 @@ def test_any_way_of_writing_the_same_table_is_read_back(made, tmp_path_factory):
             np.testing.assert_allclose(data[name].values, values * NAMES[name][2], rtol=1e-12)
 
 
+@pytest.mark.slow
 @given(content=st.binary(max_size=400) | st.text(max_size=200).map(str.encode))
 @settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]

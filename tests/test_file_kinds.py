@@ -33,6 +33,7 @@ WAYS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WAYS)
 def test_a_file_of_this_kind_is_read_in_its_way_and_right(name, tmp_path):
     written = write_kind(name, tmp_path, seed=40)
@@ -43,6 +44,7 @@ def test_a_file_of_this_kind_is_read_in_its_way_and_right(name, tmp_path):
     assert (judged.sem < 0.03 * judged.truth).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["workbook", "tdms", "hdf5", "feather"])
 def test_what_is_drafted_from_columns_is_written_down_and_reads_the_file(name, tmp_path):
     path = write_kind(name, tmp_path).path

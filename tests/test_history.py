@@ -215,6 +215,7 @@ def archive(original, tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, tmp_path):
     words = ["history", str(archive), "--baseline", "18", "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(cli.app, words)

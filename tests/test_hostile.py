@@ -31,6 +31,7 @@ QUICK = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", QUICK)
 def test_it_does_not_break(case, tmp_path, monkeypatch):
     command = case.prepare(tmp_path)

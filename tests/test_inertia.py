@@ -92,6 +92,7 @@ def test_the_derivatives_of_a_parabola_are_exact_and_noise_is_told():
     assert acceleration({"position": np.full(801, np.nan)}, time, 1.0) is None
 
 
+@pytest.mark.slow
 def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
     (tmp_path / "raw").mkdir()
     run = made(crank(10e-3, 5.0, 40, 500.0), 1.2, by="position")[0]

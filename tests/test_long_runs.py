@@ -202,6 +202,7 @@ def understood(run):
     return data
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "time"),
     [(name, time) for name in SPOILT for time in TIMES if time == "as it is" or "time" in name],

@@ -12,6 +12,7 @@ from tribolab.lubrication.stribeck import stribeck_curve
 WET = "51 mJ/m^2"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["Smooth", "Sb-R"])
 def test_boundary_friction_is_the_adhesive_area_of_the_dry_contact(name):
     """int A_adh(p) dx over the nominal contact, by another solver on another mesh."""

@@ -32,6 +32,7 @@ def target_text(shared, quantity: str) -> str:
     return rows.loc[quantity, "published"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CURVES)
 def test_every_point_of_the_papers_nine_curves_is_solved_and_proves_it(name):
     curve = curve_of(name)

@@ -184,6 +184,7 @@ FIGURES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_is_drawn_in_the_users_axes_and_joins_the_users_legend(drawings, name):
     draw, count, named = drawings[name]

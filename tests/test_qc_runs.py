@@ -197,9 +197,15 @@ def tribolab_check(*words):
     return CliRunner().invoke(cli.app, ["check", *map(str, words)])
 
 
+@pytest.fixture(scope="module")
+def checked(faulty):
+    """What the command says of all runs."""
+    return tribolab_check(*sorted(faulty.glob("*.csv")), "--json")
+
+
 @pytest.mark.slow
-def test_the_command_checks_every_run_and_a_bad_one_stops_none(faulty):
-    done = tribolab_check(*sorted(faulty.glob("*.csv")), "--json")
+def test_the_command_checks_every_run_and_a_bad_one_stops_none(checked):
+    done = checked
     told = json.loads(done.stdout)
     statuses = sorted(run["status"] for run in told["runs"])
     assert statuses == ["fail", "pass", "suspect", "unreadable"]
@@ -209,13 +215,8 @@ def test_the_command_checks_every_run_and_a_bad_one_stops_none(faulty):
 
 
 @pytest.mark.slow
-def test_the_commands_exit_code_is_the_level_asked_for(faulty):
-    by_status = {
-        run["status"]: run["files"]
-        for run in json.loads(tribolab_check(*sorted(faulty.glob("*.csv")), "--json").stdout)[
-            "runs"
-        ]
-    }
+def test_the_commands_exit_code_is_the_level_asked_for(checked):
+    by_status = {run["status"]: run["files"] for run in json.loads(checked.stdout)["runs"]}
     for status, fail_on, code in (
         ("pass", "suspect", 0),
         ("suspect", "fail", 0),

@@ -18,17 +18,12 @@ from report_pages import (
     SAVING,
     drawn,
     figures_of,
-    live_of,
-    made,
-    made_with_repeats,
     names,
     page_of,
 )
 from reporting import made_run
 
 from tribolab.campaign.store.catalogue import Catalogue
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain_data
-from tribolab.report.live.still import first_view
 from tribolab.report.page import page as page_module
 
 PANEL = (
@@ -41,9 +36,9 @@ HALF = "half of it"  # the line to read it at
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def whole(flagged_results):
     """All results."""
-    return made(tmp_path_factory.mktemp("live"))
+    return flagged_results
 
 
 @pytest.fixture(scope="module")
@@ -174,10 +169,9 @@ def test_what_the_address_asks_for_and_no_run_has_is_said_and_hides_nothing(brow
 
 @pytest.mark.slow
 def test_a_card_that_has_no_curve_at_the_chosen_load_says_which_one_it_shows(
-    browser, tmp_path_factory
+    browser, repeated_results
 ):
-    folder = made_with_repeats(tmp_path_factory.mktemp("loads"))
-    with browser.page(f"{(folder / 'report.html').as_uri()}#load=91N") as page:
+    with browser.page(f"{(repeated_results / 'report.html').as_uri()}#load=91N") as page:
         told = "Array.from(document.querySelectorAll('.instead'), one => one.textContent)"
         assert page.run(told) == ["No curve at 91 N; shown is 31 N."]
         page.run("report.view.clear()")
@@ -440,104 +434,3 @@ def test_rows_of_very_many_runs_are_packed_and_all_of_them_sorted(
 
 def test_the_library_comes_with_its_licence(results):
     assert "Copyright (c) 2016-2024 Plotly Technologies Inc." in page_of(results)
-
-
-@pytest.mark.slow
-def test_axes_show_what_is_seen_and_bars_end_where_values_end(browser, results):
-    figure = {
-        "panels": [{"x": {"label": "gap", "log": True, "decades": 2}, "y": {"log": True}}],
-        "series": [{"label": "a", "x": [1e-6, 1, 10, 100], "y": [1e9, 2, 1, 0.5]}],
-    }
-    stress = {
-        "panels": [{"x": {"label": "load", "unit": "N"}, "y": {"label": "stress", "least": 0}}],
-        "series": [{"label": "a", "x": [31], "y": [0.2], "style": "points", "error": [0.5]}],
-    }
-    drawing = "(() => {{ const it = new report.Chart(document.querySelector('#card-1'));"
-    drawing += "it.data = {}; return {} }})()"
-    with browser.page(results / "report.html") as page:
-        low, high = page.run(drawing.format(json.dumps(figure), "it.range('y', 0)"))
-        # what lies outside the gaps that are seen has no part in the height
-        assert np.log10(0.25) < low < np.log10(0.5) and np.log10(2) < high < np.log10(4)
-        low, high = page.run(drawing.format(json.dumps(stress), "it.range('x', 0)"))
-        assert low < 20 and high > 42
-        bars = page.run(drawing.format(json.dumps(stress), "it.traces()[0].error_y"))
-        assert (bars["array"], bars["arrayminus"]) == ([0.5], [0.2])
-
-
-LIMITS = (
-    "(() => {{ const {{ _fullLayout: layout }} = {};"
-    "return Object.fromEntries(Object.keys(layout).filter(name => /^[xy]axis\\d*$/.test(name))"
-    ".map(name => [name, [layout[name].type === 'log', ...layout[name].range]])) }})()"
-)
-
-
-def assert_seen_alike(figure, limits):
-    """The picture of a figure shows what the live figure does: type and limits of all axes."""
-    for number, pair in enumerate(first_view(figure)):
-        for side, scale in zip("xy", pair, strict=True):
-            log, low, high = limits[f"{side}axis{number + 1 if number else ''}"]
-            told = f"{figure.id}, {side} of panel {number}"
-            assert scale.log == log, told
-            assert (scale.low, scale.high) == pytest.approx((low, high), abs=1e-3 * (high - low)), (
-                told
-            )
-
-
-@pytest.mark.slow
-def test_a_picture_shows_what_the_live_figure_shows_at_first(browser, whole):
-    figures = {name: live_of(data) for name, data in figures_of(whole).items() if "panels" in data}
-    assert len(figures) >= 5
-    with browser.page(whole / "report.html") as page:
-        page.run(OPEN_ALL)
-        page.run(DRAW_ALL)
-        for name, figure in figures.items():
-            limits = page.run(LIMITS.format(f"document.querySelector('#{name} .plot')"))
-            assert_seen_alike(figure, limits)
-
-
-def figure_of(*series, x=None, y=None):
-    """A figure of made-up series, in as many panels as they say."""
-    panel = Panel(x or Axis("x"), y or Axis("y"))
-    count = 1 + max(one.panel for one in series)
-    return LiveFigure("made", "", "", "", "", (panel,) * count, series)
-
-
-WIDE = [1e-6, 1e-4, 1e-2]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "figure",
-    [
-        figure_of(
-            Series("a", WIDE, [1.0, 0.2, 0.01], "points", error=[0.1, 0.1, 0.02]),
-            Series("b", WIDE, [1e-9, 0.1, 0.1], "band", high=[90.0, 0.3, 0.2]),
-            x=Axis("v", log=True),
-            y=Axis("mu", log=True),
-        ),
-        figure_of(Series("a", WIDE, [1e-7, 1.0, 2.0]), y=Axis("y", log=True, decades=3)),
-        figure_of(
-            Series("a", [31.0], [0.2], "points", error=[0.5]), y=Axis("stress", "MPa", least=0.0)
-        ),
-        figure_of(Series("a", [1.0, 2.0], [2.0, 2.1]), Series("b", [0.0, 9.0], [-3, 4], panel=1)),
-        figure_of(
-            Series("a", [0.5, 20.0], ["one", "another"], "bars"),
-            Series("b", [3.0, 70.0], ["another", "third"], "bars"),
-            x=Axis("change", "%", log=True),
-            y=Axis(""),
-        ),
-        figure_of(Series("a", [5.0, 20.0], ["one", "another"], "bars"), y=Axis("")),
-        figure_of(Series("a", WIDE, ["c", "b", "a"], "points"), x=Axis("v", log=True), y=Axis("")),
-    ],
-    ids=["bars of errors, band", "decades", "least", "panels", "bars", "bars, linear", "names"],
-)
-def test_a_picture_of_any_kind_has_the_limits_of_the_live_figure(browser, alone, figure):
-    drawing = (
-        "(async () => {{ await report.charts.plotly(); const place = document.createElement('div');"
-        "const it = new report.Chart(document.querySelector('#card-1')); it.data = {};"
-        "await Plotly.newPlot(place, it.traces(), it.layout()); return {} }})()"
-    )
-    with browser.page(alone) as page:
-        assert_seen_alike(
-            figure, page.run(drawing.format(json.dumps(plain_data(figure)), LIMITS.format("place")))
-        )

@@ -15,7 +15,6 @@ from report_pages import (
     details_of,
     figures_of,
     folded_of,
-    made,
     page_of,
 )
 from reporting import made_outcome, made_run, with_run
@@ -35,8 +34,8 @@ HOSTILE = [
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    return made(tmp_path_factory.mktemp("page"))
+def results(flagged_results):
+    return flagged_results
 
 
 @pytest.fixture(scope="module")

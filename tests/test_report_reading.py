@@ -2,7 +2,7 @@
 
 import pytest
 from printed import printed
-from report_pages import SAVING, SHOWN, drawn, figures_of, made_with_repeats, names, page_of
+from report_pages import SAVING, SHOWN, drawn, figures_of, names, page_of
 from reporting import made_outcome
 
 from tribolab.report.results import write_report
@@ -16,9 +16,9 @@ SPAN = "document.querySelector('#card-1 .plot')._fullLayout.xaxis.range.map(Numb
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def whole(repeated_results):
     """Results of two conditions, the first at two loads and with repeats."""
-    return made_with_repeats(tmp_path_factory.mktemp("reading"))
+    return repeated_results
 
 
 @pytest.fixture

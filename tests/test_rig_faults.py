@@ -1,6 +1,7 @@
 """Faults of the virtual rig: found by their checks, told in the truth, harmless to the rest."""
 
 import datetime as dt
+from functools import cache
 
 import numpy as np
 import pytest
@@ -30,6 +31,11 @@ SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
 
 def condition(fault):
     return (fault.surface or "Sb-R", fault.medium or "dry", 31.0)
+
+
+@cache
+def sound_run(*where):
+    return simulate_run(*where, seed=3001, rig=SHORT)
 
 
 def write(folder, run):
@@ -84,7 +90,7 @@ def test_a_load_of_the_wrong_sign_is_readable_whatever_zero_the_cell_drew(tmp_pa
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_drawn_from_its_seed_and_leaves_the_run_beneath_alone(name):
     where = condition(FAULTS[name])
-    sound = simulate_run(*where, seed=3001, rig=SHORT)
+    sound = sound_run(*where)
     kept = sound.force_log.copy(deep=True), sound.motion_log.copy(deep=True)
     one, again = (simulate_run(*where, seed=3001, rig=SHORT, faults=name) for _ in range(2))
     xr.testing.assert_identical(one.force_log, again.force_log)

@@ -1,0 +1,122 @@
+"""A picture on the page shows what the live figure in its place shows: axes, limits, bars."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from report_pages import DRAW_ALL, OPEN_ALL, figures_of, live_of
+
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain_data
+from tribolab.report.live.still import first_view
+
+
+@pytest.fixture(scope="module")
+def whole(flagged_results):
+    """All results."""
+    return flagged_results
+
+
+@pytest.mark.slow
+def test_axes_show_what_is_seen_and_bars_end_where_values_end(browser, results):
+    figure = {
+        "panels": [{"x": {"label": "gap", "log": True, "decades": 2}, "y": {"log": True}}],
+        "series": [{"label": "a", "x": [1e-6, 1, 10, 100], "y": [1e9, 2, 1, 0.5]}],
+    }
+    stress = {
+        "panels": [{"x": {"label": "load", "unit": "N"}, "y": {"label": "stress", "least": 0}}],
+        "series": [{"label": "a", "x": [31], "y": [0.2], "style": "points", "error": [0.5]}],
+    }
+    drawing = "(() => {{ const it = new report.Chart(document.querySelector('#card-1'));"
+    drawing += "it.data = {}; return {} }})()"
+    with browser.page(results / "report.html") as page:
+        low, high = page.run(drawing.format(json.dumps(figure), "it.range('y', 0)"))
+        # what lies outside the gaps that are seen has no part in the height
+        assert np.log10(0.25) < low < np.log10(0.5) and np.log10(2) < high < np.log10(4)
+        low, high = page.run(drawing.format(json.dumps(stress), "it.range('x', 0)"))
+        assert low < 20 and high > 42
+        bars = page.run(drawing.format(json.dumps(stress), "it.traces()[0].error_y"))
+        assert (bars["array"], bars["arrayminus"]) == ([0.5], [0.2])
+
+
+LIMITS = (
+    "(() => {{ const {{ _fullLayout: layout }} = {};"
+    "return Object.fromEntries(Object.keys(layout).filter(name => /^[xy]axis\\d*$/.test(name))"
+    ".map(name => [name, [layout[name].type === 'log', ...layout[name].range]])) }})()"
+)
+
+
+def assert_seen_alike(figure, limits):
+    """The picture of a figure shows what the live figure does: type and limits of all axes."""
+    for number, pair in enumerate(first_view(figure)):
+        for side, scale in zip("xy", pair, strict=True):
+            log, low, high = limits[f"{side}axis{number + 1 if number else ''}"]
+            told = f"{figure.id}, {side} of panel {number}"
+            assert scale.log == log, told
+            assert (scale.low, scale.high) == pytest.approx((low, high), abs=1e-3 * (high - low)), (
+                told
+            )
+
+
+@pytest.mark.slow
+def test_a_picture_shows_what_the_live_figure_shows_at_first(browser, whole):
+    figures = {name: live_of(data) for name, data in figures_of(whole).items() if "panels" in data}
+    assert len(figures) >= 5
+    with browser.page(whole / "report.html") as page:
+        page.run(OPEN_ALL)
+        page.run(DRAW_ALL)
+        for name, figure in figures.items():
+            limits = page.run(LIMITS.format(f"document.querySelector('#{name} .plot')"))
+            assert_seen_alike(figure, limits)
+
+
+def figure_of(*series, x=None, y=None):
+    """A figure of made-up series, in as many panels as they say."""
+    panel = Panel(x or Axis("x"), y or Axis("y"))
+    count = 1 + max(one.panel for one in series)
+    return LiveFigure("made", "", "", "", "", (panel,) * count, series)
+
+
+WIDE = [1e-6, 1e-4, 1e-2]
+
+
+KINDS = {
+    "bars of errors, band": figure_of(
+        Series("a", WIDE, [1.0, 0.2, 0.01], "points", error=[0.1, 0.1, 0.02]),
+        Series("b", WIDE, [1e-9, 0.1, 0.1], "band", high=[90.0, 0.3, 0.2]),
+        x=Axis("v", log=True),
+        y=Axis("mu", log=True),
+    ),
+    "decades": figure_of(Series("a", WIDE, [1e-7, 1.0, 2.0]), y=Axis("y", log=True, decades=3)),
+    "least": figure_of(
+        Series("a", [31.0], [0.2], "points", error=[0.5]), y=Axis("stress", "MPa", least=0.0)
+    ),
+    "panels": figure_of(
+        Series("a", [1.0, 2.0], [2.0, 2.1]), Series("b", [0.0, 9.0], [-3, 4], panel=1)
+    ),
+    "bars": figure_of(
+        Series("a", [0.5, 20.0], ["one", "another"], "bars"),
+        Series("b", [3.0, 70.0], ["another", "third"], "bars"),
+        x=Axis("change", "%", log=True),
+        y=Axis(""),
+    ),
+    "bars, linear": figure_of(Series("a", [5.0, 20.0], ["one", "another"], "bars"), y=Axis("")),
+    "names": figure_of(
+        Series("a", WIDE, ["c", "b", "a"], "points"), x=Axis("v", log=True), y=Axis("")
+    ),
+}
+
+
+@pytest.mark.slow
+def test_a_picture_of_any_kind_has_the_limits_of_the_live_figure(browser, results):
+    drawing = (
+        "(async () => {{ await report.charts.plotly(); const place = document.createElement('div');"
+        "const it = new report.Chart(document.querySelector('#card-1')); it.data = {};"
+        "await Plotly.newPlot(place, it.traces(), it.layout()); return {} }})()"
+    )
+    with browser.page(results / "report.html") as page:
+        for kind, figure in KINDS.items():
+            limits = page.run(
+                drawing.format(json.dumps(plain_data(figure)), LIMITS.format("place"))
+            )
+            assert_seen_alike(replace(figure, id=kind), limits)
