@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
 from tribolab.mode.misfit import is_sufficient
+from tribolab.mode.model import SUSPECTED
 from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
@@ -50,29 +51,33 @@ def verdict_text(
             return steady
         enough = is_sufficient(numbers)
         if enough is None:
-            return f"{steady}; the errors are too large to tell whether the model is sufficient"
+            return f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
         if enough:
-            return f"{steady}; the mixed-lubrication model is sufficient"
+            return f"{steady}; mixed lubrication explains it"
         return (
-            f"{steady}; the mixed-lubrication model is not sufficient, "
-            "and the traces do not say why"
+            f"{steady}; mixed lubrication alone does not explain it, "
+            "and the traces do not say what else would"
         )
     low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
     end = ""
     if np.isfinite(high):
-        end = f"; forced wetting would set in between {speed_text(low)} and {speed_text(high)}"
+        end = (
+            f"; from a speed between {speed_text(low)} and {speed_text(high)} on the motion would "
+            "drag liquid in (forced wetting)"
+        )
     if verdict == "not known":
         looked = slip is not None and slip.sizes.get("sliding_speed", 0)
         what = "most traces do not decide it" if looked else "no trace was looked at"
         return f"not known: {what}"
-    return f"{verdict}{where}{end}"
+    head = f"stick-slip{where}, {verdict}" if verdict == SUSPECTED else f"{verdict}{where}"
+    return f"{head}{end}"
 
 
 def suggestions(
     verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
 ) -> tuple[str, ...]:
     """Return what measurement would decide."""
-    if verdict == "adhesion-controlled macroscopic instability suspected":
+    if verdict == SUSPECTED:
         advice = [
             "watch the contact through the transparent body: detached folds that cross it would "
             "show the instability, a still picture would refute it",

@@ -128,10 +128,10 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
         return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of its height"
     if factor > _APART:
         return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
-    chance = ", and not by chance: neighbouring points err alike" if ordered else ""
+    alike = ": neighbouring points err alike" if ordered else ""
     if largest < _CLOSE:
         return (
-            f"measurement and model part beyond the small errors of the points{chance}, yet they "
-            f"stay within {percent(_CLOSE)} of the curve's height"
+            f"the model follows the curve to within {percent(_CLOSE)} of its height, though not to "
+            f"within the still smaller errors of its points{alike}"
         )
-    return f"measurement and model part beyond the errors{chance}"
+    return f"the model follows the curve, though not to within its errors{alike}"

@@ -48,20 +48,20 @@ report.Picture = (() => {
 
     traces() {
       const hues = isDark() ? DARKER : HUES, seen = new Set(), traces = [];
-      const marking = report.view.get("mark");
-      for (const one of this.shown()) {
+      const marking = report.view.get("mark"), shown = this.shown(), named = this.named(shown);
+      for (const one of shown) {
         const panel = one.panel ?? 0, place = one.colour ?? 0, style = one.style ?? "line";
         const hue = hues[place % hues.length];
         const faded = marking && !report.view.marks([one.label, ...(one.runs ?? [])].join(" "));
         const base = {
-          name: text(one.label), legendgroup: one.label, showlegend: !seen.has(one.label) && style !== "band",
+          name: text(one.label), legendrank: style === "band" ? 1001 : 1000, legendgroup: one.label, showlegend: named.has(one.label) && !seen.has(one.label) && (style !== "band" || named.get(one.label) === "band"),
           x: one.x, y: one.y, xaxis: axis("x", panel), yaxis: axis("y", panel), opacity: faded ? 0.15 : 1,
           visible: this.off.get(one.label) ? "legendonly" : true, meta: one.goes_to,
           hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
         };
         // what is told of a point stands beside it, see tellOf
         if (one.told?.length > 1 || (one.told?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.told[k] ?? one.told[0]), hoverinfo: "none", hovertemplate: null });
-        if (style !== "band") seen.add(one.label);
+        if (base.showlegend) seen.add(one.label);
         const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
         if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
         else if (style === "band") traces.push(...this.band(one, base, hue));
@@ -85,7 +85,7 @@ report.Picture = (() => {
       const least = log ? Math.min(...one.high.filter((value) => value > 0)) / 1e3 : -Infinity;
       const edge = { ...base, mode: "lines", line: { width: 0, color: hue }, hoverinfo: "skip", hovertemplate: null, text: null };
       return [
-        { ...edge, y: one.y.map((value) => Math.max(value, least)) },
+        { ...edge, y: one.y.map((value) => Math.max(value, least)), showlegend: false },
         { ...edge, y: one.high, fill: "tonexty", fillcolor: `${hue}2e` },
       ];
     }
@@ -115,6 +115,7 @@ report.Picture = (() => {
           }
         }
       }
+      for (const end of this.data.panels[panel][side].also ?? []) if (!log || end > 0) [low, high] = [Math.min(low, end), Math.max(high, end)];
       if (!(high >= low)) return undefined;
       const decades = this.data.panels[panel][side].decades;
       if (log) [low, high] = [Math.log10(low), Math.log10(high)];
@@ -157,6 +158,7 @@ report.Picture = (() => {
           type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
           title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
+          tickfont: { size: (small ? 10 : 12) / (this.isLog(kind, row) ? 1.25 : 1) }, // the library writes powers of ten a quarter larger
           minorloglabels: "none", nticks: narrow ? 5 : 8, range: kind === "x" ? this.along : this.range(kind, row),
         });
         const x = side("x", panel.x), y = side("y", panel.y);
@@ -174,7 +176,15 @@ report.Picture = (() => {
       return layout;
     }
 
-    legend() { return [...new Set(this.shown().filter((one) => one.style !== "band").map((one) => one.label))]; }
+    // A band stands in the legend where it has a name that no line or point has (live/figure.py).
+    named(shown) {
+      const named = new Map();
+      for (const one of shown) if (one.style !== "band") named.set(one.label, one.style);
+      for (const one of shown) if (one.label && !named.has(one.label)) named.set(one.label, "band");
+      return named;
+    }
+
+    legend() { return [...this.named(this.shown()).keys()]; }
 
     get width() {
       if (this.full) return innerWidth - 24;

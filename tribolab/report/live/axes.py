@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tribolab.report.live.figure import Axis, Panel, Series
 
@@ -57,6 +57,21 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
     return x, _scale(panel.y, _up(mine, panel.y, x), level=True)
 
 
+def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
+    """Return a panel whose axes at first show what is in any of some figures of one panel each."""
+    alike = panels[0][0]
+    along = [x for panel, series in panels for x in _along(series, panel.x)]
+    x = replace(alike.x, also=_ends(along, alike.x))
+    seen = _scale(x, iter(()), level=False)
+    up = [y for panel, series in panels for y in _up(series, panel.y, seen)]
+    return Panel(x, replace(alike.y, also=_ends(up, alike.y)))
+
+
+def _ends(values: Sequence[float], axis: Axis) -> tuple[float, ...]:
+    known = [v for v in values if math.isfinite(v) and (v > 0 or not axis.log)]
+    return (min(known), max(known)) if known else ()
+
+
 def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
     for curve in series:
         if curve.style == "bars":
@@ -81,10 +96,10 @@ def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
 
 
 def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
-    known = [v for v in values if math.isfinite(v) and (v > 0 or not axis.log)]
-    if not known:
+    ends = _ends([*values, *axis.also], axis)
+    if not ends:
         return Scale(0.0, 1.0, axis.log)
-    low, high = min(known), max(known)
+    low, high = ends
     if axis.log:
         low, high = math.log10(low), math.log10(high)
         if axis.decades:

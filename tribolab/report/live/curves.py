@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
+from tribolab.report.live.axes import comparable
 from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told_point
 from tribolab.report.live.record import Band, Missed
@@ -66,11 +67,19 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
 
 
 def card_figures(known: Friction) -> list[LiveFigure]:
-    """Return one figure for each surface and medium: measured, and the model with its band."""
-    return [
-        _card(known, place, surface, medium, curves)
+    """Return one figure for each surface and medium: measured, and the model with its band.
+
+    Those of one medium have the same axes, so that surfaces are compared at a glance.
+    """
+    cards = [
+        (medium, _card(known, place, surface, medium, curves))
         for place, ((surface, medium), curves) in enumerate(systems(known).items(), start=1)
     ]
+    alike: dict[str, list[tuple[Panel, Sequence[Series]]]] = {}
+    for medium, card in cards:
+        alike.setdefault(medium, []).append((card.panels[0], card.series))
+    panels = {medium: comparable(mine) for medium, mine in alike.items()}
+    return [replace(card, panels=(panels[medium],)) for medium, card in cards]
 
 
 def _card(
@@ -201,7 +210,7 @@ def _modelled(
     first, last = (float(row["sliding_speed_m_s"] or 0) for row in (rows[0], rows[-1]))
     kept = [k for k, v in enumerate(speed) if v is not None and first <= v <= last]
     band = Series(
-        label,
+        "uncertainty",
         [speed[k] for k in kept],
         [low[k] for k in kept],
         style="band",

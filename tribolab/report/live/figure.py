@@ -23,7 +23,8 @@ class Axis:
     """What is drawn along one side: its name, its unit, whether logarithmic at first.
 
     Of `decades` so many below the highest value are seen at first; 0 is all of them. Error bars end
-    at `least`, below which no value can lie.
+    at `least`, below which no value can lie. Of axes that are to be compared, `also` has values
+    that all of them show at first.
     """
 
     label: str
@@ -31,6 +32,7 @@ class Axis:
     log: bool = False
     decades: int = 0
     least: float | None = None
+    also: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,15 @@ class LiveFigure:
         """Medium that all of it is of; "" where there are several."""
         names = {curve.medium for curve in self.series}
         return names.pop() if len(names) == 1 else ""
+
+
+def legend(series: Iterable[Series]) -> dict[str, Series]:
+    """Return what stands in a legend: a band where it has a name that no line or point has."""
+    named: dict[str, Series] = {}
+    for curve in sorted(series, key=lambda curve: curve.style == "band"):
+        if curve.label or curve.style != "band":
+            named.setdefault(curve.label, curve)
+    return named
 
 
 def plain_data(value: Any) -> Any:

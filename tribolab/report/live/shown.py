@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
-from tribolab.report.live.figure import LiveFigure, plain_data
+from tribolab.report.live.figure import LiveFigure, legend, plain_data
 from tribolab.report.live.still import still
 from tribolab.words import force_text
 
@@ -61,7 +61,7 @@ def shown_figure(figure: LiveFigure) -> ShownFigure:
         figure.medium,
         tuple(map(force_text, figure.loads)),
         len(figure.panels),
-        len({curve.label for curve in figure.series if curve.style != "band"}),
+        len(legend(figure.series)),
         deflated(script_json(plain_data(figure)).encode()),
         still(figure),
     )

@@ -16,7 +16,7 @@ from markupsafe import escape
 
 from tribolab.report.live import marks
 from tribolab.report.live.axes import Scale, scales, ticks
-from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, plain_data, thinned
+from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, legend, plain_data, thinned
 from tribolab.report.live.marks import Point, coordinate
 from tribolab.words import MINUS, number
 
@@ -57,7 +57,7 @@ def still(figure: LiveFigure) -> str:
     """Return a figure as SVG: of one load at a time the lowest."""
     width = _WIDTHS[figure.width]
     series = _first(figure)
-    labels = _labels(series)
+    labels = legend(series)
     rows = math.ceil(len(labels) / _columns(width, labels)) if len(labels) > 1 else 0
     top = _TOP + rows * _LINE
     height = (figure.height or _HEIGHTS[len(figure.panels) - 1]) + rows * _LINE
@@ -94,14 +94,6 @@ def _first(figure: LiveFigure) -> list[Series]:
     return shown
 
 
-def _labels(series: Sequence[Series]) -> dict[str, Series]:
-    named: dict[str, Series] = {}
-    for curve in series:
-        if curve.style != "band":
-            named.setdefault(curve.label, curve)
-    return named
-
-
 def _columns(width: int, labels: dict[str, Series]) -> int:
     longest = max(map(len, labels), default=1) * _LETTER + 30
     return max(1, min(len(labels), int((width - 10) / longest)))
@@ -114,6 +106,9 @@ def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
         sample = replace(curve, style="points" if curve.style in ("bars", "heat") else curve.style)
         if sample.style == "points":
             yield from marks.drawn_points([(x + 9, y - 4)], sample, "")
+        elif sample.style == "band":
+            edges = [(x, y - 9), (x + 18, y - 9)], [(x, y + 1), (x + 18, y + 1)]
+            yield from marks.drawn_band(*edges, sample)
         else:
             yield from marks.drawn_line([(x, y - 4), (x + 18, y - 4)], sample)
         yield _text(x + 23, y, label)

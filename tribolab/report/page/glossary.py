@@ -22,6 +22,9 @@ GLOSSARY: dict[str, str] = {
     "Student's t widens U95; ∞ where it does not hang on few repeats.",
     "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
     "the solids touch and the liquid carries nothing.",
+    "Lift-off": "The liquid between the surfaces carries more and more of the load as they move "
+    "faster, and friction falls. Here it is told by the speed at which half of the highest friction "
+    "is left.",
     "Segment": "A stretch of a run at constant speed in one direction: one stroke.",
     "Independent samples": "How many samples a record is worth once those that repeat their "
     "neighbours are not counted twice (n_eff).",
@@ -61,6 +64,23 @@ GLOSSARY: dict[str, str] = {
     "shown, struck through, and no curve rests on them.",
     "Failed": "A run that could not be read or computed: there are no numbers of it.",
     "Suspect": "A check found something that may spoil the numbers; they are used.",
+}
+
+# Words in the sentences of the first screen that are explained where they stand.
+TERMS: dict[str, str] = {
+    "lift off": GLOSSARY["Lift-off"],
+    "plateau": GLOSSARY["Plateau"],
+    "adhesion-controlled macroscopic instability": GLOSSARY[
+        "Macroscopic instability, controlled by adhesion"
+    ],
+    "stick-slip": GLOSSARY["Stick-slip"],
+    "forced wetting": GLOSSARY["Forced wetting"],
+    "mixed lubrication": "Part of the load is carried by touching solids and part by the liquid "
+    "between them: what the model computes, without any instability.",
+    "shear stress": GLOSSARY["Shear stress σ"],
+    "segments": GLOSSARY["Segment"],
+    "between runs": GLOSSARY["± between runs"],
+    "within the run": GLOSSARY["± within the run"],
 }
 
 # Heads of columns that are explained by a word of the glossary or in their own words.

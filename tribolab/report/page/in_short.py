@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from tribolab.records.model_words import is_described
 from tribolab.report.page.answer import conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
-from tribolab.words import force_text, many
+from tribolab.words import force_text, is_dry, many
 
 
 class Fall(NamedTuple):
@@ -52,10 +52,12 @@ def _falls(curves: Iterable[Mapping[str, Any]]) -> Iterable[str]:
         load = min(loads, key=lambda force: (-len(loads[force]), force))
         falls = list(filter(None, map(_fall, loads[load])))
         if len(falls) > 1 and any(fall.half is not None for fall in falls):
-            where = f"In {medium}" if medium != "dry" else "Dry"
+            where = "Dry" if is_dry(medium) else f"In {medium}"
             told = listed([_told(fall) for fall in falls])
-            head = f"{where} at {force_text(load)}, friction falls to half of its highest {told}"
-            yield f"{head}{_last(falls)}."
+            falls_so_far = "friction falls to half of its highest"
+            if not is_dry(medium):
+                falls_so_far += ", as the liquid begins to lift the surfaces apart,"
+            yield f"{where} at {force_text(load)}, {falls_so_far} {told}{_last(falls, medium)}."
 
 
 def _fall(curve: Mapping[str, Any]) -> Fall | None:
@@ -78,13 +80,13 @@ def _told(fall: Fall) -> str:
     return f"at {plain_speed(fall.half)} on {fall.surface}"
 
 
-def _last(falls: Sequence[Fall]) -> str:
+def _last(falls: Sequence[Fall], medium: str) -> str:
     """Name the surface that needs the highest speed, where the measured speeds tell it."""
     order = sorted(falls, key=lambda fall: fall.half if fall.half is not None else fall.fastest)
     last = order[-1]
     if sum(fall.half is None for fall in falls) > (last.half is None):
         return ""
-    return f": {last.surface} needs the highest speed to lift off"
+    return f": {last.surface} needs the highest speed" + (" to lift off" if not is_dry(medium) else "")
 
 
 def _models(document: Mapping[str, Any]) -> Iterable[str]:

@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import quote
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from tribolab import words
 from tribolab.records import judgement, wording
@@ -22,7 +22,7 @@ from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.report.live.points import run_error
 from tribolab.report.page.answer import conditions, oscillation_text
-from tribolab.report.page.glossary import GLOSSARY, HEADS
+from tribolab.report.page.glossary import GLOSSARY, HEADS, TERMS
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 from tribolab.untyped import Json
@@ -124,6 +124,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "many": words.many,
         "size": words.size,
         "breakable": breakable,
+        "explained": explained,
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
         "why": judgement.why,
@@ -173,6 +174,29 @@ def data_address(svg: str) -> Markup:
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
     # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
     return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
+
+
+_TERM = re.compile("|".join(map(re.escape, TERMS)), re.IGNORECASE)
+
+
+def explained(text: str) -> Markup:
+    """Return a sentence in which each word that needs one has its explanation, where it is first.
+
+    Examples
+    --------
+    >>> str(explained("Stick-slip < none, no stick-slip")).partition(" aria-")[0]
+    '<span class="term" tabindex="0"'
+    """
+    told: set[str] = set()
+    parts, end = [Markup()], 0
+    for match in _TERM.finditer(text):
+        if (term := match[0].lower()) in told:
+            continue
+        told.add(term)
+        word = Markup('<span class="term" tabindex="0" aria-describedby="tip" data-tip="{}">{}</span>')
+        parts += [escape(text[end : match.start()]), word.format(TERMS[term], match[0])]
+        end = match.end()
+    return Markup().join([*parts, escape(text[end:])])
 
 
 def breakable(name: str) -> Markup:
