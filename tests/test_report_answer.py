@@ -115,7 +115,8 @@ def test_in_short_it_is_said_which_surface_lifts_off_last_and_where_the_model_fa
         {"curve": "rough, oil", "fit": {"judgement": "within its errors"}},
     ]
     assert in_short({"curves": curves, "models": models}) == [
-        "In oil at 31 N, friction falls to half of its highest at 10 µm/s on fine and not yet at "
+        "In oil at 31 N, friction falls to half of its highest, as the liquid begins to lift the "
+        "surfaces apart, at 10 µm/s on fine and not yet at "
         "1 mm/s on rough: rough needs the highest speed to lift off.",
         "The model fails on 1 of 2 curves: fine, oil, at 31 N.",
     ]

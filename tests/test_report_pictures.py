@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from report_pages import DRAW_ALL, OPEN_ALL, figures_of, live_of
 
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, plain_data
+from tribolab.report.live.axes import comparable
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, legend, plain_data
 from tribolab.report.live.still import first_view
 
 
@@ -91,6 +92,12 @@ KINDS = {
     "least": figure_of(
         Series("a", [31.0], [0.2], "points", error=[0.5]), y=Axis("stress", "MPa", least=0.0)
     ),
+    "compared with others": figure_of(
+        Series("a", WIDE, [1.0, 0.2, 0.01], "points"),
+        x=Axis("v", log=True, also=(1e-8, 1e-3)),
+        y=Axis("mu", log=True, also=(1e-3, 2.0)),
+    ),
+    "compared, linear": figure_of(Series("a", WIDE, WIDE), y=Axis("y", also=(-2.0, 1.0))),
     "panels": figure_of(
         Series("a", [1.0, 2.0], [2.0, 2.1]), Series("b", [0.0, 9.0], [-3, 4], panel=1)
     ),
@@ -105,6 +112,26 @@ KINDS = {
         Series("a", WIDE, ["c", "b", "a"], "points"), x=Axis("v", log=True), y=Axis("")
     ),
 }
+
+
+def test_figures_that_are_compared_show_the_same_and_all_of_it():
+    x, y = Axis("v", log=True), Axis("mu", log=True)
+    one, other = (
+        figure_of(Series("a", WIDE, mu, "points", error=errors), x=x, y=y)
+        for mu, errors in (([1.0, 0.2, 0.01], [0.5, 0.1, 0.001]), ([2.0, 2.0, 1.5], [0.1] * 3))
+    )
+    panel = comparable([(figure.panels[0], figure.series) for figure in (one, other)])
+    assert panel.x.also == (1e-6, 1e-2)
+    assert panel.y.also == pytest.approx((0.009, 2.1))
+    assert first_view(replace(one, panels=(panel,))) == first_view(replace(other, panels=(panel,)))
+
+
+def test_a_band_has_a_name_in_the_legend_where_no_line_has_it():
+    band = Series("model", WIDE, WIDE, "band", high=WIDE)
+    line, points = Series("model", WIDE, WIDE), Series("measured", WIDE, WIDE, "points")
+    assert legend([band, line, points]) == {"model": line, "measured": points}
+    own = replace(band, label="uncertainty")
+    assert list(legend([own, line, replace(band, label="")])) == ["model", "uncertainty"]
 
 
 @pytest.mark.slow

@@ -51,7 +51,9 @@ def verdict_text(
             return steady
         enough = is_sufficient(numbers)
         if enough is None:
-            return f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
+            return (
+                f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
+            )
         if enough:
             return f"{steady}; mixed lubrication explains it"
         return (

@@ -23,8 +23,7 @@ GLOSSARY: dict[str, str] = {
     "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
     "the solids touch and the liquid carries nothing.",
     "Lift-off": "The liquid between the surfaces carries more and more of the load as they move "
-    "faster, and friction falls. Here it is told by the speed at which half of the highest friction "
-    "is left.",
+    "faster, and friction falls. Told by the speed at which half of the highest friction is left.",
     "Segment": "A stretch of a run at constant speed in one direction: one stroke.",
     "Independent samples": "How many samples a record is worth once those that repeat their "
     "neighbours are not counted twice (n_eff).",

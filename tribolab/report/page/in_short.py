@@ -35,8 +35,8 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
     ...     return {"surface": surface, "medium": "oil", "nominal_normal_force_N": 31.0,
     ...             "name": surface, "points": rows}
     >>> in_short({"curves": [curve("fine", 1e-5), curve("rough", 1e-3)]})
-    ['In oil at 31 N, friction falls to half of its highest at 4.6 µm/s on fine and at 100 µm/s on \
-rough: rough needs the highest speed to lift off.']
+    ['In oil at 31 N, friction falls to half of its highest, as the liquid begins to lift the surfaces \
+apart, at 4.6 µm/s on fine and at 100 µm/s on rough: rough needs the highest speed to lift off.']
     """
     return [*_falls(document["curves"]), *_models(document)]
 
@@ -86,7 +86,9 @@ def _last(falls: Sequence[Fall], medium: str) -> str:
     last = order[-1]
     if sum(fall.half is None for fall in falls) > (last.half is None):
         return ""
-    return f": {last.surface} needs the highest speed" + (" to lift off" if not is_dry(medium) else "")
+    return f": {last.surface} needs the highest speed" + (
+        " to lift off" if not is_dry(medium) else ""
+    )
 
 
 def _models(document: Mapping[str, Any]) -> Iterable[str]:

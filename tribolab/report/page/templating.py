@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import quote
 
 import jinja2
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from tribolab import words
 from tribolab.records import judgement, wording
@@ -124,7 +124,6 @@ def environment(folder: Path) -> jinja2.Environment:
         "many": words.many,
         "size": words.size,
         "breakable": breakable,
-        "explained": explained,
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
         "why": judgement.why,
@@ -149,6 +148,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "run_error": run_error,
         "HEADS": HEADS,
         "GLOSSARY": GLOSSARY,
+        "explained": explained,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
     }
@@ -179,24 +179,23 @@ def data_address(svg: str) -> Markup:
 _TERM = re.compile("|".join(map(re.escape, TERMS)), re.IGNORECASE)
 
 
-def explained(text: str) -> Markup:
-    """Return a sentence in which each word that needs one has its explanation, where it is first.
+def explained(text: str) -> list[tuple[str, str]]:
+    """Return a sentence in pieces, each with its explanation: a word that needs one, at first.
 
     Examples
     --------
-    >>> str(explained("Stick-slip < none, no stick-slip")).partition(" aria-")[0]
-    '<span class="term" tabindex="0"'
+    >>> [(words, bool(tip)) for words, tip in explained("no stick-slip, no stick-slip")]
+    [('no ', False), ('stick-slip', True), (', no stick-slip', False)]
     """
     told: set[str] = set()
-    parts, end = [Markup()], 0
+    pieces, end = [], 0
     for match in _TERM.finditer(text):
         if (term := match[0].lower()) in told:
             continue
         told.add(term)
-        word = Markup('<span class="term" tabindex="0" aria-describedby="tip" data-tip="{}">{}</span>')
-        parts += [escape(text[end : match.start()]), word.format(TERMS[term], match[0])]
+        pieces += [(text[end : match.start()], ""), (match[0], TERMS[term])]
         end = match.end()
-    return Markup().join([*parts, escape(text[end:])])
+    return [*pieces, (text[end:], "")]
 
 
 def breakable(name: str) -> Markup:
