@@ -3,6 +3,8 @@
 import contextlib
 import json
 import logging
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -20,25 +22,32 @@ from tribolab.errors import ConfigError
 distributed = pytest.importorskip("distributed")
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
-    """A scheduler's address, it and two workers, of which each test kills something."""
-    with _processes(tmp_path_factory.mktemp("cluster"), 2) as cluster:
+@pytest.fixture
+def cluster(tmp_path):
+    """Two worker processes; what the scheduler logs about a dead worker is expected."""
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=":0",  # another cluster may have the usual port
+        local_directory=str(tmp_path),
+        silence_logs=logging.CRITICAL,
+    ) as cluster:
         yield cluster
 
 
 @pytest.mark.slow
 def test_a_cluster_does_every_run_though_one_worker_is_killed(cluster, tmp_path):
     campaign = load_campaign(simulated(tmp_path))
-    address, _, alive = cluster
     killed = []
 
     def progress(stage, done, total):
         if stage == "runs" and done == 1:
-            killed.append(alive.pop())
-            killed[-1].kill()
+            victim = cluster.workers[0].pid
+            os.kill(victim, signal.SIGKILL)
+            killed.append(victim)
 
-    with workers(scheduler=address) as executor:
+    with workers(scheduler=cluster.scheduler_address) as executor:
         outcome = process(campaign, tmp_path / "new", executor=executor, progress=progress)
     assert len(killed) == 1
     assert [run.status for run in outcome.runs] == ["done"] * 4
@@ -53,17 +62,13 @@ def test_a_cluster_does_every_run_though_one_worker_is_killed(cluster, tmp_path)
 @pytest.mark.slow
 @pytest.mark.parametrize("victims", ["workers", "scheduler"])
 def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(
-    request, tmp_path, victims, monkeypatch
+    tmp_path, victims, monkeypatch
 ):
     monkeypatch.setattr("tribolab.campaign.engine.cluster.PATIENCE", 1.0)
     campaign = simulated(tmp_path, repeats=1)
     levels = _levels()
     heard: set[str] = set()
-    with contextlib.ExitStack() as stack:
-        if victims == "workers":  # all that are left
-            address, scheduler, alive = request.getfixturevalue("cluster")
-        else:
-            address, scheduler, alive = stack.enter_context(_processes(tmp_path, 1))
+    with _processes(tmp_path) as (address, scheduler, alive):
 
         def progress(stage, done, total):
             heard.update(n for n in _levels() if logging.getLogger(n).isEnabledFor(logging.ERROR))
@@ -83,8 +88,8 @@ def _levels():
 
 
 @contextlib.contextmanager
-def _processes(folder, count):
-    """A scheduler and workers as they are started by hand, each a process of its own."""
+def _processes(folder):
+    """A scheduler and two workers as they are started by hand, each a process of its own."""
     file = folder / "scheduler.json"
     python = [sys.executable, "-m", "distributed.cli."]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -97,13 +102,13 @@ def _processes(folder, count):
 
     started = [start("scheduler", "--host", "127.0.0.1", "--port", "0")]
     try:
-        started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(count)]
+        started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
         deadline = time.monotonic() + 60
         while not file.is_file() and time.monotonic() < deadline:
             time.sleep(0.1)
         address = json.loads(file.read_text())["address"]
         with distributed.Client(address, set_as_default=False) as client:
-            client.wait_for_workers(count, timeout=60)
+            client.wait_for_workers(2, timeout=60)
         yield address, started[0], started[1:]
     finally:
         for process in started:
