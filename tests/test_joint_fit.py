@@ -247,6 +247,20 @@ def test_what_the_model_does_not_describe_is_said(curves):
     assert any("does not describe" in said for said in bent.words)
 
 
+def test_a_search_that_creeps_far_from_the_answer_does_not_end_the_fit(curves, monkeypatch):
+    far = np.exp(-2.5 * np.tanh(2 * np.log(SPEEDS / 1e-4)))
+    bent = [
+        part._replace(measured=measured(part.measured.friction_coefficient.values * far))
+        for part in load_curves(curves)
+    ]
+    whole = fit_loads(bent, 1.4).marginal("shear_stress").value
+    monkeypatch.setattr("tribolab.fit.joint.posterior._STEPS", 8)
+    assert fit_loads(bent, 1.4).marginal("shear_stress").value == pytest.approx(whole, rel=1e-3)
+    monkeypatch.setattr("tribolab.fit.joint.posterior._STEPS", 3)
+    with pytest.raises(AnalysisError, match="not found"):
+        fit_loads(bent, 1.4)
+
+
 def test_dry_friction_tells_of_the_exponent_where_the_wet_curve_has_none(curves):
     fast = SPEEDS[SPEEDS > 3e-4]
     wet = load_curves(curves, speed=fast)

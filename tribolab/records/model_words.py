@@ -134,4 +134,4 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
             f"the model follows the curve to within {percent(_CLOSE)} of its height, though not to "
             f"within the still smaller errors of its points{alike}"
         )
-    return f"the model follows the curve, though not to within its errors{alike}"
+    return f"measurement and model part beyond the errors{alike}"

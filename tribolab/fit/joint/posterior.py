@@ -21,6 +21,7 @@ _STEPS = 200
 _HOPELESS = 25.0  # of ln of odds
 _CLOSE = 1e-6  # of the decrement: a thousandth of a standard deviation
 _CLOSE_ENOUGH = 1e-2  # of one that creeps
+_COUNTS = 1e-4  # share of a mode that is looked at twice
 
 
 class Posterior(NamedTuple):
@@ -139,6 +140,9 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
         if not at_end.any():
             break
         widths = np.where(at_end, 2 * widths, widths)
+    left = np.array([mode.left for mode in modes])
+    if (left[weight > _COUNTS] > _CLOSE_ENOUGH).any():
+        raise AnalysisError("the most probable parameters are not found; take fewer curves")
     return Posterior(
         weight,
         sizes[0],
@@ -150,13 +154,17 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
 
 
 class _Mode(NamedTuple):
-    """The most probable parameters at some sizes of shared errors, their covariance, evidence."""
+    """The most probable parameters at some sizes of shared errors, their covariance, evidence.
+
+    The search for a mode far from all others may creep: what it would still gain is `left`.
+    """
 
     level: float
     correlated: float
     theta: np.ndarray
     covariance: np.ndarray
     log_evidence: float
+    left: float
 
 
 def _log_share(size: np.ndarray, scale: float) -> np.ndarray:
@@ -194,7 +202,7 @@ def _modes(
             first, most = mode.theta, max(most, mode.log_evidence)
             if kappa == correlated[-1]:
                 start = first
-            if mode.log_evidence < most - _HOPELESS:
+            if mode.log_evidence + mode.left < most - _HOPELESS:
                 break  # with less shared it is worse still
     return modes
 
@@ -213,7 +221,7 @@ def _mode(model: JointModel, covariance: np.ndarray, start: np.ndarray) -> _Mode
         residual, off = target - both[:, 0], (theta - where.mean)[free] / scale
         return residual, both[:, 1:], off, float(residual @ residual + off @ off)
 
-    theta = np.where(free, start, where.mean)
+    theta, left = np.where(free, start, where.mean), 0.0
     residual, jacobian, off, size = looked_at(theta)
     for _ in range(_STEPS):
         normal = jacobian.T @ jacobian + np.diag(scale**-2.0)
@@ -233,8 +241,7 @@ def _mode(model: JointModel, covariance: np.ndarray, start: np.ndarray) -> _Mode
             break  # the rounding of the sums is reached
         theta, (residual, jacobian, off, size) = trial, looked
     else:
-        if uphill @ step[free] > _CLOSE_ENOUGH:
-            raise AnalysisError("the most probable parameters are not found; take fewer curves")
+        left = float(uphill @ step[free])
     spread = np.zeros((theta.size, theta.size))
     spread[np.ix_(free, free)] = linalg.cho_solve(factor, np.eye(scale.size))
     log_evidence = (
@@ -244,4 +251,4 @@ def _mode(model: JointModel, covariance: np.ndarray, start: np.ndarray) -> _Mode
         - np.log(scale).sum()
         - np.log(np.diag(factor[0])).sum()
     )
-    return _Mode(np.nan, np.nan, theta, spread, float(log_evidence))
+    return _Mode(np.nan, np.nan, theta, spread, float(log_evidence), left)
