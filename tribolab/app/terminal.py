@@ -128,7 +128,18 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         computed = sum(surface.done for surface in known)
         lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
+    if _is_uncalibrated(outcome):
+        lines.append(
+            "calibration not stated: every uncertainty is statistical only "
+            "([uncertainty] in the campaign file)"
+        )
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
+
+
+def _is_uncalibrated(outcome: Outcome) -> bool:
+    """Whether the uncertainty of a curve holds nothing of its instrument's calibration."""
+    entries = [outcome.store.get("curve", c.name, CurveRecord) for c in outcome.curves if c.done]
+    return any("statistical only" in entry.record.uncertainty_says for entry in entries if entry)
 
 
 def _decisions(outcome: Outcome) -> list[str]:
