@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
-from tribolab.mode.misfit import is_sufficient
+from tribolab.mode.misfit import SUFFICIENT, is_sufficient
 from tribolab.mode.model import SUSPECTED
 from tribolab.words import Count, speed_text
 
@@ -55,7 +55,8 @@ def verdict_text(
                 f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
             )
         if enough:
-            return f"{steady}; mixed lubrication explains it"
+            within = f"to within {percent_text(SUFFICIENT)} of its height"
+            return f"{steady}; mixed lubrication explains it {within}"
         return (
             f"{steady}; mixed lubrication alone does not explain it, "
             "and the traces do not say what else would"

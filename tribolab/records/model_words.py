@@ -134,4 +134,7 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
             f"the model follows the curve to within {percent(_CLOSE)} of its height, though not to "
             f"within the still smaller errors of its points{alike}"
         )
-    return f"measurement and model part beyond the errors{alike}"
+    return (
+        f"the model follows the curve to within {percent(largest)} of its height, though not to "
+        f"within the errors of its points{alike}"
+    )

@@ -29,7 +29,7 @@ report.drawing = (() => {
 
   // Known before a figure is drawn: what is below does not move when it comes.
   function heightOf(place, width, panels, labels) {
-    const columns = Math.max(1, Math.floor(width / (place.closest(".cards") ? 105 : 210))); // words of a card's legend are short
+    const columns = Math.max(1, Math.floor(width / (place.closest(".cards") ? 150 : 210))); // the words of a card are short
     const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
     const low = isOneOfMany(place) ? 130 : place.closest(".cards") ? 175 : 240;
     const squeezed = state.printing && panels === 1 && !("rows" in place.dataset); // not where names stand below each other
