@@ -201,13 +201,18 @@ def test_ranges_of_the_campaign_file_widen_the_band_and_are_shown(campaign, outc
     ):
         text = re.sub(rf"^({line}.*)$", rf"\1\n{more}", text, flags=re.M)
     file, folder = campaign.with_name("ranges.toml"), campaign.parent / "ranges"
-    file.write_text(text + '\n[model]\npoints = 9\ninlet_length = "40 mm"\n', "utf-8")
+    text += '\n[model]\npoints = 9\ninlet_length = "40 mm"\n'
+    for name, size in (("load", "2 %"), ("radius", "1 %")):
+        text += f'\n[uncertainty.{name}]\nvalue = "{size}"\nas = "standard"\n'
+    file.write_text(text, "utf-8")
     folder.mkdir()
     made = process(load_campaign(file), folder, previous=outcome.folder)
     name = made.models[0].name
     rows = [one.store.get("model", name, ModelRecord).record.rows for one in (outcome, made)]
     before, after = ({row["variation"]: row for row in one.sensitivity} for one in rows)
-    assert set(after) - set(before) == {"viscosity", "Young's modulus"}
+    assert set(after) - set(before) == {"viscosity", "Young's modulus", "load", "radius"}
+    ends = [float(after["load"][end].removesuffix(" N/m")) for end in ("low", "high")]
+    assert ends[1] / ends[0] == pytest.approx(np.exp(2 * 1.96 * 0.02), rel=2e-3)
     assert set(before) - set(after) == {"inlet length"}  # it is stated
     model = folder / made.models[0].data_file
     for part in ("curve", "profiles"):

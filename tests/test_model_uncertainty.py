@@ -18,7 +18,10 @@ GIVEN = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.84e6, "speed": SPEED
 RANGES = {
     "viscosity_range": ("0.98 Pa s", 1.82),  # 30 % off
     "youngs_modulus_range": ("1.35 MPa", "1.65 MPa"),
+    "load_range": (280.0, "340 N/m"),
+    "radius_range": (0.066, "7.4 cm"),
 }
+BOTH = ("viscosity", "Young's modulus", "load", "radius")  # have two ends
 WIDTH = 1.21  # of the made band
 
 
@@ -64,6 +67,8 @@ def test_everything_on_the_list_is_varied(spread):
         "friction factors",
         "viscosity",
         "Young's modulus",
+        "load",
+        "radius",
         "inlet length",
         "shear stress",
     ]
@@ -91,6 +96,8 @@ def test_a_spectrum_times_a_number_moves_the_plateau_by_its_root(spread):
         ("friction factors", "low", {"friction_factors": False}),
         ("viscosity", "low", {"viscosity": 0.98}),
         ("viscosity", "high", {"viscosity": 1.82}),
+        ("load", "high", {"load": 340.0}),
+        ("radius", "low", {"contact": replace(CONTACT, radius=0.066)}),
         ("Young's modulus", "low", {"contact": replace(CONTACT, youngs_modulus=1.35e6)}),
         ("Young's modulus", "high", {"contact": replace(CONTACT, youngs_modulus=1.65e6)}),
         ("inlet length", "low", {"inlet_length": CONTACT.radius}),
@@ -102,7 +109,7 @@ def test_an_end_is_the_curve_of_that_model(spread, name, end, change):
     np.testing.assert_allclose(found, direct.friction_coefficient, rtol=3e-3)
     other = {"low": "high", "high": "low"}[end]
     missing = spread.friction_coefficient_varied.sel(variation=name, range_end=other)
-    assert bool(missing.isnull().all()) == (name not in ("viscosity", "Young's modulus"))
+    assert bool(missing.isnull().all()) == (name not in BOTH)
 
 
 def test_each_unknown_moves_the_curve_where_it_must(spread):
@@ -197,6 +204,8 @@ def test_the_result_survives_a_file(spread, tmp_path):
         ({"shear_stress": -1.0}, "shear_stress"),
         ({"viscosity_range": (1.5, 1.6)}, "viscosity_range: 1.5 to 1.6 Pa s must go from below"),
         ({"youngs_modulus_range": ("1 MPa", "0 MPa")}, "youngs_modulus_range"),
+        ({"load_range": (320.0, 340.0)}, "load_range: 320 to 340 N/m must go from below"),
+        ({"radius_range": (0.0, 0.1)}, "radius_range"),
     ],
 )
 def test_what_has_no_band_is_refused(change, words):

@@ -49,6 +49,8 @@ def model_uncertainty(
     area: AreaTheory = "persson",
     work_of_adhesion: str | float | None = None,
     work_of_adhesion_range: tuple[str | float, str | float] | None = None,
+    load_range: tuple[str | float, str | float] | None = None,
+    radius_range: tuple[str | float, str | float] | None = None,
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
@@ -69,6 +71,8 @@ def model_uncertainty(
     viscosity_range, youngs_modulus_range
         Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
         leaves them out.
+    load_range, radius_range
+        Likewise of `load` [N/m] and the contact's radius [m].
     inlet_length, cells, area, work_of_adhesion
         As for `stribeck_curve`.
     work_of_adhesion_range
@@ -152,6 +156,8 @@ def model_uncertainty(
         work_of_adhesion_range=None
         if work is None
         else _range(work_of_adhesion_range, work, "J/m2", "work_of_adhesion", least=-np.inf),
+        load_range=_range(load_range, force, "N/m", "load"),
+        radius_range=_range(radius_range, contact.radius, "m", "radius"),
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))

@@ -60,6 +60,8 @@ class Base(NamedTuple):
     area: AreaTheory
     work_of_adhesion: float | None = None  # [J/m2], None if the model is without adhesion
     work_of_adhesion_range: tuple[float, float] | None = None
+    load_range: tuple[float, float] | None = None
+    radius_range: tuple[float, float] | None = None
 
     @property
     def spectrum(self) -> xr.Dataset:
@@ -78,6 +80,7 @@ class Changed(TypedDict, total=False):
     friction_factors: bool
     viscosity: float
     contact: LineContact
+    load: float
     inlet_length: float
     area: AreaTheory
     work_of_adhesion: float
@@ -312,6 +315,35 @@ def youngs_modulus(base: Base) -> Variation | Skipped:
     )
 
 
+def load(base: Base) -> Variation | Skipped:
+    """Vary the load that the model takes over the range that is stated."""
+    if base.load_range is None:
+        return Skipped("load", "no load_range was given")
+    low, high = base.load_range
+    return Variation(
+        "load",
+        "as stated; it hangs on the force cell and on the length that carries it",
+        (f"{low:.4g} N/m", f"{high:.4g} N/m"),
+        ({"load": low}, {"load": high}),
+    )
+
+
+def radius(base: Base) -> Variation | Skipped:
+    """Vary the cylinder's radius over the range that is stated."""
+    if base.radius_range is None:
+        return Skipped("radius", "no radius_range was given")
+    low, high = base.radius_range
+    return Variation(
+        "radius",
+        "as stated; of a ground or cast cylinder it is that near the contact",
+        (f"{1e3 * low:.4g} mm", f"{1e3 * high:.4g} mm"),
+        (
+            {"contact": replace(base.contact, radius=low)},
+            {"contact": replace(base.contact, radius=high)},
+        ),
+    )
+
+
 def inlet_length(base: Base) -> Variation | Skipped:
     """Let the liquid begin where a cylinder ends, and its gap is no parabola any more."""
     name = "inlet length"
@@ -346,6 +378,8 @@ OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
 OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
     viscosity,
     youngs_modulus,
+    load,
+    radius,
     inlet_length,
 )
 

@@ -101,6 +101,8 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             "work_of_adhesion_range",
         )
         given = {name: getattr(model, name) for name in ranges} | {"load": load, **body}
+        for name, value in (("load", load), ("radius", contact.radius)):
+            given[f"{name}_range"] = _range_of(value, model.input_errors.get(name, 0.0))
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
         )
@@ -151,6 +153,12 @@ def _inputs(
     decades = np.log10(speed.max() / speed.min())
     coarse = np.geomspace(speed.min(), speed.max(), int(np.ceil(_A_DECADE * decades)) + 2)
     return model_inputs(contact, psd, model.viscosity, load, coarse, model.input_errors, **body)
+
+
+def _range_of(value: float, error: float) -> tuple[float, float] | None:
+    """Return the 95 % range of a value with a relative standard uncertainty; None without one."""
+    factor = float(np.exp(_95 * error))
+    return (value / factor, value * factor) if error > 0 else None
 
 
 def _with_parts(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Dataset:
