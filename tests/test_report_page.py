@@ -222,6 +222,13 @@ def test_failed_runs_are_struck_out_with_their_reason(results):
     assert "<s>broken</s>" in row and "column &#39;Fx&#39; has no unit" in row
 
 
+@pytest.mark.slow
+def test_what_uncertainties_leave_out_is_said_once_for_all_that_it_holds_for(two_runs):
+    text = "".join(Reader(page_of(two_runs.parent / "results")).text)
+    assert text.count("All curves: calibration not stated: statistical only") == 1
+    assert text.count("calibration not stated: statistical only") == 1
+
+
 def test_policy_allows_the_page_and_nothing_else(results):
     policy = next(
         attrs["content"]

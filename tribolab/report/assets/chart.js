@@ -84,7 +84,7 @@ report.Chart = (() => {
         const side = button.dataset.scale, log = this.isLog(side, 0);
         button.hidden = side === "y" && !this.data.panels[0].y.label;
         const { label } = this.data.panels[0][side];
-        button.textContent = `${label?.match(/ (\S{1,4})$/)?.[1] ?? (side === "x" ? "→" : "↑")}: ${log ? "log" : "linear"}`;
+        button.textContent = `${label?.match(/ (\S{1,4})$/)?.[1] ?? label?.match(/^(\S) /)?.[1] ?? (side === "x" ? "→" : "↑")}: ${log ? "log" : "linear"}`;
         button.title = `${side === "x" ? "Horizontal" : "Vertical"} axis${label ? ` (${label})` : ""}: ${log ? "logarithmic, make it linear" : "linear, make it logarithmic"}`;
         button.setAttribute("aria-label", `${button.textContent}. ${button.title}`);
       }
