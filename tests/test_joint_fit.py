@@ -276,17 +276,15 @@ def test_dry_friction_tells_of_the_exponent_where_the_wet_curve_has_none(curves)
     assert width[1] < 0.7 * width[0]
 
 
-def test_a_band_of_the_spectrum_that_is_a_shear_stress_widens_the_shear_stress_alone(curves):
-    parts = load_curves(curves)
-    usual = fit_loads(parts, 1.4)
-    theta = {"eta": usual.marginal("viscosity").value, "n": usual.marginal("speed_exponent").value,
-             "m": usual.marginal("load_exponent").value,
-             "stress": usual.marginal("shear_stress").value}  # fmt: skip
+def band_that_is_a_shear_stress(curves, fit, name):
+    """A variation of 3 % of the shear stress to both sides, and one that nothing asks for."""
+    theta = {"eta": fit.marginal("viscosity").value, "n": fit.marginals[1].value,
+             "m": fit.marginals[2].value, "stress": fit.marginals[0].value}  # fmt: skip
     speed = np.geomspace(1e-6, 1e-2, 9)
     middle = friction(curves, 310.0, speed, **theta)
     ends = [friction(curves, 310.0, speed, **theta | {"stress": f * theta["stress"]})
             for f in (0.97, 1.03)]  # fmt: skip
-    band = xr.Dataset(
+    return xr.Dataset(
         {
             "friction_coefficient": ("sliding_speed", middle),
             "friction_coefficient_varied": (
@@ -294,9 +292,16 @@ def test_a_band_of_the_spectrum_that_is_a_shear_stress_widens_the_shear_stress_a
                 np.array([ends, np.multiply(ends, 5)]),
             ),
         },
-        {"sliding_speed": speed, "variation": ["Hurst exponent", "rough body"]},
+        {"sliding_speed": speed, "variation": [name, "rough body"]},
         {"load_N_m": 310.0},
     )
+
+
+@pytest.mark.parametrize("name", ["Hurst exponent", "load"])
+def test_a_band_of_the_model_that_is_a_shear_stress_widens_the_shear_stress_alone(curves, name):
+    parts = load_curves(curves)
+    usual = fit_loads(parts, 1.4)
+    band = band_that_is_a_shear_stress(curves, usual, name)
     wider = fit_loads(parts, 1.4, spectrum_error={"": band})
 
     def deviation(fit, name):
@@ -311,6 +316,44 @@ def test_a_band_of_the_spectrum_that_is_a_shear_stress_widens_the_shear_stress_a
         assert deviation(wider, name) == pytest.approx(deviation(usual, name), rel=0.03)
     common = fit_loads(parts, 1.4, common_error=0.03 / 1.959964)
     assert deviation(common, "shear_stress") == pytest.approx(after, rel=0.02)
+
+
+def test_a_gain_that_all_loads_share_moves_all_friction_and_is_in_the_intervals(curves):
+    parts, stated = load_curves(curves), []
+    for part in parts:
+        mu = part.measured.friction_coefficient.values
+        rows = np.array([0.02 * mu, 0.5 * mu])
+        stated.append(part._replace(measured=part.measured.assign_coords(
+            part=["friction_gain", "between runs"]
+        ).assign(uncertainty_part=(("part", "sliding_speed"), rows))))  # fmt: skip
+    usual, wider = fit_loads(parts, 1.4), fit_loads(stated, 1.4)
+    # what scatters from point to point is in the points' own errors already
+    gained = [
+        part._replace(measured=part.measured.assign(
+            friction_coefficient=1.02 * part.measured.friction_coefficient,
+            friction_coefficient_sem=1.02 * part.measured.friction_coefficient_sem,
+        ))
+        for part in parts
+    ]  # fmt: skip
+    moved = fit_loads(gained, 1.4)
+    a, b, c = (fit.marginal("shear_stress") for fit in (usual, wider, moved))
+    widths = [np.log(m.high / m.low) / (2 * 1.959964) for m in (a, b)]
+    shift = np.log(c.value / a.value)
+    assert 0.001 < shift < 0.02  # most of it is taken for an error of the levels
+    assert np.sqrt(widths[1] ** 2 - widths[0] ** 2) == pytest.approx(shift, rel=0.3)
+
+
+def test_spectra_err_by_surface_and_the_load_on_all_surfaces_together(curves):
+    parts = [part._replace(surface=s) for s in ("fine", "rough") for part in load_curves(curves)]
+    one = fit_loads(load_curves(curves), 1.4)
+    correlated = {}
+    for name in ("Hurst exponent", "load"):
+        band = band_that_is_a_shear_stress(curves, one, name)
+        both = fit_loads(parts, 1.4, spectrum_error={"fine": band, "rough": band})
+        correlated[name] = both.correlation[0, 1]
+    alone = fit_loads(parts, 1.4).correlation[0, 1]
+    assert correlated["Hurst exponent"] < alone + 0.01
+    assert correlated["load"] > correlated["Hurst exponent"] + 0.02
 
 
 def test_two_surfaces_share_their_liquid(curves):

@@ -21,7 +21,7 @@ from tribolab.fit.joint.model import (
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit, Marginal
-from tribolab.fit.joint.spectrum import spectrum_covariance
+from tribolab.fit.joint.spectrum import calibration_covariance, spectrum_covariance
 from tribolab.stamping import stamp
 
 _ENDS = 0.025, 0.975
@@ -54,7 +54,8 @@ def fit_loads(
     common_error
         Relative standard error [1] of the shear stress that all loads share.
     spectrum_error
-        By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum.
+        By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum,
+        and of load, radius and modulus, where it varies them.
     area_ratio_error
         Standard error of ln of the ratio of areas that multiplies the dry curves' response; one
         for all, or by surface.
@@ -104,6 +105,8 @@ def fit_loads(
     alone = _left_out(model, priors, posterior, curves)
     shared = parameters.stress
     posterior.covariance[:, shared, shared] += common_error**2
+    added = calibration_covariance(model, posterior, priors, curves)
+    posterior = posterior._replace(covariance=posterior.covariance + added)
     if spectrum_error:
         bands = {surfaces.index(surface): band for surface, band in spectrum_error.items()}
         added = spectrum_covariance(model, posterior, priors, bands)

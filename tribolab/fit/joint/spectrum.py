@@ -1,18 +1,21 @@
-"""What an uncertain spectrum does to the parameters of a joint fit, at all loads alike."""
+"""What uncertain spectra, inputs and calibrations do to a joint fit, at all loads alike."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.model import JointModel, Points, shared_errors
 from tribolab.fit.joint.posterior import Posterior
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
+from tribolab.metrology.budget_curve import shared_parts
 
+INPUTS = ("load", "radius", "Young's modulus")  # variations that all surfaces share
 _NORMAL = 1.959963984540054
 _FEWEST = 4
 
@@ -23,7 +26,7 @@ def spectrum_covariance(
     priors: JointPriors,
     uncertainty: Mapping[int, xr.Dataset],
 ) -> np.ndarray:
-    """Return what uncertain spectra add to the covariance of the parameters.
+    """Return what uncertain spectra and inputs add to the covariance of the parameters.
 
     Parameters
     ----------
@@ -49,8 +52,70 @@ def spectrum_covariance(
     of the spectrum is therefore told by a shear stress, an exponent of speed and a viscosity:
     ln(mu varied/mu) over the measured speeds, at the load for which it was computed, is projected
     on their derivatives. What these do at all loads to the fit is ``Sigma J' V^-1 delta``. The
-    ends are some 95 %, the variations independent of each other.
+    ends are some 95 %, the variations independent of each other, and so are the surfaces' spectra;
+    load, radius and modulus are told alike, and err together on all surfaces.
     """
+    points, where = model.points, model.parameters
+    slopes, answer = _answer(model, posterior, priors)
+    added = np.zeros((where.spread.size, where.spread.size))
+    together: dict[str, np.ndarray] = {}
+    for surface, band in uncertainty.items():
+        columns = [where.stress[surface], where.speed[surface], where.viscosity]
+        columns = [column for column in columns if where.spread[column] > 0]
+        of_surface = np.array([model.curves[k].surface == surface for k in points.curve])
+        wet = np.array([not model.curves[k].dry for k in points.curve])
+        for name, ends in _told(model, posterior.centre, surface, columns, band).items():
+            moved = ends @ (slopes[:, columns] * (of_surface & wet)[:, None]).T @ answer.T
+            if name in INPUTS:
+                together[name] = together.get(name, 0.0) + moved
+            else:
+                added += moved.T @ moved / len(ends) / _NORMAL**2
+    for moved in together.values():
+        added += moved.T @ moved / len(moved) / _NORMAL**2
+    return added
+
+
+def calibration_covariance(
+    model: JointModel, posterior: Posterior, priors: JointPriors, curves: Sequence[LoadCurve]
+) -> np.ndarray:
+    """Return what the calibration that all curves share adds to the covariance of the parameters.
+
+    Parameters
+    ----------
+    model, posterior, priors
+        Of the fit.
+    curves
+        Of each measured curve ``uncertainty_part`` counts, from `with_curve_uncertainty`; parts of
+        one name are one error of all curves.
+
+    Returns
+    -------
+    numpy.ndarray
+        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``.
+    """
+    points = model.points
+    rows: dict[str, np.ndarray] = {}
+    for number, curve in enumerate(curves):
+        mine = points.curve == number
+        data = curve.measured
+        if "run" in data["friction_coefficient"].dims:
+            continue  # parts are told of curves of several runs
+        place = np.log(data.get("measured_speed", data["sliding_speed"]).values.astype(float))
+        for name, part in shared_parts(data):
+            relative = part / data["friction_coefficient"].values
+            known = np.isfinite(relative) & np.isfinite(place)
+            if known.any():
+                row = rows.setdefault(name, np.zeros(points.log_speed.size))
+                row[mine] = np.interp(points.log_speed[mine], place[known], relative[known])
+    _, answer = _answer(model, posterior, priors)
+    moved = np.array(list(rows.values())).reshape(-1, points.log_speed.size) @ answer.T
+    return moved.T @ moved
+
+
+def _answer(
+    model: JointModel, posterior: Posterior, priors: JointPriors
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return d ln mu/d theta (point, parameter), and what changed points do to the parameters."""
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters
@@ -60,18 +125,9 @@ def spectrum_covariance(
     free = where.spread > 0
     weighed = np.linalg.solve(whole, slopes[:, free]).T
     normal = weighed @ slopes[:, free] + np.diag(where.spread[free] ** -2.0)
-    answer = np.zeros(slopes.T.shape)  # of the parameters to changed points
+    answer = np.zeros(slopes.T.shape)
     answer[free] = np.linalg.solve(normal, weighed)
-    added = np.zeros((free.size, free.size))
-    for surface, band in uncertainty.items():
-        columns = [where.stress[surface], where.speed[surface], where.viscosity]
-        columns = [column for column in columns if where.spread[column] > 0]
-        of_surface = np.array([model.curves[k].surface == surface for k in points.curve])
-        wet = np.array([not model.curves[k].dry for k in points.curve])
-        for ends in _told(model, posterior.centre, surface, columns, band):
-            moved = ends @ (slopes[:, columns] * (of_surface & wet)[:, None]).T @ answer.T
-            added += moved.T @ moved / len(ends) / _NORMAL**2
-    return added
+    return slopes, answer
 
 
 def _told(
@@ -80,8 +136,8 @@ def _told(
     surface: int,
     columns: list[int],
     band: xr.Dataset,
-) -> list[np.ndarray]:
-    """Return for each variation of the spectrum what its ends are told by (end, parameter)."""
+) -> dict[str, np.ndarray]:
+    """Return for each variation by name what its ends are told by (end, parameter)."""
     load = float(band.attrs["load_N_m"])
     offs = {
         number: abs(curve.log_load - model.log_reference(load))
@@ -101,13 +157,14 @@ def _told(
         )
     count = np.full(inside.sum(), number)
     _, slopes = model.predicted(theta, Points(log_speed[inside], count, count, count, count))
-    chosen = [name for name in band["variation"].values.tolist() if name in SPECTRUM]
+    known = (*SPECTRUM, *INPUTS)
+    chosen = [name for name in band["variation"].values.tolist() if name in known]
     ends_of = band["friction_coefficient_varied"].sel(variation=chosen)
     varied = ends_of.transpose("variation", "range_end", "sliding_speed").values[..., inside]
     change = np.log(varied / band["friction_coefficient"].values[inside])
     backwards = np.linalg.pinv(slopes[:, columns])
-    return [
-        ends[np.isfinite(ends).all(axis=1)] @ backwards.T
-        for ends in change
+    return {
+        name: ends[np.isfinite(ends).all(axis=1)] @ backwards.T
+        for name, ends in zip(chosen, change, strict=True)
         if np.isfinite(ends).all(axis=1).any()
-    ]
+    }
