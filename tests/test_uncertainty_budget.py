@@ -184,8 +184,9 @@ def test_u95_of_four_degrees_of_freedom_covers_what_students_t_says():
 
 
 @pytest.mark.parametrize("runs", [2, 3])
-@pytest.mark.parametrize("ratio", [0.0, 0.25, 1.0, 3.0])
-def test_u95_of_few_runs_beside_a_calibration_holds_93_to_97_per_cent(runs, ratio):
+@pytest.mark.parametrize("ratio", [0.0, 0.2, 0.5, 1.0, 2.0, 4.0])
+def test_u95_of_few_runs_beside_a_calibration_holds_95_per_cent(runs, ratio):
+    """However large the calibration is: of two runs within 1.9 %, of three within 1.2 %."""
     rng = np.random.default_rng([runs, int(100 * ratio)])
     drawn = rng.normal(0, 1, (20_000, runs))
     wide = ratio / np.sqrt(runs)
@@ -195,7 +196,8 @@ def test_u95_of_few_runs_beside_a_calibration_holds_93_to_97_per_cent(runs, rati
     parts = {"friction_gain": np.full(20_000, wide)}
     result = combined(data, "segment", [scatter], parts, known)
     miss = np.abs(drawn.mean(axis=1) + wide * rng.normal(0, 1, 20_000))
-    assert 0.93 < np.mean(miss <= result.friction_coefficient_U95.values) < 0.97
+    held = np.mean(miss <= result.friction_coefficient_U95.values)
+    assert held == pytest.approx(0.95, abs={2: 0.019, 3: 0.012}[runs])
 
 
 def test_a_student_factor_is_taken_once():
