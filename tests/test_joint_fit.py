@@ -276,11 +276,11 @@ def test_dry_friction_tells_of_the_exponent_where_the_wet_curve_has_none(curves)
     assert width[1] < 0.7 * width[0]
 
 
-def band_that_is_a_shear_stress(curves, fit, name):
+def band_that_is_a_shear_stress(curves, fit, name, count=9):
     """A variation of 3 % of the shear stress to both sides, and one that nothing asks for."""
     theta = {"eta": fit.marginal("viscosity").value, "n": fit.marginals[1].value,
              "m": fit.marginals[2].value, "stress": fit.marginals[0].value}  # fmt: skip
-    speed = np.geomspace(1e-6, 1e-2, 9)
+    speed = np.geomspace(1e-6, 1e-2, count)
     middle = friction(curves, 310.0, speed, **theta)
     ends = [friction(curves, 310.0, speed, **theta | {"stress": f * theta["stress"]})
             for f in (0.97, 1.03)]  # fmt: skip
@@ -316,6 +316,20 @@ def test_a_band_of_the_model_that_is_a_shear_stress_widens_the_shear_stress_alon
         assert deviation(wider, name) == pytest.approx(deviation(usual, name), rel=0.03)
     common = fit_loads(parts, 1.4, common_error=0.03 / 1.959964)
     assert deviation(common, "shear_stress") == pytest.approx(after, rel=0.02)
+
+
+def test_a_band_of_two_speeds_between_those_of_slow_sliding_tells_as_much_as_a_dense_one(curves):
+    parts = load_curves(curves, speed=SPEEDS[SPEEDS < 8e-6])
+    usual = fit_loads(parts, 1.4)
+    widths = []
+    for count in (9, 81):
+        band = band_that_is_a_shear_stress(curves, usual, "load", count)
+        marginal = fit_loads(parts, 1.4, spectrum_error={"": band}).marginal("shear_stress")
+        widths.append(np.log(marginal.high / marginal.low))
+    alone = usual.marginal("shear_stress")
+    assert widths[0] == pytest.approx(widths[1], rel=0.02)
+    assert widths[0] == pytest.approx(np.hypot(np.log(alone.high / alone.low), 0.06), rel=0.01)
+    assert widths[0] > 1.01 * np.log(alone.high / alone.low)
 
 
 def test_a_gain_that_all_loads_share_moves_all_friction_and_is_in_the_intervals(curves):

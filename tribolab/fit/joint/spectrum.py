@@ -149,19 +149,24 @@ def _told(
         raise AnalysisError(f"the model's uncertainty is of {load:g} N/m, which is not fitted")
     measured = model.points.log_speed[model.points.curve == number]
     log_speed = np.log(band["sliding_speed"].values)
-    inside = (log_speed > measured.min() - 0.01) & (log_speed < measured.max() + 0.01)
-    if inside.sum() < _FEWEST:
-        raise AnalysisError(
-            f"the model's uncertainty is known at {inside.sum()} of the measured speeds' range; "
-            f"at least {_FEWEST} are wanted"
-        )
-    count = np.full(inside.sum(), number)
-    _, slopes = model.predicted(theta, Points(log_speed[inside], count, count, count, count))
     known = (*SPECTRUM, *INPUTS)
     chosen = [name for name in band["variation"].values.tolist() if name in known]
     ends_of = band["friction_coefficient_varied"].sel(variation=chosen)
-    varied = ends_of.transpose("variation", "range_end", "sliding_speed").values[..., inside]
-    change = np.log(varied / band["friction_coefficient"].values[inside])
+    varied = ends_of.transpose("variation", "range_end", "sliding_speed").values
+    change = np.log(varied / band["friction_coefficient"].values)
+    inside = (log_speed > measured.min() - 0.01) & (log_speed < measured.max() + 0.01)
+    if inside.sum() < _FEWEST:  # few speeds, close together: between those of the band
+        within = (measured > log_speed[0] - 0.01) & (measured < log_speed[-1] + 0.01)
+        at = np.clip(measured[within], log_speed[0], log_speed[-1])
+        below = np.clip(np.searchsorted(log_speed, at) - 1, 0, log_speed.size - 2)
+        share = (at - log_speed[below]) / (log_speed[below + 1] - log_speed[below])
+        change = (1 - share) * change[..., below] + share * change[..., below + 1]
+    else:
+        at, change = log_speed[inside], change[..., inside]
+    if not at.size:
+        raise AnalysisError("the model's uncertainty is not known at any of the measured speeds")
+    count = np.full(at.size, number)
+    _, slopes = model.predicted(theta, Points(at, count, count, count, count))
     backwards = np.linalg.pinv(slopes[:, columns])
     return {
         name: ends[np.isfinite(ends).all(axis=1)] @ backwards.T
