@@ -305,11 +305,15 @@ def test_names_that_say_nothing_leave_it_to_the_numbers(tmp_path):
     assert "it is time in ms" in draft.guesses[0]
 
 
-def test_what_cannot_be_read_is_refused_with_the_cure(tmp_path):
+def test_decimal_commas_in_quotes_are_no_delimiters(tmp_path):
     file = tmp_path / "quoted.csv"
-    file.write_text('"Zeit [s]","Kraft [N]"\n"0,0","1,0"\n"0,1","1,1"\n')
-    with pytest.raises(ReadError, match="semicolon"):
-        draft_dialect(file)
+    rows = "".join(f'"{n / 10:.1f}","{2 + n / 4:.2f}","31"\n' for n in range(30)).replace(".", ",")
+    file.write_text('"Zeit [s]","Reibkraft [N]","Last [N]"\n' + rows)
+    data, draft = drafted(file, tmp_path)
+    np.testing.assert_allclose(data.time, 0.1 * np.arange(30))
+    np.testing.assert_allclose(data.friction_force, 2 + 0.25 * np.arange(30))
+    np.testing.assert_array_equal(data.normal_force, 31)
+    assert not draft.guesses
 
 
 @pytest.mark.parametrize("bad", ["OVL", "Err110", "***.**um", "#N/A", "kaputt"])

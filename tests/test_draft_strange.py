@@ -230,3 +230,93 @@ def test_the_larger_of_two_forces_in_the_plane_is_asked_about(share, at_once, tm
         np.testing.assert_allclose(tl.read(file).friction_force, 1e-3 * FRICTION, atol=1e-6)
     else:
         assert "of several columns for friction_force" in asked(file)
+
+
+@pytest.mark.parametrize("mark", ["-9999", "1e30", "9.91E37", "65535", "-999.25", "1.70141E+38"])
+@pytest.mark.parametrize("place", [1, 2])
+def test_a_number_that_stands_for_no_value_is_none_and_is_told(mark, place, tmp_path):
+    columns = [T, FRICTION, LOAD, SPEED]
+    cells = [f"{x:.4f}" for x in columns[place] / 1e3]
+    lost = [7, 150, 151, 400]
+    for row in lost:
+        cells[row] = mark
+    columns = [T, FRICTION / 1e3, LOAD / 1e3, SPEED]
+    columns[place] = cells
+    head = "Time [s],Friction [N],Load [N],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, *columns))
+    signal = run[["friction_force", "normal_force"][place - 1]].values
+    assert np.flatnonzero(np.isnan(signal)).tolist() == lost
+    assert f"{float(mark):.9g} 4 times" in run.attrs["taken_for_missing"]
+
+
+@pytest.mark.parametrize(("rest", "mark", "times"), [(9000, 9999, 9), (3, 999, 1), (3, 612, 9)])
+def test_a_number_that_may_be_measured_is_kept(rest, mark, times, tmp_path):
+    """Not far outside, not repeated, or not one that programs choose."""
+    force = rest + np.sin(T)
+    force[10 : 10 + times] = mark
+    head = "Time [s],Friction [mN],Load [mN],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, force, 1e4, SPEED))
+    assert "taken_for_missing" not in run.attrs
+    np.testing.assert_allclose(run.friction_force, 1e-3 * force, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("spelt", "delimiter"),
+    [
+        (lambda x: f"{x:.4f}".replace("-", "\u2212"), ","),
+        (lambda x: f"{x:.8E}".replace("E", "D"), "\t"),
+        (lambda x: f"{x:.8e}".replace("e", "d").replace(".", ","), ";"),
+        (lambda x: f'"{x:.4f}"'.replace(".", ","), ","),
+    ],
+    ids=["true minus", "Fortran", "Fortran and commas", "commas in quotes"],
+)
+def test_numbers_in_an_unusual_spelling_are_numbers(spelt, delimiter, tmp_path):
+    head = delimiter.join(["Time [s]", "Friction [mN]", "Load [mN]", "Speed [mm/s]"])
+    friction, speed = FRICTION * np.sign(np.sin(T)), SPEED * np.sign(np.sin(T))
+    file = written(
+        tmp_path / "a.csv", head, T, friction, LOAD, speed, number=spelt, delimiter=delimiter
+    )
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * friction, atol=1e-6)
+    np.testing.assert_allclose(run.time, T, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "dt = 0.05 s",
+        "Sampling interval: 50 ms",
+        "Abtastintervall;50 ms",
+        "Sample period (s): 0.05",
+        "Messrate: 20 Hz",
+    ],
+)
+def test_a_rate_or_an_interval_above_the_table_makes_the_time(said, tmp_path):
+    head = f"{said}\nFriction [mN];Load [mN];Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, FRICTION, LOAD, SPEED, delimiter=";"))
+    np.testing.assert_allclose(run.time, T, atol=1e-9)
+    assert run.attrs["time_source"] == "sample rate"
+
+
+@pytest.mark.parametrize("said", ["dt: 0.05", "fs = 20"])
+def test_of_a_rate_or_interval_without_a_unit_it_is_asked(said, tmp_path):
+    head = f"{said}\nFriction [mN],Load [mN],Speed [mm/s]"
+    assert said in asked(written(tmp_path / "a.csv", head, FRICTION, LOAD, SPEED))
+
+
+def test_whole_numbers_of_thousands_beside_decimals_are_read_and_others_are_not(tmp_path):
+    def whole(x):
+        return f"{round(x):,}".replace(",", ".")
+
+    times = [f"{t:.2f}".replace(".", ",") for t in T]
+    force = [whole(x) for x in np.linspace(900, 1600, N)]
+    head = "Time [s];Friction [mN];Load [mN];Speed [um/s]"
+    rest = [whole(x) for x in 4 * LOAD]
+    file = written(tmp_path / "a.csv", head, times, force, rest, "500", delimiter=";")
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * np.linspace(900, 1600, N), atol=5.1e-4)
+    # 1.412 N may be a force with three decimals: no number below tells that it is not
+    force = [f"{x:.3f}" for x in FRICTION / 1e2]
+    file = written(tmp_path / "b.csv", head, times, force, force, "500", delimiter=";")
+    with pytest.raises(tl.TribolabError):
+        tl.read(file)

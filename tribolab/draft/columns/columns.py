@@ -8,13 +8,14 @@ import numpy as np
 import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
-from tribolab.draft.columns.values import find_pitch, find_rate
+from tribolab.draft.columns.values import find_pitch, find_sampling
 from tribolab.draft.columns.words import matches, split_unit
 from tribolab.draft.file.header import is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
 from tribolab.errors import ReadError, brief, shown
+from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import split_name, split_row
@@ -80,10 +81,13 @@ def understand(layout: Layout) -> Understood:
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
     )
     timed = any(column.used and column.quantity == "time" for column in columns)
-    rate = None if timed or kind != "run" else find_rate(layout)
-    if rate is None:
+    sampling = None if timed or kind != "run" else find_sampling(layout)
+    if sampling is None:
         return result
-    return result._replace(rate_pattern=rate.pattern, rate_unit=rate.unit or "Hz")
+    guesses += [sampling.guess] if sampling.guess else []
+    return result._replace(
+        rate_pattern=sampling.value.pattern, rate_unit=sampling.unit, guesses=tuple(guesses)
+    )
 
 
 def _dated(
@@ -155,15 +159,17 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
     for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
-        values = pd.to_numeric(column, errors="coerce")
-        numbers[:, index] = values.to_numpy(dtype=float)
-        odd = column[values.isna() & column.notna()].astype(str).str.strip()
+        known = pd.to_numeric(column, errors="coerce")
+        numbers[:, index] = known.to_numpy(dtype=float)
+        odd = column[known.isna() & column.notna()].astype(str).str.strip()
         odd = odd[~odd.str.lower().isin(["nan", ""])]
         if len(odd) > 0.5 * column.notna().sum():
             text[index] = odd.iloc[0][:30]
         else:
             missing[index] = odd.unique()[:10].tolist()
     numbers[np.abs(numbers) > LARGEST] = np.nan
+    for values in numbers.T:  # the reader does so, too
+        take_marks([values])
     return numbers, text, missing
 
 

@@ -24,8 +24,15 @@ _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 # a sample rate by its name; "Frequency" alone may be that of the strokes
 _RATE = re.compile(
-    r"^(?:rate|fs|daqrate)$|^(?:sampl|scan|log|mess|abtast)\w*(?:interval|period|time|intervall)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
+    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
     r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
+)
+# what passes from one sample to the next
+_INTERVAL = re.compile(
+    r"^(?:dt|deltat|timestep|timeinterval|zeitschritt|tsample|ts)$"
+    r"|^(?:sampl|scan|log|mess|abtast|record|acquisition|data|zeit)\w*"
+    r"(?:interval|period|time|intervall|periode|schritt|spacing)$"
+    r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
 )
 # the distance of a profile's points by its name
 _PITCH = re.compile(
@@ -95,8 +102,19 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     return list(values.values())
 
 
-def find_rate(layout: Layout) -> DraftValue | None:
-    """Return the sample rate that the text before the table states; None if it states none.
+class Sampling(NamedTuple):
+    """What the text before the table says of the distance of samples, and what of it is guessed.
+
+    `unit` is one of frequency, or of time where it is an interval.
+    """
+
+    value: DraftValue
+    unit: str
+    guess: str = ""
+
+
+def find_sampling(layout: Layout) -> Sampling | None:
+    """Return the sample rate, or the interval of samples, before the table; None if there is none.
 
     Parameters
     ----------
@@ -104,10 +122,18 @@ def find_rate(layout: Layout) -> DraftValue | None:
         From `tribolab.draft.file.layout.find_layout`.
     """
     for value in find_values(layout):
-        key = _said(value.text)
-        rated = key is not None and _RATE.search(squeezed(_BRACKETS.sub("", key["key"])))
-        if rated and value.source == "preamble" and value.unit and converts(value.unit, "Hz"):
-            return value
+        said = _said(value.text)
+        if said is None or value.source != "preamble":
+            continue
+        key, unit = squeezed(_BRACKETS.sub("", said["key"])), value.unit or value.own_unit
+        interval = _INTERVAL.search(key) is not None
+        if not interval and not _RATE.search(key):
+            continue
+        if unit and any(converts(unit, si_unit) for si_unit in ("Hz", "s")):
+            return Sampling(value, unit)
+        if unit is None:
+            kind, si_unit = ("interval of samples", "s") if interval else ("sample rate", "Hz")
+            return Sampling(value, si_unit, f"'{value.text}' is the {kind} in {si_unit}")
     return None
 
 

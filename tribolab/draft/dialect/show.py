@@ -101,7 +101,8 @@ def _written(draft: Drafted) -> list[str]:
     if layout.others:
         tables += f"; {layout.others} more in the file, which are not read"
     marks = f"numbers parted by {layout.delimiter_name}, decimal "
-    marks += "comma" if layout.decimal == "," else "point"
+    marks += "comma" if layout.decimal == "," or layout.quoted else "point"
+    marks += " in quotes" if layout.quoted else ""
     if layout.heading is None:
         header = "no header" + (f", {layout.skip} lines before the numbers" if layout.skip else "")
     else:

@@ -87,8 +87,8 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.append(f"delimiter = {_text(layout.delimiter)}")
     if layout.encoding != "utf-8":
         lines.insert(1, f"encoding = {_text(layout.encoding)}")
-    if layout.decimal != ".":
-        lines.append(f"decimal = {_text(layout.decimal)}")
+    if layout.decimal != "." or layout.quoted:
+        lines.append('decimal = ","')
     if layout.thousands:
         lines.append(f"thousands = {_text(layout.thousands)}")
     if understood.missing:

@@ -22,6 +22,12 @@ from tribolab.draft.file.marks import Block, without_marks
 from tribolab.errors import ReadError
 from tribolab.io.dialects.headers import line_feeds, split_row
 from tribolab.io.dialects.signature import HEAD, File
+from tribolab.io.dialects.spelling import (
+    has_commas_in_quotes,
+    is_unusual,
+    usual,
+    without_commas_in_quotes,
+)
 from tribolab.io.dialects.thousands import Mark, find_thousands, without_thousands
 
 _TAIL = 1 << 14
@@ -64,6 +70,7 @@ class Layout(NamedTuple):
     guesses: tuple[str, ...]
     held: Held | None = None
     thousands: Mark = ""
+    quoted: bool = False
 
     @property
     def delimiter_name(self) -> str:
@@ -117,6 +124,9 @@ def find_layout(file: File) -> Layout:
     guesses: list[str] = []
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
+    text = usual(text) if is_unusual(text) else text
+    quoted = has_commas_in_quotes(text)
+    text = without_commas_in_quotes(text) if quoted else text
     lines = tuple(line_feeds(text).split("\n"))
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
@@ -126,11 +136,6 @@ def find_layout(file: File) -> Layout:
         raise ReadError(
             f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
             "at least one row of numbers"
-        )
-    if grammar.delimiter == "," and any(re.match(r'"[+-]?\d+,\d+",', line) for line in lines):
-        raise ReadError(
-            f"{file.path}: numbers with a decimal comma stand in quotes, and commas part them too; "
-            "that cannot be read: export with another delimiter, e.g. a semicolon"
         )
     blocks, skip_lines = without_marks(lines, _blocks(lines, grammar), grammar)
     main, others = _main(blocks)
@@ -177,6 +182,7 @@ def find_layout(file: File) -> Layout:
         notes=tuple(notes),
         guesses=tuple(guesses),
         thousands=thousands,
+        quoted=quoted,
     )
 
 

@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.errors import ReadError
 from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.content.model import Content, Piece
-from tribolab.io.content.steps import last_match
+from tribolab.io.content.sampling import stated_interval
 from tribolab.io.dialects.dates import has_day, has_zone
 from tribolab.io.dialects.dates import moment as date_of
 from tribolab.io.dialects.model import Dialect
@@ -45,17 +45,7 @@ def set_time(content: Content, dialect: Dialect) -> None:
     if dialect.time.source == "period":
         _sum_up(content, dialect)
         return
-    step = 1.0
-    if dialect.time.rate_pattern:
-        rate = last_match(dialect.time.rate_pattern, content.pieces[0].before)
-        if rate is None:
-            raise ReadError(
-                f"{content.path}: no sample rate matches '{shown(dialect.time.rate_pattern)}' "
-                f"(instrument '{dialect.name}', time.rate_pattern)"
-            )
-        step = 1.0 / to_si(f"{rate} {dialect.time.rate_unit}", "Hz", str(content.path))
-    elif dialect.time.rate:
-        step = 1.0 / to_si(dialect.time.rate, "Hz", "time.rate")
+    step = stated_interval(content, dialect)
     start = 0
     for piece in content.pieces:
         rows = len(next(iter(piece.columns.values())))

@@ -9,7 +9,7 @@ import numpy as np
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columnar import layout_of, named
-from tribolab.io.dialects.columns import resolve, symbols
+from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.tables.columnar import open_columns
 from tribolab.provenance import sha256_of_file
@@ -57,7 +57,8 @@ def read_columnar(path: Path, dialect: Dialect) -> Content:
     labels = {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
     own = symbols(signals, dialect)
     sha256 = sha256_of_file(path)
-    return Content(path, sha256, [Piece(columns)], labels, tuple(unused), symbols=own)
+    pieces, scales = [Piece(columns)], scales_of(signals)
+    return Content(path, sha256, pieces, labels, tuple(unused), symbols=own, scales=scales)
 
 
 def _numbers(path: Path, label: str, values: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
-from tribolab.io.dialects.columns import resolve, symbols
+from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.tables.mat5 import read_variables
 from tribolab.provenance import sha256_of_file
@@ -48,4 +48,5 @@ def read_mat(path: Path, dialect: Dialect) -> Content:
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
     pieces = [Piece(columns)]
     sha256 = sha256_of_file(path)
-    return Content(path, sha256, pieces, labels, tuple(unused), symbols=symbols(signals, dialect))
+    own, scales = symbols(signals, dialect), scales_of(signals)
+    return Content(path, sha256, pieces, labels, tuple(unused), symbols=own, scales=scales)

@@ -32,3 +32,4 @@ class Content(NamedTuple):
     left_out: Mapping[str, int] = {}  # rows that were not taken over, by reason
     notes: Mapping[str, str] = {}
     symbols: Mapping[str, str] = {}  # SI units of columns that only formulas use
+    scales: Mapping[str, tuple[float, float]] = {}  # what made SI of a column: scale and offset

@@ -9,9 +9,10 @@ from typing import TypeVar
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST, Content, Piece
 from tribolab.io.content.steps import last_match, started
-from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, symbols
+from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, fits, peek
 from tribolab.pieces import anywhere
@@ -80,6 +81,7 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     pieces: list[Piece] = []
     labels: dict[str, str] = {}
     own: dict[str, str] = {}
+    scales: dict[str, tuple[float, float]] = {}
     unused: dict[str, None] = {}
     cut = 0
     for table in raw.tables:
@@ -90,6 +92,7 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
         labels.update({s.quantity: f"{s.label} [{s.unit}]" for s in signals})
         unused.update(dict.fromkeys(not_used))
         own.update(symbols(signals, dialect))
+        scales.update(scales_of(signals))
         step = last_match(dialect.header.step, table.before) if dialect.header.step else None
         if step is None and dialect.header.repeats:
             step = str(len(pieces) + 1)
@@ -105,7 +108,7 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     outside = rows_outside(raw, dialect.text.delimiter)
     left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
     left_out = {reason: count for reason, count in left_out.items() if count}
-    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out, symbols=own)
+    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out, {}, own, scales)
 
 
 def measurable(values: np.ndarray) -> np.ndarray:
@@ -143,7 +146,7 @@ def _no_value(values: np.ndarray) -> bool:
 
 def _checked(content: Content, dialect: Dialect) -> Content:
     """Leave out optional columns without a value; a wanted one without a value is an error."""
-    content = _pressed(_chosen(_possible(content)), dialect)
+    content = _pressed(_chosen(_possible(_without_marks(content))), dialect)
     rows = sum(len(next(iter(piece.columns.values()))) for piece in content.pieces)
     if rows == 0:
         raise ReadError(f"{content.path}: the file has a header, but no row of numbers below it")
@@ -217,6 +220,21 @@ def _named(columns: Mapping[str, _T], chosen: Mapping[str, str]) -> dict[str, _T
         key: value for key, value in columns.items() if chosen.get(key.split(AGAIN)[0], key) == key
     }
     return {key.split(AGAIN)[0]: value for key, value in kept.items()}
+
+
+def _without_marks(content: Content) -> Content:
+    """Take numbers that stand for no value for missing, and say which they were."""
+    told = []
+    for name in dict.fromkeys(name for piece in content.pieces for name in piece.columns):
+        if name in ("time", *_PLACES):
+            continue
+        parts = [piece.columns[name] for piece in content.pieces if name in piece.columns]
+        if all(part.dtype.kind == "f" and part.flags.writeable for part in parts):
+            marks = take_marks(parts, *content.scales.get(name, (1.0, 0.0)))
+            told += [f"{name}: {mark.words}" for mark in marks]
+    if not told:
+        return content
+    return content._replace(notes={**content.notes, "taken_for_missing": "; ".join(told)})
 
 
 def _possible(content: Content) -> Content:

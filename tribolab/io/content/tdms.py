@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
-from tribolab.io.dialects.columns import resolve, symbols
+from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.layout import Marks
 from tribolab.io.dialects.model import Dialect
@@ -59,7 +59,8 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     piece = Piece(columns, before=text)
     own = symbols(signals, dialect)
     sha256 = sha256_of_file(path)
-    return Content(path, sha256, [piece], labels, tuple(unused), notes=notes, symbols=own)
+    scales = scales_of(signals)
+    return Content(path, sha256, [piece], labels, tuple(unused), {}, notes, own, scales)
 
 
 def _incomplete(file: Any) -> dict[str, str]:

@@ -93,6 +93,11 @@ def symbols(signals: Sequence[ReadColumn], dialect: Dialect) -> dict[str, str]:
     return {signal.quantity: signal.si_unit for signal in signals if signal.quantity in own}
 
 
+def scales_of(signals: Sequence[ReadColumn]) -> dict[str, tuple[float, float]]:
+    """Return what turns the numbers of each column into SI: a scale and an offset."""
+    return {signal.quantity: (signal.scale, signal.offset) for signal in signals}
+
+
 def first_filled(columns: Mapping[str, Sequence[np.ndarray]]) -> dict[str, str]:
     """Choose among columns that may hold one quantity the first that is filled.
 

@@ -6,6 +6,7 @@ import codecs
 import functools
 import mmap
 import re
+from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
 from typing import AnyStr, NamedTuple
@@ -15,6 +16,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import Guarded
 from tribolab.io.dialects.signature import File, peek
+from tribolab.io.dialects.spelling import is_unusual, usual, without_commas_in_quotes
 from tribolab.io.dialects.thousands import without_thousands
 
 _BOM = b"\xef\xbb\xbf"
@@ -92,8 +94,9 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
     memory = _mended(file, dialect, head_only)
     if not head_only:
         memory = _without_lines(file, memory, dialect)
-    if dialect.text.thousands:
-        memory = _without_marks(file, memory, dialect, head_only)
+    respell = respelling(dialect, file.head)
+    if respell is not None:
+        memory = _respelt(file, memory, dialect, respell, head_only)
     if memory is not None:
         return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
     if head_only or not dialect.header.repeats:
@@ -174,17 +177,37 @@ def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes
     )
 
 
-def _without_marks(file: File, content: bytes | None, dialect: Dialect, head_only: bool) -> bytes:
-    """Content whose table has no marks between thousands; the text before it stays."""
+def respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
+    """Return what makes a table's numbers such as the parser reads; None where they are."""
+    text = dialect.text
+    steps: list[Callable[[str], str]] = []
+    if text.thousands:
+        steps.append(lambda table: without_thousands(table, text.thousands, text.delimiter))
+    if text.is_quoted:
+        steps.append(without_commas_in_quotes)
+    if is_unusual(head.decode(text.encoding, errors="replace")):
+        steps.append(usual)
+    if not steps:
+        return None
+    return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)
+
+
+def _respelt(
+    file: File,
+    content: bytes | None,
+    dialect: Dialect,
+    respell: Callable[[str], str],
+    head_only: bool,
+) -> bytes:
+    """Content whose table's numbers are written as the parser reads them; the text before stays."""
     if content is None:
         try:
             content = file.head if head_only else file.path.read_bytes()
         except OSError as error:
             raise ReadError("the file cannot be read", where=file.path) from error
     start = _header_starts(file, content, dialect)[0]
-    encoding, text = _encoding(dialect), dialect.text
-    table = content[start:].decode(encoding, errors="surrogateescape")
-    table = without_thousands(table, text.thousands, text.delimiter)
+    encoding = _encoding(dialect)
+    table = respell(content[start:].decode(encoding, errors="surrogateescape"))
     return content[:start] + table.encode(encoding, errors="surrogateescape")
 
 

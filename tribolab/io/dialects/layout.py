@@ -27,7 +27,10 @@ class Text(Strict):
 
     encoding: Encoding = Field("utf-8", description="utf-8 (a BOM is ignored), latin-1, ...")
     delimiter: str = Field(",", description="one character, or 'whitespace'")
-    decimal: Literal[".", ","] = Field(".", description="decimal mark")
+    decimal: Literal[".", ","] = Field(
+        ".",
+        description="decimal mark; a comma may part the cells, too, where numbers are in quotes",
+    )
     thousands: Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"] = Field(
         "", description="mark between the thousands of a number, as the comma of '1,234.5'"
     )
@@ -41,11 +44,21 @@ class Text(Strict):
     def _delimiter_is_usable(self) -> Self:
         if self.delimiter != "whitespace" and len(self.delimiter) != 1:
             raise ValueError("delimiter is one character, or the word 'whitespace'")
-        if self.delimiter == self.decimal:
+        if self.delimiter == self.decimal and not self.is_quoted:
             raise ValueError(f"delimiter and decimal mark are both '{self.decimal}'")
         if self.thousands == self.decimal:
             raise ValueError(f"decimal mark and mark of thousands are both '{self.decimal}'")
         return self
+
+    @property
+    def is_quoted(self) -> bool:
+        """Whether commas part the cells and are decimal marks in quotes: "0,1","2,5"."""
+        return self.delimiter == self.decimal == ","
+
+    @property
+    def table_decimal(self) -> str:
+        """Decimal mark of the table once its spelling is the usual one."""
+        return "." if self.is_quoted else self.decimal
 
 
 class Header(Strict):

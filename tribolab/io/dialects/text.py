@@ -169,7 +169,7 @@ class _Parser:
         self._convert: Arguments = {
             "include_columns": list(dict.fromkeys(self._wanted)),
             "null_values": ["", *dialect.text.missing],
-            "decimal_point": dialect.text.decimal,
+            "decimal_point": dialect.text.table_decimal,
             "check_utf8": False,
         }
 
@@ -261,7 +261,7 @@ class _Parser:
                 cell = cells[signal.place]
                 if str(signal.place) in self._dates:
                     continue
-                if cell not in missing and not _is_number(cell, self._dialect.text.decimal):
+                if cell not in missing and not _is_number(cell, self._dialect.text.table_decimal):
                     told = f"'{shown(cell, 40)}'" if is_table else "what stands there"
                     word = shown(cell, 40) if is_table else "..."
                     return (

@@ -10,6 +10,7 @@ from typing import Literal
 Mark = Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"]
 MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
 _ROWS = 4000  # lines that are looked at
+_NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
 _APART = "\t;"  # delimiters that part numbers whatever marks stand in them
 
 
@@ -26,8 +27,8 @@ def find_thousands(lines: Sequence[str]) -> Mark:
     --------
     >>> find_thousands(["1.234,5;2"]), find_thousands(["1,234.5,2"])
     ('.', '')
-    >>> find_thousands(['"1,234.5",2'])
-    ','
+    >>> find_thousands(['"1,234.5",2']), find_thousands(["0,25;1.234", "0,26;987"])
+    (',', '.')
     """
     for line in lines[:_ROWS]:
         apart = any(mark in line for mark in _APART)
@@ -38,6 +39,32 @@ def find_thousands(lines: Sequence[str]) -> Mark:
             number = rf"\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+{decimal}\d+"
             if re.search(rf'(?:^|[\t;"])\s*[+-]?{number}\s*(?:$|[\t;"])', line):
                 return mark
+    return _beside_decimals(lines[:_ROWS])
+
+
+def _beside_decimals(lines: Sequence[str]) -> Mark:
+    """Return the mark of whole numbers of thousands, where others have the other mark's decimals.
+
+    1.234 below 987 in a column of whole numbers, and beside 0,25, is no number with three decimals.
+    """
+    columns: dict[int, set[str]] = {}
+    for line in lines:
+        for place, cell in enumerate(re.split("[\t;]", line)):
+            if _NUMBER.fullmatch(cell):
+                columns.setdefault(place, set()).add(cell.strip(" +-"))
+    every = {cell for cells in columns.values() for cell in cells}
+    for mark, decimal in ((".", ","), (",", ".")):
+        plain = re.compile(rf"\d+{re.escape(decimal)}(?!\d{{3}}$)\d+")
+        whole = re.compile(rf"[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+")
+        if not any(plain.fullmatch(cell) for cell in every):
+            continue
+        marked = {cell for cell in every if mark in cell}
+        small = any(
+            cells & marked and any(cell.isdecimal() and len(cell) <= 3 for cell in cells)
+            for cells in columns.values()
+        )
+        if small and all(whole.fullmatch(cell) for cell in marked):
+            return "." if mark == "." else ","
     return ""
 
 

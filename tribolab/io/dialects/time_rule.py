@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.errors import shown
+from tribolab.errors import UnitError, shown
 from tribolab.io.dialects.checked_text import Pattern, Strict
 from tribolab.io.dialects.dates import Epoch, is_form
-from tribolab.units import positive, to_si
+from tribolab.units import positive
 
 
 class Time(Strict):
@@ -30,9 +31,16 @@ class Time(Strict):
         description="the column counts from a date, which tells when it was recorded: 'excel' "
         "(days since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
     )
-    rate: str | None = Field(None, description="sample rate with unit, e.g. '2 kHz'")
-    rate_pattern: Pattern | None = Field(None, description="group 1 is the rate in the preamble")
-    rate_unit: str = "Hz"
+    rate: str | None = Field(
+        None,
+        description="sample rate with unit, e.g. '2 kHz', or the interval of samples: '0.5 ms'",
+    )
+    rate_pattern: Pattern | None = Field(
+        None, description="group 1 is the rate, or the interval of samples, in the preamble"
+    )
+    rate_unit: str = Field(
+        "Hz", description="its unit; one of time ('ms') where it is the interval of samples"
+    )
     restart: Literal["error", "continue"] = Field(
         "error",
         description="'continue': where the clock starts anew (in a table, at a step, in a file), "
@@ -65,9 +73,35 @@ class Time(Strict):
                 f"'{shown(self.format)}'"
             )
         if self.rate:
-            to_si(self.rate, "Hz", "time.rate")
+            sampling_interval(self.rate, "time.rate")
         if self.wrap:
             positive(self.wrap, "s", "time.wrap")
         if bool(self.start_pattern) != bool(self.start_format):
             raise ValueError("start_pattern and start_format belong together")
         return self
+
+
+def sampling_interval(text: str, name: str) -> float:
+    """Return the time [s] between samples from their rate or from the interval itself.
+
+    Parameters
+    ----------
+    text
+        A number with a unit, of frequency or of time.
+    name
+        What it is called, for messages.
+
+    Raises
+    ------
+    UnitError
+        If it is neither.
+
+    Examples
+    --------
+    >>> sampling_interval("2 kHz", "rate"), sampling_interval("0.5 ms", "rate")
+    (0.0005, 0.0005)
+    """
+    if "Hz" not in text:  # a unit that does not fit is slow to refuse
+        with contextlib.suppress(UnitError):
+            return positive(text, "s", name)
+    return 1.0 / positive(text, "Hz", name)

@@ -1,0 +1,134 @@
+"""Numbers that instruments write where there is no value: -9999, 65535, 9.9E37.
+
+What is repeated exactly, is one of the numbers that programs choose for it, and stands far outside
+of all else in its column is no measurement. 9.9E37 and 9.91E37 are what SCPI instruments answer for
+an overload and for no number, 1.70141E+38 and 3.40282E+38 the largest numbers of old programs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.pieces import anywhere, pieces
+
+_NO_SIGNAL = 9.8e29  # in the file's own unit: beyond it a number is a mark, how rare it may be
+_NINES = (999.0, 9999.0, 99999.0, 999999.0, 9999999.0, 99999999.0)
+_MARKS = np.array(
+    [
+        *_NINES,
+        *(nines + part for nines in _NINES[:4] for part in (0.9, 0.99, 0.999)),
+        999.25,
+        *(32767.0, 32768.0, 65535.0, 8388607.0, 8388608.0, 16777215.0),
+        *(2147483647.0, 2147483648.0, 4294967295.0),
+    ]
+)
+_SINGLE = 2e-7  # relative: a number with single precision
+_TWICE = 2
+_OUTSIDE = 5.0  # times the largest other number
+_KINDS = 4  # marks of one column that are looked for
+
+
+class Marked(NamedTuple):
+    """A number that stands for no value, as the file writes it, and how often it does."""
+
+    number: float
+    rows: int
+
+    @property
+    def words(self) -> str:
+        """Both in words."""
+        times = "once" if self.rows == 1 else f"{self.rows} times"
+        return f"{self.number:.9g} {times}"
+
+
+def take_marks(
+    parts: Sequence[np.ndarray], scale: float = 1.0, offset: float = 0.0
+) -> list[Marked]:
+    """Put NaN where a number stands for no value.
+
+    Parameters
+    ----------
+    parts
+        A column, in pieces (row); changed in place.
+    scale, offset
+        What turned the file's numbers x into these: ``scale * x + offset``.
+
+    Returns
+    -------
+    list of Marked
+        What was taken for missing; empty for most columns.
+
+    Examples
+    --------
+    >>> column = np.array([1.0, -9999.0, 1.2, -9999.0, 9.9e37])
+    >>> [mark.words for mark in take_marks([column])], column.tolist()
+    (['-9999 2 times', '9.9e+37 once'], [1.0, nan, 1.2, nan, nan])
+    >>> take_marks([np.array([9998.0, 9999.0, 9999.0])])
+    []
+    """
+    taken: list[Marked] = []
+    for _ in range(_KINDS):
+        ends = [end for end in _ends(parts) if _may_be_mark((end - offset) / scale)]
+        if not ends:
+            break
+        rest = _largest_other(parts, ends, scale, offset)
+        marks = [mark for end in ends if (mark := _judged(end, parts, rest, scale, offset))]
+        if not marks:
+            break
+        taken += [Marked(number, count) for _, number, count in marks]
+        for end, _, _ in marks:
+            _without(parts, end)
+    return taken
+
+
+def _ends(parts: Sequence[np.ndarray]) -> list[float]:
+    """Lowest and highest number of a column; infinite ones are looked at elsewhere."""
+    filled = [part for part in parts if part.size]
+    ends = {float(np.fmin.reduce(part)) for part in filled}
+    ends |= {float(np.fmax.reduce(part)) for part in filled}
+    finite = [end for end in ends if np.isfinite(end)]
+    return sorted({min(finite), max(finite)}) if finite else []
+
+
+def _may_be_mark(number: float) -> bool:
+    size = abs(number)
+    return size > _NO_SIGNAL or bool((np.abs(_MARKS - size) <= _SINGLE * size).any())
+
+
+def _judged(
+    end: float, parts: Sequence[np.ndarray], rest: float, scale: float, offset: float
+) -> tuple[float, float, int] | None:
+    """Return a mark as it stands here and in the file, and its count; None for a measurement."""
+    number = (end - offset) / scale
+    count = sum(int((part[a:b] == end).sum()) for part in parts for a, b in pieces(0, part.size))
+    number = float(f"{number:.9g}")
+    if abs(number) > _NO_SIGNAL:
+        return end, number, count
+    far = np.isfinite(rest) and abs(number) >= _OUTSIDE * rest
+    return (end, number, count) if far and count >= _TWICE else None
+
+
+def _largest_other(
+    parts: Sequence[np.ndarray], ends: Sequence[float], scale: float, offset: float
+) -> float:
+    """Size of the largest other number, in the unit of the file; minus infinity for none."""
+    largest = -np.inf
+    for part in parts:
+        for first, last in pieces(0, part.size):
+            piece = part[first:last]
+            other = piece[np.isfinite(piece) & ~np.isin(piece, ends)]
+            if other.size:
+                largest = max(largest, float(np.abs((other - offset) / scale).max()))
+    return largest
+
+
+def _without(parts: Sequence[np.ndarray], number: float) -> None:
+    for part in parts:
+        if not anywhere(lambda piece: piece == number, part):
+            continue
+        for first, last in pieces(0, part.size):
+            piece = part[first:last]
+            piece[piece == number] = np.nan
