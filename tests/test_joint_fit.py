@@ -79,6 +79,30 @@ def test_the_derivatives_are_those_of_the_model(curves):
         np.testing.assert_allclose(slopes[:, k], (above - below) / 2e-5, atol=1e-6)
 
 
+def test_many_states_at_once_are_each_of_them_alone(curves):
+    """Also beyond the computed speeds, where each response goes on in its own way."""
+    parts = load_curves(curves, loads=LOADS[:2])
+    dry = LoadCurve("dry", "", 310.0, measured(np.full(13, 0.5)), constant_response(1e-6), dry=True)
+    points = points_of([*parts, dry]).points
+    every = [Curve(part.response, 0, np.log(part.load / REFERENCE)) for part in parts]
+    every.append(Curve(dry.response, 0, 0.3, dry=True))
+    model = JointModel(points, every, parameters_of(1, 1.4, PRIORS, [0.3]), REFERENCE)
+    rng = np.random.default_rng(5)
+    states = np.array([13.5, 0.03, -0.1, 0.4, 0.2]) + rng.normal(0, [1, 0.1, 0.3, 9, 1], (2, 4, 5))
+    value, slopes = model.predicted(states)
+    for place in np.ndindex(2, 4):
+        theta = states[place]
+        alone, alone_slopes = model.predicted(theta)
+        np.testing.assert_allclose(value[place], alone, rtol=1e-13)
+        np.testing.assert_allclose(slopes[place], alone_slopes, rtol=1e-13)
+        stress = theta[0] + theta[1] * (points.log_speed - np.log(1e-5))
+        for number, curve in enumerate(every):
+            mine = points.curve == number
+            fluid, _, area, _ = curve.response.at(points.log_speed[mine] + theta[3])
+            solid = np.exp(stress[mine] + theta[2] * curve.log_load + curve.dry * theta[4]) * area
+            np.testing.assert_allclose(alone[mine], np.log(fluid + solid), rtol=1e-12)
+
+
 def linear_model(rng):
     """Dry curves only: ln mu is linear in the parameters, all of which stay as they are said."""
     log_speed = np.tile(np.log(SPEEDS), 3)
@@ -254,9 +278,9 @@ def test_a_search_that_creeps_far_from_the_answer_does_not_end_the_fit(curves, m
         for part in load_curves(curves)
     ]
     whole = fit_loads(bent, 1.4).marginal("shear_stress").value
-    monkeypatch.setattr("tribolab.fit.joint.posterior._STEPS", 8)
+    monkeypatch.setattr("tribolab.fit.joint.modes._STEPS", 8)
     assert fit_loads(bent, 1.4).marginal("shear_stress").value == pytest.approx(whole, rel=1e-3)
-    monkeypatch.setattr("tribolab.fit.joint.posterior._STEPS", 3)
+    monkeypatch.setattr("tribolab.fit.joint.modes._STEPS", 3)
     with pytest.raises(AnalysisError, match="not found"):
         fit_loads(bent, 1.4)
 

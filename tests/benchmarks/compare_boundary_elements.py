@@ -1,9 +1,9 @@
 """Contact area and mean separation against exact numerics: boundary elements on random surfaces.
 
 Run with ``PYTHONPATH=. python tests/benchmarks/compare_boundary_elements.py [points] [seeds]
-[figure] [light seeds]``; 256 points, 2 seeds and 24 at light pressure take some twenty minutes. The
-numerics are the ContactMechanics package's (Polonsky and Keer's conjugate gradients on a periodic
-elastic half-space), installed with tribolab's extra ``test`` or by ``pip install
+[figure] [light seeds] [first seed]``; 256 points, 2 seeds and 24 at light pressure take some twenty
+minutes. The numerics are the ContactMechanics package's (Polonsky and Keer's conjugate gradients on
+a periodic elastic half-space), installed with tribolab's extra ``test`` or by ``pip install
 ContactMechanics``.
 
 Rigid random surfaces of five Hurst exponents with three roll-offs and no waves shorter than 8
@@ -179,7 +179,9 @@ def figure(ratios: Ratios, path: Path) -> None:
     fig.savefig(path, dpi=130)
 
 
-def main(points: int = 256, seeds: int = 2, path: str = "", light: int = 24) -> None:
+def main(
+    points: int = 256, seeds: int = 2, path: str = "", light: int = 24, first: int = 101
+) -> None:
     """Compare each spectrum; tables and the verdict."""
     try:
         import ContactMechanics
@@ -187,10 +189,11 @@ def main(points: int = 256, seeds: int = 2, path: str = "", light: int = 24) -> 
         raise SystemExit(
             "the ContactMechanics package is not installed: pip install ContactMechanics"
         ) from None
-    print(f"{points} x {points}, ContactMechanics {ContactMechanics.__version__}")
+    version = ContactMechanics.__version__
+    print(f"{points} x {points}, seeds from {first} on, ContactMechanics {version}")
     spectra = [(hurst, rolloff) for hurst in HURST for rolloff in ROLLOFFS]
     runs: dict[tuple[float, int], list[np.ndarray]] = {spectrum: [] for spectrum in spectra}
-    for number, seed in enumerate(range(101, 101 + max(seeds, light))):
+    for number, seed in enumerate(range(first, first + max(seeds, light))):
         start = time.perf_counter()
         pressures = len(REDUCED_PRESSURES) if number < seeds else LIGHT
         for i, (hurst, rolloff) in enumerate(spectra):
@@ -221,4 +224,4 @@ def main(points: int = 256, seeds: int = 2, path: str = "", light: int = 24) -> 
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    main(*map(int, words[:2]), *words[2:3], *map(int, words[3:4]))
+    main(*map(int, words[:2]), *words[2:3], *map(int, words[3:5]))

@@ -95,7 +95,7 @@ class DryContact(NamedTuple):
     name, load
         What the curve is called, and F_N/L [N/m].
     measured
-        Its data file.
+        What was measured of it.
     area, other_area
         Real contact area over the load [1/Pa], by the theory of the fit and by the other one.
     growth
@@ -106,7 +106,7 @@ class DryContact(NamedTuple):
 
     name: str
     load: float
-    measured: str
+    measured: xr.Dataset
     area: float
     other_area: float
     growth: float
@@ -141,7 +141,7 @@ def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
         DryContact(
             name=f"{_curve_name(task, dry.surface, force)} dry",
             load=float(load[k]),
-            measured=file,
+            measured=read_data(task.folder / file),
             area=float(at_rest[k] * ratio[k]),
             other_area=float(other[k] * ratio[k]),
             growth=float(1.0 if task.adhesion else within.value[k]),
@@ -189,31 +189,43 @@ def _priors(task: JointTask) -> JointPriors:
     return JointPriors(viscosity_spread=float(spread))
 
 
-def _wet(task: JointTask, name: str = "") -> list[LoadCurve]:
-    """Return the curves measured in the liquid with what is computed beside them.
+class _Beside(NamedTuple):
+    """A curve measured in the liquid, and what is computed beside it."""
 
-    `name` is that of the model: "" for the usual one, or `WITHOUT_FACTORS`, or of `OTHER_AREA`.
-    """
+    name: str
+    surface: str
+    load: float
+    measured: xr.Dataset
+    computed: xr.Dataset
+
+    def with_response(self, other_area: bool, friction_factors: bool) -> LoadCurve:
+        """Return it as a joint fit takes it, under one of the models that are compared."""
+        from tribolab.fit.joint.load_curve import LoadCurve
+        from tribolab.fit.joint.response import response_of
+
+        computed = self.computed
+        if other_area:
+            other = computed["friction_per_shear_stress_other"]
+            computed = computed.assign(friction_per_shear_stress=other)
+        response = response_of(computed, friction_factors=friction_factors)
+        return LoadCurve(self.name, self.surface, self.load, self.measured, response)
+
+
+def _wet(task: JointTask) -> list[_Beside]:
+    """Read the curves measured in the liquid, and what is computed beside them."""
     from tribolab.contact.geometry import LineContact
-    from tribolab.fit.joint.comparison import WITHOUT_FACTORS
-    from tribolab.fit.joint.load_curve import LoadCurve
-    from tribolab.fit.joint.response import response_of
 
     contact = LineContact(**task.contact)
     curves = []
     for model, file in zip(task.models, task.measured, strict=True):
         assert model.normal_force is not None  # else it were not in the plan
-        computed = _computed(task, model)
-        if name == other_area_name(task):
-            other = computed["friction_per_shear_stress_other"]
-            computed = computed.assign(friction_per_shear_stress=other)
         curves.append(
-            LoadCurve(
+            _Beside(
                 name=_curve_name(task, model.surface, model.normal_force),
                 surface=model.surface,
                 load=contact.load(model.normal_force),
                 measured=read_data(task.folder / file),
-                response=response_of(computed, friction_factors=name != WITHOUT_FACTORS),
+                computed=_computed(task, model),
             )
         )
     return curves
@@ -255,13 +267,17 @@ def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[
 
     priors = _priors(task)
     constant = replace(priors, speed_exponent=0.0, load_exponent=0.0)
-    wet, other = _wet(task), other_area_name(task)
-    usual = [*wet, *_dry(task, dry)]
+    beside = _wet(task)
+    wet, bare, other = (
+        [curve.with_response(other_area=area, friction_factors=factors) for curve in beside]
+        for area, factors in ((False, True), (False, False), (True, True))
+    )
+    usual = [*wet, *_dry(dry)]
     variants: dict[str, Variant] = {
         POWER_LAW: (usual, priors),
         CONSTANT: (usual, constant),
-        WITHOUT_FACTORS: ([*_wet(task, WITHOUT_FACTORS), *_dry(task, dry)], priors),
-        other: ([*_wet(task, other), *_dry(task, dry, other=True)], priors),
+        WITHOUT_FACTORS: ([*bare, *_dry(dry)], priors),
+        other_area_name(task): ([*other, *_dry(dry, other=True)], priors),
     }
     known = [factor for factor in task.enhancement if factor is not None and factor > 0]
     if len(known) == len(wet) and max(known) > 1.001:
@@ -269,12 +285,11 @@ def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[
             curve._replace(response=curve.response.enlarged(factor))
             for curve, factor in zip(wet, known, strict=True)
         ]
-        variants[ADHESIVE] = ([*larger, *_dry(task, dry, enlarged=True)], priors)
+        variants[ADHESIVE] = ([*larger, *_dry(dry, enlarged=True)], priors)
     return variants
 
 
 def _dry(
-    task: JointTask,
     contacts: Mapping[str, Sequence[DryContact]],
     *,
     other: bool = False,
@@ -289,7 +304,7 @@ def _dry(
             name=dry.name,
             surface=surface,
             load=dry.load,
-            measured=read_data(task.folder / dry.measured),
+            measured=dry.measured,
             response=constant_response(
                 (dry.other_area if other else dry.area) * (dry.growth if enlarged else 1.0)
             ),

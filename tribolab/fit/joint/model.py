@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from tribolab.fit.joint.priors import JointPriors
-from tribolab.fit.joint.response import Response
+from tribolab.fit.joint.response import Response, Responses
 
 SPEED = 1e-5  # m/s, v0: there sigma_0 and n are hardly correlated
 
@@ -111,7 +113,8 @@ def parameters_of(
     )
 
 
-class JointModel(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class JointModel:
     """Points, the curves computed beside them, the parameters, and F0 [N/m].
 
     Notes
@@ -132,45 +135,53 @@ class JointModel(NamedTuple):
     def predicted(
         self, theta: np.ndarray, at: Points | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return ln mu (point) and its derivatives (point, parameter).
+        """Return ln mu (..., point) and its derivatives (..., point, parameter).
 
         Parameters
         ----------
         theta
-            The parameters (parameter).
+            The parameters (..., parameter); further dims are as many states at once.
         at
             Other points than the measured ones.
         """
         points = self.points if at is None else at
-        where = self.parameters
-        value = np.empty(points.log_speed.size)
-        slopes = np.zeros((value.size, theta.size))
-        for number in np.unique(points.curve):
-            mine = points.curve == number
-            curve = self.curves[number]
-            s, away = curve.surface, points.log_speed[mine] - np.log(SPEED)
-            fluid, slope, area, area_slope = curve.response.at(
-                points.log_speed[mine] + theta[where.viscosity]
-            )
-            exponent = theta[where.stress[s]] + theta[where.speed[s]] * away
-            exponent = exponent + theta[where.load[s]] * curve.log_load
-            if curve.dry:
-                exponent = exponent + theta[where.dry[s]]
-            stress = np.exp(exponent)
-            friction = fluid + stress * area
-            share = stress * area / friction
-            value[mine] = np.log(friction)
-            slopes[mine, where.stress[s]] = share
-            slopes[mine, where.speed[s]] = share * away
-            slopes[mine, where.load[s]] = share * curve.log_load
-            slopes[mine, where.viscosity] = (slope + stress * area_slope) / friction
-            if curve.dry:
-                slopes[mine, where.dry[s]] = share
-        return value, slopes
+        design = self._design if at is None else self._design_of(at)
+        viscosity = self.parameters.viscosity
+        fluid, slope, area, area_slope = self._responses.at(
+            points.log_speed + theta[..., viscosity, None], points.curve
+        )
+        stress = np.exp(theta @ design.T)
+        friction = fluid + stress * area
+        slopes = (stress * area / friction)[..., None] * design
+        slopes[..., viscosity] = (slope + stress * area_slope) / friction
+        return np.log(friction), slopes
+
+    @functools.cached_property
+    def _responses(self) -> Responses:
+        return Responses.of([curve.response for curve in self.curves])
+
+    @functools.cached_property
+    def _design(self) -> np.ndarray:
+        return self._design_of(self.points)
+
+    def _design_of(self, points: Points) -> np.ndarray:
+        """Return the derivatives of ln of the shear stress, in which it is linear."""
+        where, number = self.parameters, points.curve
+        surface, log_load, dry = (
+            np.array([getattr(curve, name) for curve in self.curves])[number]
+            for name in ("surface", "log_load", "dry")
+        )
+        design = np.zeros((number.size, where.mean.size))
+        rows = np.arange(number.size)
+        design[rows, where.stress[surface]] = 1.0
+        design[rows, where.speed[surface]] = points.log_speed - np.log(SPEED)
+        design[rows, where.load[surface]] = log_load
+        design[rows[dry], where.dry[surface[dry]]] = 1.0
+        return design
 
     def without(self, left_out: np.ndarray) -> JointModel:
         """Return the model of all curves but some."""
-        return self._replace(points=self.points.without(left_out))
+        return replace(self, points=self.points.without(left_out))
 
 
 class Shared(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from tribolab.errors import AnalysisError
 _NEAR = 0.1  # of ln(eta v): of two computed points that lie closer one is enough
 _FEWEST = 5
 _FAR = 1.0  # of ln(eta v): over wider gaps a spline may be off by several percent
+_APART = 1e4  # between the knots of one response and those of the next, wider than any
 
 
 class Response(NamedTuple):
@@ -52,6 +54,56 @@ class Response(NamedTuple):
         solid = self.solid(inside)
         touch = solid > 0  # a spline may go under zero where the bodies part
         return fluid, slope, np.where(touch, solid, 0.0), np.where(touch, self.solid(inside, 1), 0)
+
+
+class Responses(NamedTuple):
+    """Several responses in one table, to be looked up at once.
+
+    Parameters
+    ----------
+    ends
+        Lowest and highest ln(eta v) of each (response, 2).
+    knots
+        Where their pieces begin, each response's moved `_APART` from the one before (piece).
+    begin
+        Where their pieces begin (piece).
+    pieces
+        Coefficients of ln f and of k, the cubic one first (4, 2, piece).
+    """
+
+    ends: np.ndarray
+    knots: np.ndarray
+    begin: np.ndarray
+    pieces: np.ndarray
+
+    @classmethod
+    def of(cls, responses: Sequence[Response]) -> Responses:
+        """Put responses together."""
+        begin = [response.solid.x[:-1] for response in responses]
+        moved = [_APART * number + part for number, part in enumerate(begin)]
+        pieces = [np.stack([r.log_fluid.c, r.solid.c], axis=1) for r in responses]
+        return cls(
+            np.array([(response.low, response.high) for response in responses]),
+            np.concatenate(moved),
+            np.concatenate(begin),
+            np.concatenate(pieces, axis=-1),
+        )
+
+    def at(self, place: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return f, df, k, dk of responses (point) at places ln(eta v) (..., point).
+
+        The same as `Response.at` of each.
+        """
+        low, high = self.ends[which].T
+        inside = np.minimum(np.maximum(place, low), high)
+        piece = np.searchsorted(self.knots, inside + _APART * which, side="right") - 1
+        x = (inside - self.begin[piece])[..., None, :]
+        a, b, c, d = np.moveaxis(self.pieces[:, :, piece], 1, -2)
+        log_fluid, solid = np.moveaxis(((a * x + b) * x + c) * x + d, -2, 0)
+        fluid_slope, solid_slope = np.moveaxis((3 * a * x + 2 * b) * x + c, -2, 0)
+        fluid = np.exp(log_fluid)
+        touch = solid > 0  # a spline may go under zero where the bodies part
+        return fluid, fluid * fluid_slope, np.where(touch, solid, 0.0), touch * solid_slope
 
 
 def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response:

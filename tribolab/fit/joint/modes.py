@@ -1,0 +1,161 @@
+"""The most probable parameters of a joint fit, at many sizes of the shared errors at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import lapack
+
+from tribolab.errors import AnalysisError
+from tribolab.fit.joint.model import JointModel, Shared
+
+_STEPS = 200
+_HOPELESS = 25.0  # of ln of odds
+_CLOSE = 1e-6  # of the decrement: a thousandth of a standard deviation
+_LEAPS = 10.0  # times of what a step should gain, that the search may gain at most
+_GAINED = 0.5  # of what a step should gain, below which shorter ones are tried
+_PARTS = (0.5, 0.25, 0.12, 0.03), (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)  # the latter if none is better
+
+
+class Modes(NamedTuple):
+    """The most probable parameters at sizes of shared errors, their covariance, evidence (mode).
+
+    The search for a mode may be given up, or creep: what it would still gain is `left`.
+    """
+
+    theta: np.ndarray
+    covariance: np.ndarray
+    log_evidence: np.ndarray
+    left: np.ndarray
+
+
+def modes_of(
+    model: JointModel, shared: Shared, sizes: np.ndarray, before: np.ndarray, start: np.ndarray
+) -> Modes:
+    """Return the modes for sizes of shared errors (level and correlated, mode).
+
+    `before` is ln of what is thought of each beforehand (mode). All at once, but for the largest,
+    from which they start: where much may be shared the mode is easily found.
+    """
+    alone = np.diag(model.points.error**2)
+    white = np.array(
+        [_whitening(alone + t**2 * shared.level + k**2 * shared.near) for t, k in sizes.T]
+    )
+    largest = _searched(model, white[-1:], before[-1:], start[None])
+    return _searched(model, white, before, np.repeat(largest.theta, len(white), axis=0))
+
+
+def _whitening(covariance: np.ndarray) -> np.ndarray:
+    """Return L^-1, with L L^T the covariance."""
+    lower, failed = lapack.dpotrf(covariance, lower=True)
+    if failed:
+        raise AnalysisError("the points' covariance is singular: two of them are one")
+    inverse, _ = lapack.dtrtri(lower, lower=True)
+    return np.asarray(inverse)
+
+
+class _State(NamedTuple):
+    """The points in units of their errors, at some parameters (mode)."""
+
+    theta: np.ndarray
+    residual: np.ndarray  # (mode, point)
+    jacobian: np.ndarray  # (mode, point, free parameter)
+    off: np.ndarray  # from the prior, in its standard deviations (mode, free parameter)
+    size: np.ndarray  # sum of squares of both
+
+    def at(self, which: np.ndarray) -> _State:
+        """Return some of them."""
+        return _State(*(part[which] for part in self))
+
+    def put(self, which: np.ndarray, other: _State) -> None:
+        """Put others in the place of some of them."""
+        for mine, part in zip(self, other, strict=True):
+            mine[which] = part
+
+
+def _looked_at(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _State:
+    where = model.parameters
+    free = where.spread > 0
+    value, slopes = model.predicted(theta)
+    off = (theta - where.mean)[:, free] / where.spread[free]
+    residual = (white @ (model.points.log_friction - value)[..., None])[..., 0]
+    size = (residual**2).sum(axis=1) + (off**2).sum(axis=1)
+    return _State(theta, residual, white @ slopes[..., free], off, size)
+
+
+def _searched(model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray) -> Modes:
+    """Find the most probable parameters of each by Gauss-Newton, a step being shortened at need.
+
+    A mode that is out of the question beside the best is not followed to its end.
+    """
+    where = model.parameters
+    free = where.spread > 0
+    scale = where.spread[free]
+    state = _looked_at(model, white, np.where(free, start, where.mean))
+    constant = np.log(np.diagonal(white, axis1=1, axis2=2)).sum(axis=1) - np.log(scale).sum()
+    constant -= 0.5 * state.residual.shape[1] * np.log(2 * np.pi)
+    evidence, left = np.empty(len(white)), np.zeros(len(white))
+    normal = np.empty((len(white), scale.size, scale.size))
+    todo = np.arange(len(white))
+    for number in range(_STEPS):
+        now = state.at(todo)
+        normal[todo] = now.jacobian.transpose(0, 2, 1) @ now.jacobian + np.diag(scale**-2.0)
+        uphill = (now.residual[:, None] @ now.jacobian)[:, 0] - now.off / scale
+        step = np.zeros_like(now.theta)
+        step[:, free] = np.linalg.solve(normal[todo], uphill[..., None])[..., 0]
+        left[todo] = (uphill * step[:, free]).sum(axis=1)
+        volume = np.linalg.slogdet(normal[todo])[1]
+        evidence[todo] = constant[todo] - 0.5 * (now.size + volume)
+        close = left[todo] < _CLOSE
+        state.theta[todo[close]] += step[close]
+        left[todo[close]] = 0.0
+        chance = evidence + before
+        hopeless = chance[todo] + _LEAPS * left[todo] < chance.max() - _HOPELESS
+        going = ~(close | (hopeless & (number > 0)))
+        todo, step = todo[going], step[going]
+        if not todo.size:
+            break
+        stuck = _moved(model, white, state, todo, step, left[todo])
+        left[todo[stuck]] = 0.0  # the rounding of the sums is reached
+        todo = todo[~stuck]
+    spread = np.zeros((*start.shape, start.shape[1]))
+    spread[:, free[:, None] & free] = np.linalg.inv(normal).reshape(len(white), -1)
+    return Modes(state.theta, spread, evidence, left)
+
+
+def _moved(
+    model: JointModel,
+    white: np.ndarray,
+    state: _State,
+    which: np.ndarray,
+    step: np.ndarray,
+    expected: np.ndarray,
+) -> np.ndarray:
+    """Move some states by a step, or by the part of it that is best; say which cannot be moved.
+
+    Parameters
+    ----------
+    which
+        Their places in `state` (moved).
+    step, expected
+        Where Gauss and Newton go, and by how much the size should fall (moved).
+    """
+    before, white = state.at(which), white[which]
+    best = _looked_at(model, white, before.theta + step)
+    # a step that gains much less than it should goes too far, or not far enough
+    short = np.flatnonzero(before.size - best.size < _GAINED * expected)
+    for parts in _PARTS:
+        if not short.size:
+            break
+        tried = [
+            _looked_at(model, white[short], before.theta[short] + part * step[short])
+            for part in parts
+        ]
+        for other in tried:
+            better = other.size < best.size[short]
+            best.put(short[better], other.at(better))
+        short = short[best.size[short] >= before.size[short]]
+    stuck = best.size >= before.size
+    state.put(which[~stuck], best.at(~stuck))
+    return np.asarray(stuck)
