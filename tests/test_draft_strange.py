@@ -320,3 +320,86 @@ def test_whole_numbers_of_thousands_beside_decimals_are_read_and_others_are_not(
     file = written(tmp_path / "b.csv", head, times, force, force, "500", delimiter=";")
     with pytest.raises(tl.TribolabError):
         tl.read(file)
+
+
+def every(step, cells, number="{:.4f}"):
+    return [number.format(x) if n % step == 0 else "" for n, x in enumerate(cells)]
+
+
+def test_signals_of_two_rates_in_one_table_are_brought_together(tmp_path):
+    load = LOAD + 20 * np.sin(T / 3)
+    head = "Time [s],Friction [mN],Load [mN],Speed [mm/s]"
+    file = written(tmp_path / "a.csv", head, T, 0.25 * load, every(5, load), every(10, SPEED))
+    run = tl.read(file)
+    assert "every 5th row" in run.attrs["interpolated"] and run.attrs["rows_in_file"] == N
+    mu = run.friction_force / run.normal_force
+    assert run.sizes["time"] == N - 9 and np.isfinite(mu).all()
+    np.testing.assert_allclose(mu, 0.25, rtol=1e-3)
+    # friction is the slower one: its own rows are kept, and no value of it is made up
+    file = written(tmp_path / "b.csv", head, T, every(5, 0.25 * load), load, SPEED)
+    run = tl.read(file)
+    assert run.sizes["time"] == N / 5 == N - run.attrs["rows_without_friction"]
+    np.testing.assert_allclose(run.friction_force / run.normal_force, 0.25, rtol=1e-4)
+
+
+def test_values_that_are_missing_at_random_stay_so(tmp_path):
+    lost = np.random.default_rng(3).random(N) < 0.6
+    cells = ["" if gone else f"{x:.4f}" for gone, x in zip(lost, LOAD, strict=True)]
+    head = "Time [s],Friction [mN],Load [mN],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, cells, SPEED))
+    assert "interpolated" not in run.attrs
+    np.testing.assert_array_equal(np.isnan(run.normal_force), lost)
+
+
+def test_rows_with_the_newest_first_are_turned_round(tmp_path):
+    head = "Time [s],Friction [mN],Load [mN],Speed [mm/s]"
+    back = slice(None, None, -1)
+    file = written(tmp_path / "a.csv", head, T[back], FRICTION[back], LOAD[back], SPEED[back])
+    run = tl.read(file)
+    assert run.attrs["rows_turned_round"]
+    np.testing.assert_allclose(run.time, T, atol=1e-9)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * FRICTION, atol=1e-6)
+    head = head.replace("Time", "Time left")
+    assert "turned round" in asked(
+        written(tmp_path / "b.csv", head, T[back], FRICTION, LOAD, SPEED)
+    )
+
+
+@pytest.mark.parametrize("unit", ["counts", "digits", "LSB"])
+def test_what_a_count_is_worth_is_asked(unit, tmp_path):
+    """Counts of both channels would be a coefficient of friction, and a wrong one."""
+    head = f"Time [s],Friction [{unit}],Load [{unit}],Speed [mm/s]"
+    told = asked(written(tmp_path / "a.csv", head, T, 7 * FRICTION, 9 * LOAD, SPEED))
+    assert told.count("what is one count?") == 2
+
+
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [("COF x100", "'x100'"), ("mu [x1000]", "'x1000'"), ("COF*10^3", "'*10^3'")],
+)
+def test_a_factor_in_a_name_is_asked_about(column, words, tmp_path):
+    head = f"Time [s],{column},Load [mN],Speed [mm/s]"
+    assert words in asked(written(tmp_path / "a.csv", head, T, 25 + 0 * T, LOAD, SPEED))
+
+
+def test_a_lever_above_the_table_is_asked_about(tmp_path):
+    head = "Lever ratio: {}\nTime [s],Friction [mN],Load [mN],Speed [mm/s]"
+    told = asked(written(tmp_path / "a.csv", head.format(3), T, FRICTION, LOAD, SPEED))
+    assert "not times 'Lever ratio: 3'" in told
+    tl.read(written(tmp_path / "b.csv", head.format(1), T, FRICTION, LOAD, SPEED))
+
+
+def test_the_mean_goes_before_the_extremes_and_these_alone_are_asked_about(tmp_path):
+    head = "Time [s],Max friction coefficient,Mean friction coefficient,Load [mN],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, 0.9, 0.25, LOAD, SPEED))
+    np.testing.assert_allclose(run.friction_coefficient, 0.25)
+    head = "Time [s],Peak friction force [mN],Load [mN],Speed [mm/s]"
+    assert "extremes" in asked(written(tmp_path / "b.csv", head, T, FRICTION, LOAD, SPEED))
+
+
+@pytest.mark.parametrize("unit", ["1/min", "U/min", "min-1", "rev/s"])
+def test_a_speed_in_turns_is_one_of_rotation(unit, tmp_path):
+    head = f"Track radius: 20 mm\nTime [s],Friction [mN],Load [mN],Speed [{unit}]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60))
+    per_second = 60 if unit == "rev/s" else 1
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 20e-3 * per_second, rtol=1e-6)

@@ -17,7 +17,8 @@ class DraftColumn(NamedTuple):
 
     `name` is None where the reader has to find it by `place` (from 1). `unit` is what the dialect
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
-    `group` is that of a TDMS channel.
+    `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
+    be said.
     `options` is what it may be instead, where something is guessed; `form` that of its dates.
     """
 
@@ -37,6 +38,7 @@ class DraftColumn(NamedTuple):
     fill_in: str = ""
     form: str = ""
     group: str = ""
+    counted: bool = False
 
     @property
     def read_unit(self) -> str | None:

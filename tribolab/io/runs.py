@@ -15,6 +15,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 from tribolab.io.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.io.content.model import Content
+from tribolab.io.content.newest_first import oldest_first
 from tribolab.io.content.read import read_content
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.derived import add_derived
@@ -36,6 +37,7 @@ from tribolab.io.row_counts import (
     with_companion_rows,
 )
 from tribolab.io.speed import add_speed, keep_settings
+from tribolab.io.two_rates import sampled_together
 from tribolab.io.zero_reading import take_zeros
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
@@ -256,6 +258,7 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
     contents = [read_content(path, dialect, size) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
+    contents = [oldest_first(content) for content in contents]
     starts = [content.pieces[0].started for content in contents]
     dated = [(start, content) for start, content in zip(starts, contents, strict=True) if start]
     if len(dated) == len(contents):
@@ -274,6 +277,8 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
         time = chosen(time, mended.keep)
         for name in columns:  # one by one, so that what is left out does not stay in memory
             columns[name] = chosen(columns[name], mended.keep)
+    rows = len(time)
+    time, columns, together = sampled_together(columns, time)
     origin = float(time[0])
     time -= origin
     rules = {column.key: column.zero for column in dialect.column if column.zero}
@@ -289,7 +294,7 @@ def _run(logs: Logs, zero: str | None = None) -> xr.Dataset:
     add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
-    attrs |= row_attributes(len(time), contents, mended, dialect)
+    attrs |= row_attributes(rows, contents, mended, dialect) | together
     if "joined" in joined:
         attrs["clock_joined"] = str(joined["joined"])
     data = xr.Dataset(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 import numpy as np
 
 from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
-from tribolab.draft.columns.words import SURE, Match, is_axis, squeezed
+from tribolab.draft.columns.words import SURE, Match, is_axis, is_count, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
@@ -27,11 +28,14 @@ SIGNALS = {
 _CHANNELS = {"friction_force", "normal_force", "friction_coefficient"}
 _DECIDING = _CHANNELS | {"sliding_velocity", "rotation_speed"}
 # of two columns for a quantity the measured one counts, and what was set or worked out gives way
-_WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5}
+_WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5, "extreme": 0.4}
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
 _NOISE = 0.1  # of the highest load, what a sensor without a load shows
 _ACROSS = {"fy"}
+_FACTOR = re.compile(
+    r"[x×*·]?\s*\b10\s*\^\s*-?\d+|[x×*·]\s*1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
+)
 _APART = 0.01  # relative difference of two columns that do not hold the same
 # beside friction: which of several such columns is taken changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
@@ -128,6 +132,7 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
 
     def size(rival: _Proposal) -> float:
         unit, si_unit = bare[rival.place][1], quantity(rival.option.quantity).unit
+        unit = None if unit is not None and is_count(unit) else unit
         scale = unit_conversion(rival.option.unit or unit or si_unit, rival.option.quantity)[0]
         values = np.abs(numbers[:, rival.place])
         moving = values[np.isfinite(values) & (values > 0)]
@@ -271,7 +276,14 @@ def _column(
         written = option.unit
         guessed.append(f"'{shown(unit)}' means {option.unit}")
     fill_in = ""
-    if unit is None and si_unit not in ("", "1"):
+    if role_of(bare[0]) == "extreme" and option.quantity in _CHANNELS:
+        guessed.append("by its name it is not the signal but its extremes or scatter")
+    if factor := _FACTOR.search(column.label):
+        guessed.append(f"'{factor[0]}' in its name changes no number")
+    if unit is not None and is_count(unit):
+        fill_in = f"what one count of '{shown(column.label)}' ({option.quantity}) is, e.g. "
+        fill_in += f'"0.5 m{si_unit}"'
+    elif unit is None and si_unit not in ("", "1"):
         if option.quantity == "time":
             written = time_unit(values)
             guessed.append(f"time is in {written}")

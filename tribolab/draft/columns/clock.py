@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tribolab.draft.columns.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
+from tribolab.io.content.newest_first import is_newest_first
 from tribolab.io.dialects.headers import split_name
 from tribolab.quantities import unit_conversion
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from tribolab.draft.model import DraftColumn
 
 _DAY, _HOUR = 86400.0, 3600.0  # [s]
+_REMAINING = re.compile(r"left|remain|rest|countdown|togo|verbleib|restante|剩余|残り")
 _INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
 OnRepeat = Literal["", "drop", "interpolate"]
 
@@ -52,6 +55,13 @@ def find_clock(
     if column is None:
         return "", False, columns
     time = numbers[:, column.place - 1] * unit_conversion(column.read_unit or "s", "time")[0]
+    if len(layout.blocks) == 1 and is_newest_first(time):
+        counts_down = _REMAINING.search(squeezed(split_name(column.label)[0])) is not None
+        told = "the newest row comes first, and the rows are turned round"
+        column = column._replace(
+            note="" if counts_down else told, guessed=(told,) if counts_down else column.guessed
+        )
+        return "", False, [column if c.place == column.place else c for c in columns]
     edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
     parts = list(zip(edges[:-1], edges[1:], strict=True))
     ends = [(time[b - 1], time[b]) for b in edges[1:-1]]

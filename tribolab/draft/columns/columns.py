@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
-from tribolab.draft.columns.values import find_pitch, find_sampling
-from tribolab.draft.columns.words import matches, split_unit
+from tribolab.draft.columns.values import find_levers, find_pitch, find_sampling
+from tribolab.draft.columns.words import COUNTS, is_count, matches, split_unit
 from tribolab.draft.file.header import is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
@@ -34,7 +34,10 @@ def understand(layout: Layout) -> Understood:
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)
     pitch = find_pitch(layout)
-    guesses: list[str] = []
+    guesses = [
+        f"the load is read as it stands, not times '{shown(value.text, 40)}'"
+        for value in find_levers(layout)
+    ]
     if _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=pitch is not None)
     elif pitch is not None and layout.width == 1:
@@ -42,7 +45,8 @@ def understand(layout: Layout) -> Understood:
     else:
         from tribolab.draft.columns.behaviour import by_behaviour
 
-        kind, columns, guesses = by_behaviour(columns, numbers)
+        kind, columns, behaving = by_behaviour(columns, numbers)
+        guesses += behaving
     columns = _dated(columns, layout, numbers, text)
     columns = [
         column._replace(
@@ -184,11 +188,13 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
-        if unit in _PURE or (unit is not None and not is_unit(unit)):
+        if unit in _PURE or not (unit is None or is_unit(unit) or is_count(unit)):
             unit = None  # brackets around something else
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None
             unit = None if unit in _PURE else unit
+        counted = unit is not None and is_count(unit)
+        unit = None if counted else unit
         seen[name] = seen.get(name, 0) + 1
         known = name if name and heading and heading.aligned else None
         columns.append(
@@ -199,6 +205,7 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
                 seen[name] if known else 1,
                 file_unit=unit,
                 unit=above.get(place) if unit is None else None,
+                counted=counted,
             )
         )
     return columns
@@ -211,6 +218,8 @@ def _bare(column: DraftColumn) -> Bare:
         return name, column.unit, True
     if column.file_unit is not None:
         return name, column.file_unit, column.name is None
+    if column.counted:
+        return name, COUNTS, False
     name, unit = split_unit(name)
     return name, unit, unit is not None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Literal
 
-Role = Literal["", "set", "measured", "derived"]
+Role = Literal["", "set", "measured", "derived", "extreme"]
 _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _SET = frozenset(
     "set setpoint setp sp soll sollwert target nominal nom command commanded cmd demand demanded "
@@ -16,8 +16,12 @@ _MEASURED = frozenset(
     "réelle medida medido misurata misurato feedback".split()
 )
 _DERIVED = frozenset(
-    "filtered filt smoothed average averaged avg mean max min maximum minimum peak std stdev rms "
+    "filtered filt smoothed average averaged avg mean rms "
     "median gefiltert mittel mittelwert filtré filtrée moyenne media".split()
+)
+_EXTREME = frozenset(
+    "max min maximum minimum peak std stdev sd spitze spitzenwert streuung massimo minimo máximo "
+    "mínimo pic crête breakaway static haft".split()
 )
 _ROLES: tuple[tuple[Role, frozenset[str], re.Pattern[str]], ...] = (
     ("set", _SET, re.compile(r"^(?:soll|nenn)\w{3}|设定|設定|目标|目標|指令")),
@@ -26,7 +30,8 @@ _ROLES: tuple[tuple[Role, frozenset[str], re.Pattern[str]], ...] = (
         _MEASURED,
         re.compile(r"^ist(?:kraft|last|wert|geschw|dreh|moment)|实际|实测|実測"),
     ),
-    ("derived", _DERIVED, re.compile(r"平均|最大|最小")),
+    ("extreme", _EXTREME, re.compile(r"最大|最小")),
+    ("derived", _DERIVED, re.compile(r"平均")),
 )
 
 
@@ -35,6 +40,8 @@ def role_of(name: str) -> Role:
 
     >>> role_of("Velocity setpoint"), role_of("ActualSpeed"), role_of("Mean COF"), role_of("Offset")
     ('set', 'measured', 'derived', '')
+    >>> role_of("Peak force")
+    'extreme'
     """
     tokens = [token.lower() for token in _TOKENS.findall(name)]
     for role, words, compound in _ROLES:

@@ -42,6 +42,9 @@ _PITCH = re.compile(
     r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
 )
 _RADIUS = re.compile("radius|rayon|radio|raggio")
+_LEVER = re.compile(
+    r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
+)
 _OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
 # of the track, not of a ball or a disc
 _DIAMETER = re.compile(
@@ -135,6 +138,23 @@ def find_sampling(layout: Layout) -> Sampling | None:
             kind, si_unit = ("interval of samples", "s") if interval else ("sample rate", "Hz")
             return Sampling(value, si_unit, f"'{value.text}' is the {kind} in {si_unit}")
     return None
+
+
+def find_levers(layout: Layout) -> list[DraftValue]:
+    """Return the ratios of levers before the table, but those of one.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    levers = []
+    for value in find_values(layout):
+        said = _said(value.text)
+        if said and value.unit is None and _LEVER.search(squeezed(said["key"])):
+            number = float(said["number"].replace(",", "."))
+            levers += [value] if number != 1 else []
+    return levers
 
 
 def words_said(layout: Layout) -> list[tuple[str, str]]:

@@ -32,6 +32,8 @@ _UNIT_WORDS = {
     **dict.fromkeys(("minuten", "minutos", "minuti"), "min"),
     **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
 }
+COUNTS = "counts"
+_COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc increments".split())
 _AS_SET = {"sliding_velocity": "set_speed"}  # a speed that was set is not how fast it slid
 
 
@@ -99,6 +101,15 @@ def split_unit(label: str) -> tuple[str, str | None]:
     return label, None
 
 
+def is_count(unit: str) -> bool:
+    """Whether a unit is that of a converter's counts, which says nothing of what one is worth.
+
+    >>> is_count("Counts"), is_count("N")
+    (True, False)
+    """
+    return unit.lower() in _COUNTS
+
+
 def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     """Return the quantities that a column may hold, the likeliest first.
 
@@ -107,7 +118,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     name
         Name of the column without its unit.
     unit
-        Its unit; None if it has none. A quantity of another dimension is left out.
+        Its unit; None if it has none. A quantity of another dimension is left out; counts of a
+        converter may be any but a pure number.
     scan
         Whether the file holds a profile and not a run.
 
@@ -121,7 +133,9 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     if not text:
         return []
     options = []
-    alone = unit is not None and not scan and _kinds(unit) == 1
+    counted = unit is not None and is_count(unit)
+    alone = unit is not None and not scan and not counted and _kinds(unit) == 1
+    turns = unit is not None and not scan and converts(unit, "Hz")
     role = "" if scan else role_of(name)
     plain = squeezed(without_role(name)) if role in ("set", "measured") else ""
     for word in SCAN_WORDS if scan else RUN_WORDS:
@@ -129,9 +143,11 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         score = max(score, _score(plain, word) if plain else 0.0)
         known = quantity(word.quantity)
         read_as = _MEANT.get(known.unit, {}).get(unit or "")
-        if score and (unit is None or converts(read_as or unit, known.unit, known.bare)):
+        fits = unit is None or converts(read_as or unit, known.unit, known.bare)
+        if score and (known.unit != "1" if counted else fits):
             # what only this quantity is measured in tells it, whatever else the name says
-            score = SURE + (1 - SURE) * score if alone else score
+            told = alone or (turns and word.quantity == "rotation_speed")
+            score = SURE + (1 - SURE) * score if told else score
             held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
             options.append(Match(held, score, read_as))
     best: dict[str, Match] = {}

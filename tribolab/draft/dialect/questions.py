@@ -96,7 +96,8 @@ def _of_column(column: DraftColumn) -> Question:
     about = f"column {column.place}" + (f" '{shown(column.label, 30)}'" if column.label else "")
     guess = "; ".join(column.guessed)
     if column.fill_in:
-        unsaid = f"{column.quantity}, in which unit?"
+        asks = "what is one count?" if column.counted else "in which unit?"
+        unsaid = f"{column.quantity}, {asks}"
         guess = f"{guess}; {unsaid}" if guess else unsaid
     return Question(about, guess, tuple(dict.fromkeys(column.options)))
 
