@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab.cli import app
 from tribolab.errors import ReadError
-from tribolab.io.clocks.basis import play as play_of_the_fit
+from tribolab.io.clocks.basis import Play
 from tribolab.io.clocks.merge import merge
 from tribolab.io.clocks.motion import clean_motion
 from tribolab.qc.run.checks import check_run
@@ -37,7 +37,7 @@ def test_a_shift_that_is_told_lies_within_three_standard_errors(kind):
 
 def test_slack_follows_its_closed_form():
     x = np.concatenate([np.arange(0.0, 5.0, 0.125), np.arange(5.0, -5.0, -0.125)])
-    for follow in (play, play_of_the_fit):
+    for follow in (play, lambda at, half: Play(at).followed(half)):
         driven = follow(x, 1.0)
         back = driven[40:]  # 2 m of slack, then as far behind as before on the other side
         np.testing.assert_allclose(driven[8:40], x[8:40] - 1.0)

@@ -52,9 +52,10 @@ class Basis:
         self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
         self._kept = _kept(len(time), self.events)
         self.rows = time[self._kept]
-        self.models: list[tuple[str, Array]] = []
+        self.models: list[tuple[str, Array]] = []  # (column, row)
+        table = Play(path)
         for slack in (0.0, *SLACKS):
-            driven = play(path, 0.5 * min(slack * self.longest, _LARGEST_SLACK))
+            driven = table.followed(0.5 * min(slack * self.longest, _LARGEST_SLACK))
             velocity = np.gradient(driven, time) if slack else motion.velocity
             self.models.append((f"slack {slack:g}", self._after(velocity, driven)))
         self.models.append(("before", self._before(motion.velocity, way, path)))
@@ -62,7 +63,8 @@ class Basis:
     def _after(self, velocity: Array, path: Array) -> Array:
         """List what happens to the force once the table has moved."""
         lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
-        stops = ((path - play(path, r)) / r for r in lengths)
+        moved = Play(path)
+        stops = ((path - moved.followed(r)) / r for r in lengths)
         way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
         return self._table(chain([last], stops, self._more(velocity, way, last)))
@@ -72,15 +74,13 @@ class Basis:
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
         lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
         ramps = (self._ramps(velocity, way, last, r) for r in lengths)
-        stop = (path - play(path, lengths[-3])) / lengths[-3]
+        stop = (path - Play(path).followed(lengths[-3])) / lengths[-3]
         return self._table(chain(ramps, [stop], self._more(velocity, way, last)))
 
     def _table(self, columns: Iterable[Array | Ways]) -> Array:
-        """Put columns side by side, each at most 1."""
-        kept = [np.asarray(column[self._kept], float) for column in columns]
-        table: Array = np.stack(kept, axis=1)
-        table /= np.maximum(np.abs(table).max(axis=0), 1e-300)
-        return table
+        """Put columns below one another, each at most 1."""
+        kept = (np.asarray(column[self._kept], float) for column in columns)
+        return np.stack([k / max(k.max(), -k.min(), 1e-300) for k in kept])
 
     def _more(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
         """Give what goes with the speed, what relaxes at rest, and the inertia."""
@@ -132,13 +132,13 @@ def _path(time: Array, velocity: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64]:
+def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
     """Rows of a motion log that are looked at: of a long one all near events, some of the others.
 
     A table of all would take a hundred times the memory of the log itself.
     """
     if count <= _MOST_ROWS:
-        return np.arange(count)
+        return slice(None)
     near = _MOST_ROWS // (4 * max(len(events), 1))
     kept = np.zeros(count, dtype=bool)
     kept[:: -(-2 * count // _MOST_ROWS)] = True
@@ -164,20 +164,26 @@ def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
         yield last * np.interp(held, knots, hat)
 
 
-def play(position: Array, half: float) -> Array:
-    """Follow a position with slack: what is driven stays within `half` of the driver.
+class Play:
+    """Follows a position with slack: what is driven stays within half of it of the driver.
 
-    >>> play(np.array([0.0, 3.0, 1.0, -3.0]), 1.0).tolist()
+    >>> Play(np.array([0.0, 3.0, 1.0, -3.0])).followed(1.0).tolist()
     [0.0, 2.0, 2.0, -2.0]
     """
-    # a turning point still belongs to the way that led to it
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
-    edges = np.concatenate([[0], turns, [len(position)]])
-    out, last = np.empty_like(position), float(position[0])
-    for first, end in zip(edges[:-1], edges[1:], strict=True):
-        at = position[first:end]
-        lower, upper = at - half, at + half
-        rising = at[-1] >= (position[first - 1] if first else at[0])
-        out[first:end] = np.maximum(last, lower) if rising else np.minimum(last, upper)
-        last = float(out[end - 1])
-    return out
+
+    def __init__(self, position: Array):
+        self.position = position
+        # a turning point still belongs to the way that led to it
+        turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
+        self._first = np.concatenate([[0], turns])
+        self._ends = position[np.append(turns, len(position)) - 1].tolist()
+
+    def followed(self, half: float) -> Array:
+        """Return the position of what is driven with so much slack on either side."""
+        last, before = float(self.position[0]), []
+        for end in self._ends:  # one way from turn to turn: the ends tell all
+            before.append(last)
+            last = min(max(last, end - half), end + half)
+        out = np.repeat(before, np.diff(self._first, append=len(self.position)))
+        np.maximum(out, self.position - half, out=out)
+        return np.minimum(out, self.position + half, out=out)

@@ -12,6 +12,8 @@ for friction builds up over a distance after each start and stays on at rest.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +31,7 @@ _LEAST_CONTRAST = 0.1
 _ALMOST_NOTHING = 1e-3
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 _RIVALS = 8  # other peaks, at most
+_LASTING = 12  # times as many changes as classes: then these are summed as they last
 
 
 class Coarse(NamedTuple):
@@ -81,28 +84,20 @@ def coarse_shift(
     cell = max(spans) / _GRID
     cells = [int(span / cell) + 1 for span in spans]
     where = ((force_time - force_time[0]) / cell).astype(np.int64)
-    sums = [np.bincount(where, weights=w, minlength=cells[0]) for w in (None, force, force**2)]
+    weights = (np.ones(len(force)), force, force**2)
+    sums = [np.asarray(np.bincount(where, w, cells[0]), dtype=float) for w in weights]
     grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
     on_grid = classes[np.clip(np.searchsorted(motion_time, grid) - 1, 0, None)]
 
-    length = next_fast_len(cells[0] + cells[1], real=True)
-    count, total, square = (rfft(s.astype(float), length) for s in sums)
-    everywhere = np.conj(rfft(np.ones(cells[1]), length))
-    number = irfft(count * everywhere, length)
-    whole = irfft(total * everywhere, length)
-    squares = irfft(square * everywhere, length)
-    between = np.zeros(length)
-    for k in np.unique(on_grid):
-        here = np.conj(rfft((on_grid == k).astype(float), length))
-        n_k, s_k = irfft(count * here, length), irfft(total * here, length)
+    lags, (number, whole, squares), by_class = _by_lag(sums, on_grid)
+    between = np.zeros(len(lags))
+    for n_k, s_k in by_class:
         between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
     enough = number >= _OVERLAP * number.max()
     mean_part = whole**2 / np.maximum(number, 0.5)
     spread = np.maximum(squares - mean_part, 1e-9)
     explained = np.where(enough, (between - mean_part) / spread, -np.inf)
 
-    lags = np.arange(length)
-    lags = np.where(lags < cells[0], lags, lags - length)
     shifts = lags * cell + force_time[0] - motion_time[0]
     best = explained.max()
     usual = np.median(explained[enough])
@@ -122,6 +117,64 @@ def coarse_shift(
         if all(abs(shift - other) > max(apart, 8.0 * cell) for other in (chosen, *rivals)):
             rivals.append(shift)
     return Coarse(chosen, 2.0 * cell, np.array(rivals))
+
+
+def _by_lag(
+    sums: list[Array], classes: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
+    """Sum what lies below a grid of classes that is shifted by so many cells.
+
+    Parameters
+    ----------
+    sums
+        Number of the samples, their sum and that of their squares (cell).
+    classes
+        On the other grid (cell).
+
+    Returns
+    -------
+    lags, whole, by_class
+        All shifts [cells], the three sums below the whole grid (lag), and number and sum below
+        each of its classes (lag).
+
+    Notes
+    -----
+    A class that lasts is a difference of two cumulative sums; where the classes change all the
+    time, it is a cross-correlation by FFT.
+    """
+    wide, cells = len(classes), len(sums[0])
+    lags = np.arange(-wide, cells)
+    ends = np.flatnonzero(np.diff(classes, prepend=-1, append=-1))
+    piled = [np.concatenate([np.zeros(wide + 1), np.cumsum(s)]) for s in sums]
+    piled = [np.concatenate([p, np.full(wide, p[-1])]) for p in piled]
+
+    def below(p: Array, first: int, last: int) -> Array:
+        return p[last : last + len(lags)] - p[first : first + len(lags)]
+
+    whole = [below(p, 0, wide) for p in piled]
+    values = np.unique(classes).tolist()
+    if len(ends) > _LASTING * len(values):
+        return lags, whole, _correlated_classes(sums[:2], classes, lags)
+    spans = list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
+
+    def by_class() -> Iterator[tuple[Array, Array]]:
+        for k in values:
+            own = [span for span in spans if classes[span[0]] == k]
+            number, total = (reduce(np.add, (below(p, *span) for span in own)) for p in piled[:2])
+            yield number, total
+
+    return lags, whole, by_class()
+
+
+def _correlated_classes(
+    sums: list[Array], classes: NDArray[np.int64], lags: NDArray[np.int64]
+) -> Iterator[tuple[Array, Array]]:
+    """Give number and sum below each class (lag), by FFT."""
+    length = next_fast_len(len(sums[0]) + len(classes), real=True)
+    count, total = (rfft(s, length) for s in sums)
+    for k in np.unique(classes):
+        here = np.conj(rfft((classes == k).astype(float), length))
+        yield irfft(count * here, length)[lags], irfft(total * here, length)[lags]
 
 
 class Classes:

@@ -125,23 +125,25 @@ def joint_fit(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
     """Ask each model; `finest` is the sampling interval [s] that limits it."""
-    models = [
-        (name, table, told)
-        for name, table in basis.models
-        if (told := _one(force_time, force, basis, table, shift, span, finest)) is not None
-    ]
+    first = _samples(force_time, force, basis, shift, span)
+    models = []
+    for name, table in basis.models:
+        told = _one(force_time, force, basis, table, shift, span, finest, first)
+        if told is not None:
+            models.append((name, table, told))
     if not models:
         return []
     shifts = np.array([told[0] for _, _, told in models])
     # the same samples for all, so that their residuals can be compared
     half = 0.5 * float(np.ptp(shifts)) + finest
-    used = _chosen(force_time, basis, 0.5 * float(shifts.min() + shifts.max()), half)
+    used = _samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
     answers = []
     for name, table, (at, error) in models:
         prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(SLACKS))
-        fit = _Fit(force_time[used], force[used], basis.rows, table)
-        profile = fit.profile(at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
-        answers.append(Answer(name, at, error, *profile[1:], prior))
+        near = at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+        answers.append(
+            Answer(name, at, error, *_Fit(used, basis.rows, table, near).profile()[1:], prior)
+        )
     return answers
 
 
@@ -168,16 +170,17 @@ def _one(
     shift: float,
     span: float,
     finest: float,
+    samples: _Samples,
 ) -> tuple[float, float] | None:
     """Shift and its error by one model; the range narrows as they become known."""
     at, half = shift, span
     for narrowed in range(12):
-        used = _chosen(force_time, basis, at, half)
-        if len(used) < 3 * table.shape[1] + 30:
+        if narrowed:
+            samples = _samples(force_time, force, basis, at, half)
+        if len(samples.time) < 3 * len(table) + 30:
             return None
-        fit = _Fit(force_time[used], force[used], basis.rows, table)
         shifts = at + half * np.linspace(-1.0, 1.0, _AGAIN if narrowed else _SHIFTS)
-        likelihood = fit.profile(shifts)[0]
+        likelihood = _Fit(samples, basis.rows, table, shifts).profile()[0]
         weight = np.exp(likelihood - likelihood.max())
         weight /= weight.sum()
         mean = float(weight @ shifts)
@@ -200,97 +203,127 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
     events, around = events[inside], basis.around[inside] + shift
     if not len(events):
         return np.zeros(0, dtype=np.int64)
-    each = max(20, _SAMPLES // len(events))
-    first = max(basis.time[0] + shift + half, force_time[0])
-    last = min(basis.time[-1] + shift - half, force_time[-1])
-    places: list[NDArray[np.int64]] = []
-    for event, (low, high) in zip(events, around, strict=True):
-        a, k, b = np.searchsorted(force_time, [low, event, high])
-        flat = 2.0 * half  # evenly within the span, more and more thinly beyond it
-        n_flat = int(np.searchsorted(force_time, event + flat) - k)
-        for n, sign in ((b - k, 1), (k - a, -1)):
-            if n <= 0:
-                continue
-            m = each // 2
-            if n <= m:
-                steps = np.arange(n)
-            else:
-                scale = max(min(n_flat, n), 4)
-                u = np.linspace(0.0, np.arcsinh(n / scale), m)
-                steps = _each_once((scale * np.sinh(u)).astype(np.int64))
-            places.append(k + sign * steps)
-    chosen = _each_once(np.sort(np.concatenate(places)))
+    each = max(20, _SAMPLES // len(events)) // 2  # before, and after
+    k = np.searchsorted(force_time, events)
+    a, b = np.searchsorted(force_time, around.T)
+    count = np.stack([b - k, k - a])  # (after or before, event)
+    # evenly within the span, more and more thinly beyond it
+    flat = np.searchsorted(force_time, events + 2.0 * half) - k
+    scale = np.maximum(np.minimum(flat, count), 4)
+    u = np.linspace(0.0, np.arcsinh(np.maximum(count, 1) / scale), each, axis=-1)
+    thinned, all_of_few = (scale[:, :, None] * np.sinh(u)).astype(np.int64), np.arange(each)
+    many = (count > each)[:, :, None]
+    places = k[:, None] + np.array([1, -1])[:, None, None] * np.where(many, thinned, all_of_few)
+    chosen = _each_once(np.sort(places[many | (all_of_few < count[:, :, None])]))
     good = (chosen >= 0) & (chosen < len(force_time))
     chosen = chosen[good]
+    first = max(basis.time[0] + shift + half, force_time[0])
+    last = min(basis.time[-1] + shift - half, force_time[-1])
     return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
 
 
 def _each_once(increasing: NDArray[np.int64]) -> NDArray[np.int64]:
     """Leave out repeats; `numpy.unique` would hash what is sorted already."""
+    if not len(increasing):
+        return increasing
     return increasing[np.diff(increasing, prepend=-1 - abs(int(increasing[0]))) != 0]
 
 
+class _Samples(NamedTuple):
+    """Samples of the force around the changes of the motion: what a slow drift leaves of them."""
+
+    time: Array
+    force: Array
+    drift: Array  # (sample, function), orthonormal
+    both: Array  # drift and force, (function, sample)
+
+
+def _samples(force_time: Array, force: Array, basis: Basis, shift: float, half: float) -> _Samples:
+    used = _chosen(force_time, basis, shift, half)
+    time, force = force_time[used], force[used]
+    if not len(time):
+        return _Samples(time, force, np.zeros((0, _DRIFT)), np.zeros((_DRIFT + 1, 0)))
+    knots = np.linspace(time[0], time[-1], _DRIFT)
+    drift, _ = np.linalg.qr(np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT)], 1))
+    force = force - drift @ (drift.T @ force)
+    return _Samples(time, force, drift, np.concatenate([drift.T, force[None]]))
+
+
 class _Fit:
-    def __init__(self, time: Array, force: Array, motion_time: Array, table: Array):
-        self.time, self.motion_time = time, motion_time
-        knots = np.linspace(time[0], time[-1], _DRIFT)
-        drift = np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT)], axis=1)
-        self.basis, _ = np.linalg.qr(drift)
-        self.table = table
-        self.force = force - self.basis @ (self.basis.T @ force)
-        self.whole = float(self.force @ self.force)
+    """The force at trial shifts as a sum of what a model's table holds (column, motion's row)."""
+
+    def __init__(self, samples: _Samples, motion_time: Array, table: Array, shifts: Array):
+        self.samples, self.shifts = samples, shifts
+        self.whole = float(samples.force @ samples.force)
+        rows = _rows_between(motion_time, samples.time - shifts.max(), samples.time - shifts.min())
+        self.motion_time, values = motion_time[rows], np.ascontiguousarray(table[:, rows].T)
+        self.step = np.diff(self.motion_time)
+        self.table, self.change = values[:-1], np.diff(values, axis=0)
 
     def columns(self, shift: float) -> Array:
         """Return what the motion would have the force show: the table at the samples' times."""
-        at = self.time - shift
-        i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.motion_time) - 2)
-        start = self.motion_time[i]
-        part = (at - start) / (self.motion_time[i + 1] - start)
-        part = np.clip(part, 0.0, 1.0)[:, None]
+        at = self.samples.time - shift
+        i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.step) - 1)
+        part = np.clip((at - self.motion_time[i]) / self.step[i], 0.0, 1.0)
         # in place: this is done hundreds of times a run, and half of its time would go into copies
-        columns = self.table.take(i, axis=0)
-        columns *= 1.0 - part
-        after = self.table.take(i + 1, axis=0)
-        after *= part
-        columns += after
+        columns: Array = self.change.take(i, axis=0)
+        columns *= part[:, None]
+        columns += self.table.take(i, axis=0)
         return columns
 
-    def squares(self, shift: float) -> tuple[float, Array, float]:
-        """Return the sum of squares that is left, the amplitudes, and the share of inertia."""
-        columns = self.columns(shift)
-        # a drift is taken out of the products: out of the columns it would take longer
-        slow = self.basis.T @ columns
-        normal = columns.T @ columns - slow.T @ slow
-        told = columns.T @ self.force
-        own = normal.diagonal()
-        ridged = normal.copy()
-        np.fill_diagonal(ridged, own + (_RIDGE * own + 1e-12 * np.trace(normal)))
-        amplitudes = np.linalg.solve(ridged, told).astype(float, copy=False)
-        left = self.whole - float(amplitudes @ (2.0 * told - normal @ amplitudes))
-        inertia = np.sqrt(max(normal[-1, -1], 0.0)) * abs(amplitudes[-1])
-        if left < _CANCELLED * self.whole:
-            residual = self.residual(shift, amplitudes)
-            left = float(residual @ residual)
-        return left, amplitudes, float(inertia / np.sqrt(self.whole))
+    def squares(self) -> tuple[Array, Array, Array]:
+        """Return the sums of squares that are left, amplitudes, and shares of inertia (shift)."""
+        normals, told = [], []
+        for shift in self.shifts:
+            columns = self.columns(shift)
+            # a drift is taken out of the products: out of the columns it would take longer
+            along = self.samples.both @ columns
+            normals.append(columns.T @ columns - along[:-1].T @ along[:-1])
+            told.append(along[-1])
+        normal, right = np.stack(normals), np.stack(told)[:, :, None]
+        own = np.einsum("sii->si", normal)
+        ridge = _RIDGE * own + 1e-12 * own.sum(axis=1, keepdims=True)
+        ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
+        amplitudes = np.linalg.solve(ridged, right)
+        explained = amplitudes * (2.0 * right - normal @ amplitudes)
+        left = self.whole - explained.sum(axis=(1, 2))
+        amplitudes = amplitudes[:, :, 0]
+        for k in np.flatnonzero(left < _CANCELLED * self.whole):
+            residual = self.residual(self.shifts[k], amplitudes[k])
+            left[k] = residual @ residual
+        inertia = np.sqrt(np.maximum(own[:, -1], 0.0)) * np.abs(amplitudes[:, -1])
+        return left, amplitudes, inertia / np.sqrt(self.whole)
 
     def residual(self, shift: float, amplitudes: Array) -> Array:
         """Return what the motion leaves of the force."""
         explained = self.columns(shift) @ amplitudes
-        left: Array = self.force - explained + self.basis @ (self.basis.T @ explained)
+        drift = self.samples.drift
+        left: Array = self.samples.force - explained + drift @ (drift.T @ explained)
         return left
 
-    def profile(self, shifts: Array) -> tuple[Array, float, float, float]:
-        tried = [self.squares(shift) for shift in shifts]
-        squares = np.array([left for left, _, _ in tried])
+    def profile(self) -> tuple[Array, float, float, float]:
+        """Return the log likelihood (shift), and of the best shift what `Answer` tells."""
+        squares, amplitudes, inertia = self.squares()
         best = int(np.argmin(squares))
-        residual = self.residual(shifts[best], tried[best][1])
+        residual = self.residual(self.shifts[best], amplitudes[best])
         alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
         hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
-        freedom = max(len(residual) - self.table.shape[1] - _DRIFT, 1) / hanging
+        freedom = max(len(residual) - amplitudes.shape[1] - _DRIFT, 1) / hanging
         squares = np.maximum(squares, 1e-12 * self.whole)
         return (
             -0.5 * freedom * np.log(squares),
             float(squares.min()) / self.whole,
-            tried[best][2],
+            float(inertia[best]),
             freedom,
         )
+
+
+def _rows_between(motion_time: Array, first: Array, last: Array) -> NDArray[np.int64]:
+    """Rows of a motion log that lie about increasing intervals of time, each once."""
+    ends = len(motion_time) - 2
+    low = np.clip(np.searchsorted(motion_time, first) - 1, 0, ends)
+    high = np.clip(np.searchsorted(motion_time, last) - 1, 0, ends) + 1
+    low[1:] = np.maximum(low[1:], high[:-1] + 1)
+    count = np.maximum(high - low + 1, 0)
+    before = np.cumsum(count) - count
+    return np.repeat(low - before, count) + np.arange(int(count.sum()))

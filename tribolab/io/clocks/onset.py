@@ -146,12 +146,14 @@ def _misfit(onsets: list[Onset], shifts: Array) -> Array:
     for onset in onsets:
         way = np.interp(onset.time - shifts[:, None], onset.motion_time, onset.distance)
         left = np.full(len(shifts), np.inf)
-        force = onset.force - onset.force.mean()
+        n, force = len(onset.force), onset.force - onset.force.mean()
         square = float(force @ force)
+        beside = np.stack([force, np.ones(n)], axis=1)
         for d in _DISTANCES * onset.length:
-            decay = np.exp(-way / d)
-            decay -= decay.mean(axis=1, keepdims=True)
-            norm = np.maximum((decay**2).sum(axis=1), 1e-12)
-            left = np.minimum(left, square - (decay @ force) ** 2 / norm)
-        total += 0.5 * len(force) * np.log(np.maximum(left, 1e-9 * square + 1e-30))
+            rise = way * (-1.0 / d)
+            np.expm1(rise, out=rise)
+            told, whole = (rise @ beside).T
+            norm = np.maximum(np.einsum("sn,sn->s", rise, rise) - whole**2 / n, 1e-12)
+            left = np.minimum(left, square - told**2 / norm)
+        total += 0.5 * n * np.log(np.maximum(left, 1e-9 * square + 1e-30))
     return total

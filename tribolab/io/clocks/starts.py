@@ -75,18 +75,34 @@ class Logs:
     def _path(self, time: Array | float) -> Array:
         """Path [m]; the velocity is linear between two samples, so the path is a parabola."""
         time = np.clip(time, self.motion_time[0], self.motion_time[-1])
-        i = np.minimum(np.searchsorted(self.motion_time, time, "right"), len(self.path) - 1) - 1
-        since = time - self.motion_time[i]
-        return self.path[i] + (self.speed[i] + 0.5 * self.change[i] * since) * since
+        # looked up in the part that is needed
+        ends = np.searchsorted(self.motion_time, [np.min(time), np.max(time)], "right")
+        first, last = np.minimum(ends, len(self.path) - 1) - 1
+        part = slice(first, last + 2)
+        i = np.searchsorted(self.motion_time[part], time, "right") - 1
+        i = np.clip(i, 0, last - first)
+        since = time - self.motion_time[part][i]
+        way: Array = self.change[part][i] * (0.5 * since)
+        way += self.speed[part][i]
+        way *= since
+        way += self.path[part][i]
+        return way
 
     def shapes(self, start: _Start, since: Array) -> Array:
-        """Functions of the time since the start that make up the force (..., function)."""
+        """Functions of the time since the start that make up the force (..., function, time)."""
         early, end = self.slid(start, np.array([start.few, start.after]))
-        lengths = np.geomspace(max(early, 1e-5 * end), end, _LENGTHS)
-        before = np.minimum(since, 0.0) / start.before
-        after = -np.expm1(-self.slid(start, since)[..., None] / lengths)
-        constant = np.ones_like(since)
-        return np.concatenate([np.stack([constant, before, before**2], axis=-1), after], axis=-1)
+        shortest = max(early, 1e-5 * end)
+        lengths = shortest * (end / shortest) ** np.linspace(0.0, 1.0, _LENGTHS)
+        out = np.empty((*since.shape[:-1], 3 + _LENGTHS, since.shape[-1]))
+        out[..., 0, :] = 1.0
+        np.minimum(since, 0.0, out=out[..., 1, :])
+        out[..., 1, :] /= start.before
+        np.square(out[..., 1, :], out=out[..., 2, :])
+        after = out[..., 3:, :]
+        np.multiply(self.slid(start, since)[..., None, :], -1.0 / lengths[:, None], out=after)
+        np.expm1(after, out=after)
+        np.negative(after, out=after)
+        return out
 
 
 def _integral(time: Array, values: Array) -> Array:
@@ -188,7 +204,7 @@ def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
     half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer towards the start
     for start in starts:
         edges = np.concatenate([-start.before * half[::-1], start.after * half[1:]])
-        basis = np.linalg.qr(logs.shapes(start, 0.5 * (edges[1:] + edges[:-1])))[0]
+        basis = np.linalg.qr(logs.shapes(start, 0.5 * (edges[1:] + edges[:-1])).T)[0]
         impulse = np.interp(start.time + edges + shifts[:, None], logs.force_time, logs.impulse)
         means = np.diff(impulse, axis=1) / np.diff(edges)
         means -= means.mean(axis=1, keepdims=True)
@@ -207,16 +223,15 @@ def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
     time, force = logs.force_time[part], logs.force[part]
     force = force - force.mean()
     shapes = logs.shapes(start, time - start.time - shifts[:, None])
-    if len(time) < shapes.shape[-1] + 8:
+    if len(time) < shapes.shape[1] + 8:
         return float(shifts.mean()), np.inf
-    turned = np.swapaxes(shapes, 1, 2)
-    normal = turned @ shapes
+    normal = shapes @ np.swapaxes(shapes, 1, 2)
     # the curves are much alike; nothing hangs on the single amplitudes
     ridge = 1e-8 * np.trace(normal, axis1=1, axis2=2)
-    normal += ridge[:, None, None] * np.eye(shapes.shape[-1])
-    amplitudes = np.linalg.solve(normal, (turned @ force)[..., None])
-    residual = force - (shapes @ amplitudes)[..., 0]
-    weight = np.exp(_likelihood(residual, np.ones(len(shifts)), shapes.shape[-1]))
+    normal += ridge[:, None, None] * np.eye(shapes.shape[1])
+    amplitudes = np.linalg.solve(normal, (shapes @ force)[..., None])[..., 0]
+    residual = force - (amplitudes[:, None, :] @ shapes)[:, 0]
+    weight = np.exp(_likelihood(residual, np.ones(len(shifts)), shapes.shape[1]))
     weight /= weight.sum()
     mean = float(weight @ shifts)
     return mean, float(np.sqrt(weight @ (shifts - mean) ** 2 + (shifts[1] - shifts[0]) ** 2 / 12))
