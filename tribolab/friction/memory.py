@@ -111,55 +111,85 @@ def _models(count: int) -> Models:
     return Models(axes, weight, level, of_level, fixed)
 
 
-def error_with_memory(record: np.ndarray) -> float:
-    """Return the standard error of the mean of a record whose memory may be long.
+def errors_with_memory(records: np.ndarray) -> np.ndarray:
+    """Return the standard error of the mean of records whose memory may be long.
 
     Parameters
     ----------
-    record
-        Means over equal stretches of time, in any unit.
+    records
+        Means over equal stretches of time, one record in each row, in any unit.
 
     Returns
     -------
-    float
-        The error such that three of it hold 99.4 %; 0 for fewer than 8 stretches.
+    numpy.ndarray
+        The errors such that three of each hold 99.4 % (record); 0 for fewer than 8 stretches.
 
     Examples
     --------
     >>> rng = np.random.default_rng(0)
     >>> calm = rng.standard_normal(96)
     >>> slow = np.cumsum(calm)
-    >>> [round(float(error_with_memory(x) / x.std()), 1) for x in (calm, slow)]
+    >>> (errors_with_memory(np.stack([calm, slow])) / [calm.std(), slow.std()]).round(1).tolist()
     [0.1, 0.8]
     """
-    n = record.size
-    if n < FEWEST:
-        return 0.0
-    models = _models(n)
-    size = float(record.std())
-    if not size > 0:
-        return 0.0
-    own = models.axes @ ((record - record.mean()) / size)
-    weight, of_level = models.weight, models.of_level
-    place = (weight @ (models.level * own)[:, :, None])[:, :, 0] / of_level
-    squares = (weight @ (own**2)[:, :, None])[:, :, 0] - of_level * place**2
+    size, n = records.std(axis=1), records.shape[1]
+    moved = size > 0
+    if n < FEWEST or not moved.any():
+        return np.zeros(len(records))
+    models, size = _models(n), np.where(moved, size, 1.0)
+    centred = (records - records.mean(axis=1, keepdims=True)) / size[:, None]
+    centred[~moved] = np.arange(n)  # any: their error is nothing
+    own = models.axes @ centred.T  # (time, axis, record)
+    of_level = models.of_level[:, :, None]
+    place = models.weight @ (models.level[:, :, None] * own) / of_level
+    squares = models.weight @ own**2 - of_level * place**2
     scale = np.sqrt(np.maximum(squares, 1e-300) / (n - 1) / of_level)
-    likely = models.prior - 0.5 * (n - 1) * np.log(squares)
-    chance = np.exp(likely - likely.max()).ravel()
-    chance /= chance.sum()
+    likely = models.prior[:, :, None] - 0.5 * (n - 1) * np.log(np.maximum(squares, 1e-300))
+    chance = np.exp(likely - likely.max(axis=(0, 1)))
+    chance /= chance.sum(axis=(0, 1))
     told = chance > _NEGLIGIBLE
-    place, scale, chance = place.ravel()[told], scale.ravel()[told], chance[told]
+    row = np.nonzero(told)[2]
+    level = Level(n - 1, row, place[told], scale[told], chance[told])
+    return np.where(moved, level.exceeded_with(BEYOND, len(records)) / 3 * size, 0.0)
 
-    def exceeded(distance: np.ndarray) -> np.ndarray:
-        """Return minus the logarithm of the chance that the level lies farther away."""
-        above, below = (
-            special.stdtr(n - 1, -(distance[:, None] - way * place) / scale) for way in (1, -1)
-        )
-        return -np.log((above + below) @ chance)
 
-    # first roughly, then between the two nearest
-    distance = np.geomspace(0.3, 60.0, 12) / np.sqrt(n)
-    after = int(np.clip(np.searchsorted(exceeded(distance), -np.log(BEYOND)), 1, 11))
-    distance = np.geomspace(distance[after - 1], distance[after], 10)
-    third = np.exp(np.interp(-np.log(BEYOND), exceeded(distance), np.log(distance))) / 3
-    return float(third * size)
+class Level(NamedTuple):
+    """What each model that is likely enough tells of the level of its record."""
+
+    freedom: int
+    row: np.ndarray  # number of the record
+    place: np.ndarray
+    scale: np.ndarray
+    chance: np.ndarray
+
+    def beyond(self, distance: np.ndarray) -> np.ndarray:
+        """Return minus the logarithm of the chance that the level lies farther away (record)."""
+        own = distance[self.row]
+        sides = np.stack([self.place - own, -self.place - own]) / self.scale
+        chance = special.stdtr(self.freedom, sides).sum(axis=0) * self.chance
+        return -np.log(np.bincount(self.row, chance, len(distance)))
+
+    def exceeded_with(self, chance: float, records: int) -> np.ndarray:
+        """Return the distance that the level exceeds with a chance (record)."""
+        wanted = -np.log(chance)
+        grid = np.geomspace(0.3, 60.0, 12) / np.sqrt(self.freedom + 1)
+        after = self._first_beyond(np.repeat(grid[None], records, axis=0), wanted)
+        # first roughly, then between the two nearest
+        grid = np.geomspace(grid[after - 1], grid[after], 10, axis=1)
+        after = self._first_beyond(grid, wanted)
+        ends = [grid[np.arange(records), at] for at in (after - 1, after)]
+        below, above = map(self.beyond, ends)
+        share = np.clip((wanted - below) / (above - below), 0.0, 1.0)
+        first, last = map(np.log, ends)
+        distance: np.ndarray = np.exp(first + share * (last - first))
+        return distance
+
+    def _first_beyond(self, grid: np.ndarray, wanted: float) -> np.ndarray:
+        """Return the first place on a grid (record, place) that is beyond, the second at least."""
+        rows = np.arange(len(grid))
+        below, above = np.zeros(len(grid), int), np.full(len(grid), grid.shape[1] - 1)
+        while (above - below).max() > 1:
+            middle = (below + above + 1) // 2
+            beyond = self.beyond(grid[rows, middle]) >= wanted
+            above, below = np.where(beyond, middle, above), np.where(beyond, below, middle)
+        return above

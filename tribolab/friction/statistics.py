@@ -27,12 +27,13 @@ References
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from scipy import special
 
-from tribolab.friction.memory import error_with_memory
+from tribolab.friction.memory import errors_with_memory
 
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
 ORDER = 20  # highest order: as long as one of five teeth of a saw
@@ -47,9 +48,6 @@ BESIDE = 0.3  # widening where the noise beside a line is all that moves the mea
 WIDENING, FEW = 0.62, 20.0
 NARROWING, FEWER = 0.2, 11.0
 STUDENT = 8.0  # effective samples below which the error is at least as wide as Student's t asks
-
-
-_Samples = TypeVar("_Samples", float, np.ndarray)
 
 
 class Estimate(NamedTuple):
@@ -98,7 +96,7 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
         samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
         ``sem`` is widened below 8 effective samples to what Student's t asks for, so that 1.96 of
         it make a 95 % interval with n_eff - 1 degrees of freedom (`student_widening`), and holds
-        what a memory that is long beside the record may hide (`error_with_memory`).
+        what a memory that is long beside the record may hide (`errors_with_memory`).
         ``trend_p_value`` tests the least-squares slope against the signal's own memory.
 
     Examples
@@ -108,6 +106,42 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     >>> abs(found.mean - 0.3) < 3 * found.sem, 0.0002 < found.sem < 0.0005
     (True, True)
     """
+    return estimates_of([(time, values)])[0]
+
+
+def estimates_of(records: Iterable[tuple[np.ndarray, np.ndarray]]) -> list[Estimate]:
+    """Give what `estimate_of` does for several records at once, in a fraction of the time.
+
+    Parameters
+    ----------
+    records
+        Sample times [s] and samples of each, looked at one after the other.
+    """
+    told = [_described(time, values) for time, values in records]
+    out = [NOTHING if isinstance(each, _Record) else each for each in told]
+    alike: dict[int, list[int]] = {}
+    for place, each in enumerate(told):
+        if isinstance(each, _Record):
+            alike.setdefault(each.blocks.size, []).append(place)
+    for places in alike.values():
+        own = [each for place in places if isinstance(each := told[place], _Record)]
+        for place, estimate in zip(places, _with_errors(own), strict=True):
+            out[place] = estimate
+    return out
+
+
+class _Record(NamedTuple):
+    """What is known of a record before its memory is: its means over equal stretches, too."""
+
+    mean: float
+    std: float
+    samples: int
+    duration: float
+    blocks: np.ndarray
+
+
+def _described(time: np.ndarray, values: np.ndarray) -> _Record | Estimate:
+    """Describe a record; the whole answer where it has no scatter or hardly a sample."""
     good = np.isfinite(values)
     if not good.all():
         time, values = time[good], values[good]
@@ -127,25 +161,38 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    line, centred = _line_of(blocks), blocks - blocks.mean()
-    # of both at once: it is the calls that take the time
-    power, floor = model_spectra(np.stack([centred, line.rest]))
-    plain, sem = (float(w[0]) for w in _errors_of_mean(centred[None, :], power[:1], floor[:1]))
-    effective = float(np.clip((std / plain) ** 2, 1.0, n))
-    slow = 0.0 if _oscillates(power[0], blocks.size) else error_with_memory(blocks)
-    error = max(sem, plain * student_widening(effective), slow)
-    change = line.slope * blocks.size
-    return Estimate(
-        mean,
-        std,
-        error,
-        n,
-        effective,
-        duration / (2 * effective),
-        change / duration,
-        change,
-        _p_value(line, power[1:]),
-    )
+    return _Record(mean, std, n, duration, blocks)
+
+
+def _with_errors(records: list[_Record]) -> list[Estimate]:
+    """Give the estimates of records with as many stretches each."""
+    count, blocks = len(records), np.stack([record.blocks for record in records])
+    centred, lines = blocks - blocks.mean(axis=1, keepdims=True), _lines_of(blocks)
+    # of all at once: it is the calls that take the time
+    power, floor = model_spectra(np.concatenate([centred, lines.rest]))
+    plain, sem = _errors_of_mean(centred, power[:count], floor[:count])
+    calm = np.array([not _oscillates(own, blocks.shape[1]) for own in power[:count]])
+    slow = np.zeros(count)
+    slow[calm] = errors_with_memory(blocks[calm])
+    p_values = _p_values(lines, power[count:])
+    out = []
+    for k, (mean, std, n, duration, _) in enumerate(records):
+        effective = float(np.clip((std / plain[k]) ** 2, 1.0, n))
+        change = float(lines.slope[k]) * blocks.shape[1]
+        out.append(
+            Estimate(
+                mean,
+                std,
+                max(float(sem[k]), float(plain[k]) * student_widening(effective), float(slow[k])),
+                n,
+                effective,
+                duration / (2 * effective),
+                change / duration,
+                change,
+                float(p_values[k]),
+            )
+        )
+    return out
 
 
 def _oscillates(power: np.ndarray, samples: int) -> bool:
@@ -320,7 +367,7 @@ def _errors_of_mean(
     return plain, plain * student * beside * _widening(effective, n)
 
 
-def _widening(effective: _Samples, n: int) -> _Samples:
+def _widening(effective: np.ndarray, n: int) -> np.ndarray:
     """Return the factor by which a spectrum known from few effective samples widens an error."""
     share = effective / min(n / BLOCKS, 1)
     wide = 1 + WIDENING / (1 + (share / FEW) ** 2)
@@ -333,36 +380,37 @@ def trend(record: np.ndarray) -> tuple[float, float]:
     The error of the slope comes from the spectrum of what the line leaves, so that a slow
     wander is not taken for a trend.
     """
-    line = _line_of(record)
-    return line.slope, _p_value(line, model_spectra(line.rest[None, :])[0])
+    lines = _lines_of(record[None, :])
+    power, _ = model_spectra(lines.rest)
+    return float(lines.slope[0]), float(_p_values(lines, power)[0])
 
 
-class _Line(NamedTuple):
-    """Slope per sample, the samples' weights in it, what it leaves of the record; if nothing."""
+class _Lines(NamedTuple):
+    """Slopes per sample, the samples' weights in them, what they leave of records; if nothing."""
 
-    slope: float
+    slope: np.ndarray
     weights: np.ndarray
     rest: np.ndarray
-    exact: bool
+    exact: np.ndarray
 
 
-def _line_of(record: np.ndarray) -> _Line:
-    n = record.size
+def _lines_of(records: np.ndarray) -> _Lines:
+    n = records.shape[1]
     place = np.arange(n) - (n - 1) / 2
     weights = place / (place @ place)
-    slope = float(weights @ record)
-    rest = record - record.mean() - slope * place
-    return _Line(slope, weights, rest, not np.any(np.abs(rest) > 1e-14 * np.abs(record).max()))
+    slope = records @ weights
+    rest = records - records.mean(axis=1, keepdims=True) - slope[:, None] * place
+    exact = np.abs(rest).max(axis=1) <= 1e-14 * np.abs(records).max(axis=1)
+    return _Lines(slope, weights, rest, exact)
 
 
-def _p_value(line: _Line, power: np.ndarray) -> float:
-    """Two-sided p value of a slope, from the model spectrum (1, frequency) of what is left."""
-    if line.exact:
-        return 0.0 if line.slope else 1.0
-    n = line.rest.size
-    error = float(np.sqrt(variance_of_sum(power, line.weights)[0]))
-    plain = float(variance_of_sum(power, np.full(n, 1 / n))[0])
-    effective = min(float(np.mean(line.rest**2)) / max(plain, 1e-300), n)
+def _p_values(lines: _Lines, power: np.ndarray) -> np.ndarray:
+    """Two-sided p values of slopes, from the model spectra (record, frequency) of what is left."""
+    n = lines.weights.size
+    error = np.sqrt(np.maximum(variance_of_sum(power, lines.weights), 1e-300))
+    plain = variance_of_sum(power, np.full(n, 1 / n))
+    effective = np.minimum(np.mean(lines.rest**2, axis=1) / np.maximum(plain, 1e-300), n)
     error *= _widening(effective, n)
-    freedom = max(effective - 2, 2.0)
-    return float(2 * special.stdtr(freedom, -abs(line.slope) / error))
+    freedom = np.maximum(effective - 2, 2.0)
+    p_values = 2 * special.stdtr(freedom, -np.abs(lines.slope) / error)
+    return np.where(lines.exact, np.where(lines.slope != 0, 0.0, 1.0), p_values)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,7 +12,7 @@ from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
-from tribolab.friction.statistics import NOTHING, Estimate, estimate_of, student_remark
+from tribolab.friction.statistics import Estimate, estimates_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
@@ -199,12 +200,13 @@ def _column(estimates: list[Estimate], name: str) -> np.ndarray:
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
-    forces = [estimate_of(time[s], force[s]) for s in one_by_one(parts)]
+    forces = estimates_of((time[s], force[s]) for s in one_by_one(parts))
     means = _column(forces, "mean")
-    loads, load = [], np.nan
+    loads: list[Estimate] = []
+    load = np.nan
     if "normal_force" in run:
         normal = run["normal_force"].values
-        loads = [estimate_of(time[s], normal[s]) for s in one_by_one(parts)]
+        loads = estimates_of((time[s], normal[s]) for s in one_by_one(parts))
         pressed = _column(loads, "mean")
         load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
@@ -236,16 +238,21 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         return _table(data, told, zero, run, "")
 
     both = reversal_of(zero, pair, held, middle, rests, run.attrs.get("uncertainty", {}))
-    ratios, remarks = [], []
-    for i, s in enumerate(one_by_one(parts)):
-        own = time[s] - middle[i]
-        own *= zero.slope[i]
-        own += zero.value[i] - both.tilted[i]
-        own *= signs.sign[i]
-        np.subtract(turn[i] * force[s], own, out=own)
-        ratio, remark = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
-        ratios.append(ratio)
-        remarks.append(remark)
+    pointwise: list[_Pointwise] = []
+
+    def records() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        for i, s in enumerate(one_by_one(parts)):
+            own = time[s] - middle[i]
+            own *= zero.slope[i]
+            own += zero.value[i] - both.tilted[i]
+            own *= signs.sign[i]
+            np.subtract(turn[i] * force[s], own, out=own)
+            at, ratio, said = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
+            pointwise.append(said)
+            yield at, ratio
+
+    ratios = estimates_of(records())
+    remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
     mu, tilt = both.without_tilt(_column(ratios, "mean"), signs.sign, held)
     scatter = _column(ratios, "sem")
     # the load's fluctuations move friction and load together and leave the ratio alone: its own
@@ -271,6 +278,21 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     return _table(data, np.array(remarks, dtype=object), zero, run, both.middle)
 
 
+class _Pointwise(NamedTuple):
+    """What there is to say of the ratio of one segment: why there is none, samples left out."""
+
+    missing: str = ""
+    left: int = 0
+
+    def remark(self, estimate: Estimate) -> str:
+        """Put it in words, with what the estimate tells."""
+        if self.missing or estimate.samples == 0:
+            return self.missing or "friction force is not a number"
+        said = [f"{self.left} samples without contact left out"] if self.left else []
+        said += filter(None, [student_remark(estimate.effective_samples)])
+        return "; ".join(said)
+
+
 def _ratio(
     time: np.ndarray,
     force: np.ndarray,
@@ -278,33 +300,32 @@ def _ratio(
     load: Estimate,
     zero: float,
     usual: float,
-) -> tuple[Estimate, str]:
-    """Pointwise ratio of one segment, or why there is none; the force is written over."""
-    known = np.isfinite(normal)
+) -> tuple[np.ndarray, np.ndarray, _Pointwise]:
+    """Give times and ratio of one segment, none without contact; `force` is written over."""
+    known, nothing = np.isfinite(normal), np.zeros(0)
     if load.samples == 0 or normal.size == 0:
-        return NOTHING, "normal force is not a number" if normal.size else "no samples"
+        why = "normal force is not a number" if normal.size else "no samples"
+        return nothing, nothing, _Pointwise(why)
     if not load.mean - zero > max(NO_CONTACT * usual, 0.0):
-        return NOTHING, f"no contact: mean normal force {load.mean - zero:.3g} N"
+        why = f"no contact: mean normal force {load.mean - zero:.3g} N"
+        return nothing, nothing, _Pointwise(why)
     pressed = known & (normal > 0)
     left = normal.size - int(np.count_nonzero(pressed))
     lost = 1 - (normal.size - left) / normal.size
     if lost > LOST:
-        return NOTHING, f"no contact or no normal force in {lost:.0%} of the samples"
+        why = f"no contact or no normal force in {lost:.0%} of the samples"
+        return nothing, nothing, _Pointwise(why)
     if left:
         time, force, normal = time[pressed], force[pressed], normal[pressed]
     del known, pressed
-    estimate = estimate_of(time, np.divide(force, normal, out=force))
-    if estimate.samples == 0:
-        return estimate, "friction force is not a number"
-    said = [f"{left} samples without contact left out"] if left else []
-    return estimate, "; ".join([*said, *filter(None, [student_remark(estimate.effective_samples)])])
+    return time, np.divide(force, normal, out=force), _Pointwise(left=left)
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    estimates = [estimate_of(time[s], ratio[s]) for s in one_by_one(parts)]
+    estimates = estimates_of((time[s], ratio[s]) for s in one_by_one(parts))
     means, own = _column(estimates, "mean"), _column(estimates, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(
