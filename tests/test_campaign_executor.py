@@ -1,5 +1,6 @@
 """Work in processes: a crash costs the work that crashed, and no other."""
 
+import importlib.util
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from tribolab.app import needed
 from tribolab.campaign.engine.executor import completed, workers
 from tribolab.campaign.engine.pool import LastingPool, WorkerDied
 from tribolab.errors import ConfigError
@@ -35,6 +37,22 @@ def blas_threads(_):
     return os.environ["OPENBLAS_NUM_THREADS"]
 
 
+def imported_and_parent(name):
+    return name in sys.modules, os.getppid()
+
+
+def variable(name):
+    return os.environ.get(name)
+
+
+def end_its_parent(marker):
+    if not os.path.exists(marker):  # noqa: PTH110 - runs in a bare worker
+        open(marker, "w").close()  # noqa: PTH123
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(300)
+    return "answer"
+
+
 def value_error(_):
     raise ValueError("no")
 
@@ -58,6 +76,41 @@ def test_workers_take_one_blas_thread_and_leave_the_parent_as_it_was():
     with workers(2) as pool:
         assert pool.submit(blas_threads, 0).result(timeout=60) == "1"
     assert dict(os.environ) == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere every worker is started anew")
+def test_workers_are_copies_of_a_process_that_has_imported_their_work_and_ends_with_them():
+    assert "colorsys" not in sys.modules or sys.modules.pop("colorsys")
+    with LastingPool(2, ["colorsys", "there_is_no_such_module"]) as pool:
+        futures = [pool.submit(imported_and_parent, "colorsys") for _ in range(4)]
+        came = {future.result(timeout=60) for future in futures}
+        [(imported, nursery)] = came
+        assert imported and nursery != os.getpid() and _lives(nursery)
+    assert not _lives(nursery)
+
+
+def test_workers_know_the_environment_of_now(monkeypatch):
+    monkeypatch.setenv("OF_BEFORE", "1")
+    with LastingPool(1) as pool:
+        assert pool.submit(variable, "OF_BEFORE").result(timeout=60) == "1"
+        monkeypatch.delenv("OF_BEFORE")
+        monkeypatch.setenv("OF_NOW", "2")
+        with pytest.raises(WorkerDied):  # what is begun next is begun now
+            pool.submit(os._exit, 1).result(timeout=60)
+        assert pool.submit(variable, "OF_BEFORE").result(timeout=60) is None
+        assert pool.submit(variable, "OF_NOW").result(timeout=60) == "2"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere every worker is started anew")
+def test_work_is_done_though_the_process_that_workers_are_copied_of_is_killed(tmp_path):
+    with LastingPool(2) as pool:
+        assert pool.submit(end_its_parent, str(tmp_path / "m")).result(timeout=60) == "answer"
+        assert pool.submit(square, 3).result(timeout=60) == 9
+
+
+@pytest.mark.parametrize("modules", [needed.ANALYSIS, needed.SIMULATION, needed.FILES])
+def test_what_workers_are_said_to_import_is_there(modules):
+    assert all(importlib.util.find_spec(name) for name in modules)
 
 
 def test_an_interrupt_ends_the_processes_at_once():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from tribolab.app.needed import ANALYSIS, SIMULATION
 from tribolab.app.run import run_campaign
 from tribolab.app.truth.friction import TruthComparison, compare_with_truth
 from tribolab.app.truth.shear_stress import compare_shear_stress
@@ -69,7 +70,7 @@ def run_demo(
         compared.append(_compared(outcome, folder, known))
         _write(outcome, compared[0])
 
-    with workers(jobs) as pool:
+    with workers(jobs, modules=SIMULATION + ANALYSIS) as pool:
         if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
             simulate_campaign(folder, executor=pool, progress=progress)
         # begun early: it fills what the stages of the campaign leave idle

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
+from tribolab.app.needed import ANALYSIS
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
@@ -110,7 +111,7 @@ def run_campaign(
     from tribolab.report.results import write_report
 
     with staged(place) as folder:
-        given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler)
+        given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
             outcome = process(
                 campaign,

@@ -79,7 +79,7 @@ def reproduce(
     tell = progress or silent
     with staged(place) as folder:
         (folder / "figures").mkdir()
-        with workers(jobs) as pool:
+        with workers(jobs, modules=(__name__,)) as pool:
             campaign = lab.simulate_laboratory(laboratory, folder, pool, tell)
             outcome, scans = lab.analyse_laboratory(campaign, folder, pool, tell)
             table, fits = _computed(outcome, scans, pool, tell)

@@ -165,10 +165,12 @@ def simulate(
         tribolab simulate faulty --small --fault spikes --fault sign
     """
     with reported(debug):
+        from tribolab.app.needed import SIMULATION
         from tribolab.campaign.engine.executor import workers
         from tribolab.rig import simulate_campaign
 
-        with progress_bars(quiet) as progress, workers(jobs) as pool:
+        pool_of = workers(jobs, modules=SIMULATION)
+        with progress_bars(quiet) as progress, pool_of as pool:
             campaign = simulate_campaign(
                 folder,
                 seed,

@@ -185,6 +185,8 @@ def _pool(
     jobs: int | None, files: Sequence[Path]
 ) -> contextlib.AbstractContextManager[Executor | None]:
     """Return processes to look at files in; a few files are looked at here, which is sooner."""
+    from tribolab.app.needed import FILES
     from tribolab.campaign.engine.executor import workers
 
-    return workers(1 if jobs is None and len(files) < _MANY else jobs)
+    jobs = 1 if jobs is None and len(files) < _MANY else jobs
+    return workers(jobs, modules=FILES)

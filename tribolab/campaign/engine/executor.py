@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import (
     Executor,
     Future,
@@ -85,7 +85,9 @@ def _as_they_end(
 
 
 @contextlib.contextmanager
-def workers(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor | None]:
+def workers(
+    jobs: int | None = None, scheduler: str | None = None, modules: Sequence[str] = ()
+) -> Iterator[Executor | None]:
     """Yield an executor: Dask's for a scheduler's address, else processes, else none.
 
     Parameters
@@ -95,6 +97,8 @@ def workers(jobs: int | None = None, scheduler: str | None = None) -> Iterator[E
     scheduler
         Address of a Dask scheduler, e.g. ``"tcp://10.0.0.5:8786"``. Its workers have to see the
         raw files and the results folder under the same paths.
+    modules
+        What the work imports, by name: `LastingPool` has it imported but once.
 
     Raises
     ------
@@ -113,7 +117,7 @@ def workers(jobs: int | None = None, scheduler: str | None = None) -> Iterator[E
     if jobs == 1:
         yield None
         return
-    pool = LastingPool(jobs)
+    pool = LastingPool(jobs, modules)
     try:
         yield pool
     except BaseException:

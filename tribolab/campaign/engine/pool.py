@@ -5,35 +5,22 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
 import threading
-import warnings
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
 from functools import partial
-from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
+from tribolab.campaign.engine.processes import MASKS, Fresh, begin_worker
 from tribolab.errors import AnalysisError
 
-# Two BLAS threads in each of many workers are slower than one, by up to fifty times.
-_ONE_THREAD = {
-    name: "1"
-    for name in (
-        "OMP_NUM_THREADS",
-        "OPENBLAS_NUM_THREADS",
-        "MKL_NUM_THREADS",
-        "VECLIB_MAXIMUM_THREADS",
-        "NUMEXPR_NUM_THREADS",
-    )
-}
-
+if sys.platform == "linux":  # macOS can copy a process, but some of its libraries do not bear it
+    from tribolab.campaign.engine.nursery import Copied, Nursery
 
 # what ends a program, so far as the system knows it; blocked in a thread, where it can be
 _ENDING = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
-
-
-_MASKS = hasattr(signal, "pthread_sigmask")
 
 
 _STOPPED = "stopped before it was done"
@@ -60,6 +47,9 @@ class LastingPool(Executor):
     ----------
     jobs
         Number of processes.
+    modules
+        What the work imports, by name: where the system allows it, it is imported once, in a
+        process that all others are copies of.
 
     Examples
     --------
@@ -68,10 +58,11 @@ class LastingPool(Executor):
     1024
     """
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, modules: Sequence[str] = ()) -> None:
         self._lock = threading.RLock()
-        self._main = _Lane(jobs)
-        self._alone = _Lane(1)
+        self._nursery = Nursery(modules) if sys.platform == "linux" else None
+        self._main = _Lane(jobs, self._context)
+        self._alone = _Lane(1, self._context)
         self._closed = False
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -98,12 +89,21 @@ class LastingPool(Executor):
                 pass
             for lane in lanes:
                 lane.close()
+            self._close_nursery()
 
     def end(self) -> None:
         """Drop all work and end the processes at once."""
         self.shutdown(wait=False, cancel_futures=True)
         for lane in (self._main, self._alone):
             lane.kill()
+        self._close_nursery()
+
+    def _context(self) -> Fresh:
+        return Fresh() if self._nursery is None else Copied(self._nursery)
+
+    def _close_nursery(self) -> None:
+        if self._nursery is not None:
+            self._nursery.close()
 
     def _feed(self, lane: _Lane) -> None:
         while lane.waiting and len(lane.under_way) < lane.jobs:
@@ -147,19 +147,23 @@ class LastingPool(Executor):
 class _Lane:
     """A process pool, what waits for it and what is under way in it."""
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, context: Callable[[], Fresh]) -> None:
         self.jobs = jobs
         self.waiting: deque[tuple[Future[Any], Callable[[], Any]]] = deque()
         self.under_way: dict[Future[Any], Callable[[], Any]] = {}
         self.killed = False
         self._pool: ProcessPoolExecutor | None = None
-        self._context = _Context()
+        self._new_context = context
+        self._context = context()
 
     def pool(self) -> ProcessPoolExecutor:
         if self._pool is None:
-            self._context = _Context()
+            self._context = self._new_context()
             self._pool = ProcessPoolExecutor(
-                self.jobs, mp_context=self._context, initializer=_begin_worker
+                self.jobs,
+                mp_context=self._context,
+                initializer=begin_worker,
+                initargs=(dict(os.environ),),
             )
         return self._pool
 
@@ -182,40 +186,8 @@ class _Lane:
 
     def kill(self) -> None:
         self.killed = True
-        for process in self._context.started:
-            if process.pid is not None:  # else it was interrupted while starting
-                process.kill()
+        self._context.kill()
         self.close()
-
-
-class _Context(SpawnContext):
-    """Fresh interpreters (safe beside threads), with BLAS on one thread, that can be ended."""
-
-    def __init__(self) -> None:
-        self.started: list[SpawnProcess] = []
-
-    # multiprocessing's name, and there a class; whoever calls it wants a process and no more
-    def Process(  # type: ignore[override]  # noqa: N802
-        self, *args: Any, **kwargs: Any
-    ) -> SpawnProcess:
-        process = _OneThreadProcess(*args, **kwargs)
-        self.started.append(process)
-        return process
-
-
-class _OneThreadProcess(SpawnProcess):
-    def start(self) -> None:
-        """Start with the environment in which BLAS, loaded there anew, takes one thread."""
-        before = {name: os.environ.get(name) for name in _ONE_THREAD}
-        os.environ.update(_ONE_THREAD)
-        try:
-            super().start()
-        finally:
-            for name, value in before.items():
-                if value is None:
-                    del os.environ[name]
-                else:
-                    os.environ[name] = value
 
 
 @contextlib.contextmanager
@@ -232,7 +204,7 @@ def _undisturbed() -> Iterator[None]:
     mine = {number: handler for number, handler in handlers.items() if callable(handler)}
     for number in mine:
         signal.signal(number, lambda number, _: came.append(number))
-    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if _MASKS else None
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if MASKS else None
     try:
         yield
     finally:
@@ -242,22 +214,3 @@ def _undisturbed() -> Iterator[None]:
             signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
         for number in came[:1]:
             signal.raise_signal(number)
-
-
-def _begin_worker() -> None:
-    """Leave Ctrl-C to the parent, and end when the parent is gone, however it went."""
-    import multiprocessing
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if _MASKS:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    # what arithmetic does with damaged numbers is found by checks, and told in words
-    warnings.filterwarnings("ignore", category=RuntimeWarning)
-    parent = multiprocessing.parent_process()
-
-    def follow() -> None:
-        if parent is not None:
-            parent.join()
-            os._exit(1)
-
-    threading.Thread(target=follow, daemon=True).start()

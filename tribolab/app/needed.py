@@ -1,0 +1,35 @@
+"""What the workers of commands import, by name: a pool has it imported once for all of them."""
+
+FILES = ("tribolab.app.checks", "tribolab.qc.scan.sets", "tribolab.draft.scans")
+
+SIMULATION = ("tribolab.rig.campaign",)
+
+# the stages themselves, then what they import only where it is needed, in this order
+ANALYSIS = (
+    "tribolab.campaign.pipeline",
+    "netCDF4",
+    "tribolab.draft.on_the_fly",
+    "tribolab.friction.coefficient.static",
+    "tribolab.friction.coefficient.repeatability",
+    "tribolab.metrology.dead_weight",
+    "tribolab.records.run_facts",
+    "tribolab.records.notices",
+    "tribolab.report.results",
+    "tribolab.draft.scans",
+    "tribolab.campaign.surfaces.contact",
+    "tribolab.campaign.surfaces.scans",
+    "tribolab.campaign.models.analysis",
+    "tribolab.campaign.joint.work",
+    "tribolab.mode.evidence",
+    "tribolab.mode.words",
+    "matplotlib.backends.backend_svg",
+    "tribolab.plot.friction.curves",
+    "tribolab.plot.surface.spectra",
+    "tribolab.plot.surface.contact",
+    "tribolab.plot.model.mixed",
+    "tribolab.plot.model.joint",
+    "tribolab.plot.model.film",
+    "tribolab.plot.model.sensitivity",
+    "tribolab.plot.slip.stick_slip",
+    "tribolab.plot.slip.spectra",
+)

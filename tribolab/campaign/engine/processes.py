@@ -1,0 +1,110 @@
+"""How the processes of a pool begin: fresh, with BLAS on one thread, and bound to their parent."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import signal
+import threading
+import warnings
+from collections.abc import Iterator, Mapping
+from multiprocessing.context import SpawnContext, SpawnProcess
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+# Two BLAS threads in each of many workers are slower than one, by up to fifty times.
+ONE_THREAD = {
+    name: "1"
+    for name in (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+    )
+}
+
+
+MASKS = hasattr(signal, "pthread_sigmask")
+
+
+class Fresh(SpawnContext):
+    """Fresh interpreters (safe beside threads), with BLAS on one thread, that can be ended."""
+
+    def __init__(self) -> None:
+        self.started: list[BaseProcess] = []
+
+    # multiprocessing's name, and there a class; whoever calls it wants a process and no more
+    def Process(  # type: ignore[override]  # noqa: N802
+        self, *args: Any, **kwargs: Any
+    ) -> BaseProcess:
+        """Return a process that is not yet started, and remember it."""
+        process = self.made(*args, **kwargs)
+        self.started.append(process)
+        return process
+
+    def made(self, *args: Any, **kwargs: Any) -> BaseProcess:
+        """Return a process that is not yet started."""
+        return _FreshProcess(*args, **kwargs)
+
+    def kill(self) -> None:
+        """End all processes at once."""
+        for process in self.started:
+            if process.pid is not None:  # else it was interrupted while starting
+                process.kill()
+
+
+class _FreshProcess(SpawnProcess):
+    def start(self) -> None:
+        """Start with the environment in which BLAS, loaded there anew, takes one thread."""
+        with environment(ONE_THREAD):
+            super().start()
+
+
+@contextlib.contextmanager
+def environment(changed: Mapping[str, str]) -> Iterator[None]:
+    """Have variables of the environment changed for a while, for processes that start in it."""
+    before = {name: os.environ.get(name) for name in changed}
+    os.environ.update(changed)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def begin_worker(variables: Mapping[str, str]) -> None:
+    """Leave Ctrl-C to the parent, and end when the parent is gone, however it went.
+
+    Parameters
+    ----------
+    variables
+        The environment of the parent: that of a copied process is as old as what it is copied of.
+    """
+    import multiprocessing
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if MASKS:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    _set_environment({**variables, **ONE_THREAD})
+    # what arithmetic does with damaged numbers is found by checks, and told in words
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
+    gc.freeze()  # what is imported stays: no use in looking through it for garbage
+    parent = multiprocessing.parent_process()
+
+    def follow() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+
+
+def _set_environment(variables: Mapping[str, str]) -> None:
+    for name in os.environ.keys() - variables.keys():
+        del os.environ[name]
+    os.environ.update(variables)
