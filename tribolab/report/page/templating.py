@@ -13,6 +13,7 @@ from typing import Any
 from urllib.parse import quote
 
 import jinja2
+import jinja2.bccache
 from markupsafe import Markup
 
 from tribolab import words
@@ -100,10 +101,28 @@ def library() -> str:
     return deflated(asset(_LIBRARY).encode())
 
 
+class _Compiled(jinja2.BytecodeCache):
+    """Templates as code: of many pages in one process the first alone compiles them."""
+
+    def __init__(self) -> None:
+        self._codes: dict[str, bytes] = {}
+
+    def load_bytecode(self, bucket: jinja2.bccache.Bucket) -> None:
+        if bucket.key in self._codes:
+            bucket.bytecode_from_string(self._codes[bucket.key])
+
+    def dump_bytecode(self, bucket: jinja2.bccache.Bucket) -> None:
+        self._codes[bucket.key] = bucket.bytecode_to_string()
+
+
+_COMPILED = _Compiled()
+
+
 def environment(folder: Path) -> jinja2.Environment:
     """Return what fills the templates of pages whose figures lie in a folder."""
     jinja = jinja2.Environment(
         loader=jinja2.PackageLoader("tribolab.report"),
+        bytecode_cache=_COMPILED,
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
