@@ -218,12 +218,14 @@ class Page:
             self._tab.call("Input.dispatchKeyEvent", type=kind, key=name, **held, **more)
 
     def tab_to(self, selector):
-        """Press the Tab key until an element has the focus."""
-        there = f"document.activeElement === document.querySelector({json.dumps(selector)})"
+        """Press Tab, or Shift and Tab where it lies behind, until an element has the focus."""
+        where = f"document.querySelector({json.dumps(selector)})"
+        back = f"{where}.compareDocumentPosition(document.activeElement) & 4"
+        back = bool(self.run(f"document.activeElement !== document.body && {back}"))
         for _ in range(200):
-            if self.run(there):
+            if self.run(f"document.activeElement === {where}"):
                 return
-            self.key("Tab")
+            self.key("Tab", shift=back)
         raise AssertionError(f"the Tab key never came to {selector}")
 
     def press(self, selector, key="Enter", shift=False):

@@ -127,7 +127,7 @@ def test_another_title_makes_another_report_of_the_same_data(campaign):
 @pytest.mark.slow
 def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_path):
     (campaign.parent / "raw/friction/sb-r_dry_31N_01_force.csv").write_text("Time [s]\n")
-    done = tribolab_command("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
+    done = told("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
     assert done.returncode == 3
     assert "1 of 2 runs" in done.stdout
     assert done.stderr.startswith("tribolab: sb-r_dry_31N_01 failed: ")

@@ -7,13 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaigns import RUNS, simulated
 from hypothesis import given
 from hypothesis import strategies as st
+from reviews import entry
 
 from tribolab import pieces, room
 from tribolab.campaign.runs import stage
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
+from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import ReadError
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.slopes import block_slopes, position_noise, without_resets
@@ -247,14 +250,26 @@ def test_a_long_data_file_is_read_into_scratch_files(tmp_path, cut_up):
 
 
 @pytest.mark.slow
-def test_two_logs_and_a_persons_decisions_come_to_the_same(reviewed, tmp_path, cut_up):
-    campaign = load_campaign(reviewed[0])
-    runs = [run for run in planned_runs(campaign) if run.decisions][:2]
-    assert runs
-    before = [come_to(run, tmp_path) for run in runs]
+def test_two_logs_and_a_persons_decisions_come_to_the_same(tmp_path, cut_up):
+    file = simulated(tmp_path, repeats=1)
+    name = RUNS[0]
+
+    def planned():
+        return next(run for run in planned_runs(load_campaign(file)) if run.name == name)
+
+    segments = come_to(planned(), tmp_path)[0]["segments"]
+    start, stop = segments["start"].values, segments["stop"].values
+    third = (stop - start) / 3
+    times = [{"start": a, "stop": b} for a, b in zip(start + third, stop - third, strict=True)]
+    decided = entry(name, "reject", **times[0]) + entry(name, "accept")
+    decided += entry(name, "bounds", **times[1], new_start=start[1] + 0.4 * third[1])
+    (file.parent / REVIEW_FILE).write_text(decided, "utf-8")
+    run = planned()
+    assert len(run.files) == 2 and len(run.decisions) == 3
+    whole = come_to(run, tmp_path)
+    assert "friction_as_found" in whole[0]
     cut_up(1000)
-    for run, whole in zip(runs, before, strict=True):
-        same(whole, come_to(run, tmp_path))
+    same(whole, come_to(run, tmp_path))
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(5, 400), st.integers(1, 50))
