@@ -112,10 +112,15 @@ def _processes(folder):
 
         def join():
             """Start a worker, and wait until it is there."""
-            process = start("worker", "--no-nanny", "--nthreads", "1")
+            name = f"worker {len(started)}"
+            process = start("worker", "--no-nanny", "--nthreads", "1", "--name", name)
+            deadline = time.monotonic() + 60
             with distributed.Client(address, set_as_default=False) as client:
-                known = len(client.scheduler_info()["workers"])
-                client.wait_for_workers(known + 1, timeout=60)
+                while time.monotonic() < deadline:
+                    known = client.scheduler_info()["workers"].values()
+                    if name in [worker["name"] for worker in known]:
+                        break
+                    time.sleep(0.05)
             return process
 
         yield address, scheduler, join
