@@ -73,6 +73,8 @@ def filled(count: int, value: float, kind: type[np.generic] = np.float64) -> np.
 
 def let_go() -> None:
     """Give back the memory that looking at long arrays took; they are read again when needed."""
+    if not _mapped:  # said behind every piece of every run: mostly there is nothing
+        return
     for mapped in list(_mapped):
         mapped.madvise(mmap.MADV_DONTNEED)
 

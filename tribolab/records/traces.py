@@ -222,7 +222,8 @@ def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: in
     for a, b in zip(first, last, strict=True):
         if b - a > 1:
             parts.append(a + envelope_index(time[a:b], values[a:b], columns))
-    return np.unique(np.concatenate([*parts, [0, time.size - 1]]))
+    chosen = np.sort(np.concatenate([*parts, [0, time.size - 1]]))
+    return chosen[np.diff(chosen, prepend=-1) > 0]  # each once: `numpy.unique` would hash them
 
 
 def _slowest(segments: xr.Dataset) -> float | None:

@@ -42,19 +42,27 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     weight = np.sqrt(np.minimum(freedom, 64.0))
     weight = weight / weight.sum()
     rest = measured - models
-    level = np.quantile(rest, 0.4, axis=1, keepdims=True)
+    level = _quantile(rest, 0.4)
     best_cost, best_level = np.full(models.shape[0], np.inf), level[:, 0]
     rest -= level
-    off, capped = np.empty_like(rest), np.empty_like(rest)
+    off = np.empty_like(rest)
     for shift in np.linspace(-1.2, 1.2, 17):
         np.subtract(rest, shift, out=off)
-        np.minimum(off, _ABOVE, out=capped)
-        cost = np.maximum(capped, np.negative(off, out=off), out=off) @ weight
+        np.minimum(off, _ABOVE, out=off)
+        cost = np.abs(off, out=off) @ weight
         better = cost < best_cost
         best_cost = np.where(better, cost, best_cost)
         best_level = np.where(better, level[:, 0] + shift, best_level)
     best = int(np.argmin(best_cost))
     return np.exp(models[best] + best_level[best])
+
+
+def _quantile(values: np.ndarray, share: float) -> np.ndarray:
+    """Quantile of each row (row, 1); of numbers without gaps, which `numpy.quantile` looks for."""
+    place = share * (values.shape[1] - 1)
+    first = min(int(place), values.shape[1] - 2)
+    part = np.partition(values, (first, first + 1), axis=1)[:, first : first + 2]
+    return part[:, :1] + (place - first) * (part[:, 1:] - part[:, :1])
 
 
 def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:

@@ -104,7 +104,10 @@ def _still(record: Record, start: float, stop: float, climb: float) -> bool:
     values = record.values[part]
     if values.size < 6:
         return False
-    pieces = [float(piece.mean()) for piece in np.array_split(values, min(values.size // 2, 8))]
+    pieces = min(values.size // 2, 8)
+    size, longer = divmod(values.size, pieces)  # so many are one sample longer
+    first = np.arange(pieces) * size + np.minimum(np.arange(pieces), longer)
+    means = np.add.reduceat(values, first) / np.diff(first, append=values.size)
     # the means of the first and the last piece are a piece's length less than the stretch apart
-    expected = climb * (1 - 1 / len(pieces))
-    return float(np.ptp(pieces)) < _STILL * expected
+    expected = climb * (1 - 1 / pieces)
+    return float(np.ptp(means)) < _STILL * expected

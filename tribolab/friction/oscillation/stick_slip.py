@@ -177,12 +177,14 @@ def stick_slip(
     data["remark"] = _texts(remarks)
     data |= {name: segments[name].values for name in _OF_SEGMENTS if name in segments}
     classes = {"class_probability": (("segment", "waveform_class"), class_table(examined))}
-    result = xr.Dataset(
-        {name: ("segment", values) for name, values in data.items()} | classes,
-        {"segment": segments["segment"].values, "waveform_class": np.array(CLASSES, dtype=object)},
-    )
-    result = result.merge(spectra_table(examined, speed)).merge(event_list(examined))
-    result = result.merge(line_table(examined, speed))
+    tables = spectra_table(examined, speed), event_list(examined), line_table(examined, speed)
+    # as variables, at once: each merging would compare the coordinates anew
+    further = {name: table.variables[name] for table in tables for name in table.data_vars}
+    coords: dict[object, object] = {"segment": segments["segment"].values}
+    coords |= {name: table.variables[name] for table in tables for name in table.coords}
+    coords |= {"waveform_class": np.array(CLASSES, dtype=object)}
+    columns = {name: ("segment", values) for name, values in data.items()}
+    result = xr.Dataset(columns | classes | further, coords)
     if force:
         names = {name: f"force_{name}" for name in _IN_SIGNAL_UNIT if name in result}
         result = result.rename(names)

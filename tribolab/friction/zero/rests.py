@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.statistics import estimate_of
+from tribolab.friction.statistics import estimates_of
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
@@ -93,14 +93,13 @@ def unloaded_rests(
     time = run["time"].values
     normal = run["normal_force"].values
     friction = run["friction_force"].values if "friction_force" in run else None
-    zeros: dict[str, list[tuple[float, float, float]]] = {"normal": [], "friction": []}
     resting = segments["omitted_reason"].values == "at rest"
     limits = zip(
         segments["omitted_start"].values[resting],
         segments["omitted_stop"].values[resting],
         strict=True,
     )
-    before = 0.0
+    before, levels = 0.0, []
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
         level = _level(normal, first, last, load)
@@ -108,14 +107,16 @@ def unloaded_rests(
         if level.size < FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
             continue
         before = float(np.mean(normal[level]))
-        when = float(time[level].mean())
-        level_estimate = estimate_of(time[level], normal[level])
-        zeros["normal"].append((when, level_estimate.mean, level_estimate.sem))
-        if friction is not None:
-            level_estimate = estimate_of(time[level], friction[level])
-            if level_estimate.samples >= FEWEST:
-                zeros["friction"].append((when, level_estimate.mean, level_estimate.sem))
-    return _zeros(zeros["friction"]), _zeros(zeros["normal"])
+        levels.append(level)
+    signals = [normal] if friction is None else [normal, friction]
+    told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
+    when = [float(time[level].mean()) for level in levels]
+    of_normal, of_friction = told[: len(levels)], told[len(levels) :]
+    known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= FEWEST]
+    return (
+        _zeros([(when[k], of_friction[k].mean, of_friction[k].sem) for k in known]),
+        _zeros([(at, own.mean, own.sem) for at, own in zip(when, of_normal, strict=True)]),
+    )
 
 
 def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:

@@ -62,7 +62,7 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
     if x.size <= 2 * columns:
         return np.arange(x.size)
     starts = _starts(x, columns)
-    edges = np.r_[starts, x.size]
+    edges = np.append(starts, x.size)
     kept = []
     for first, last in whole_blocks(edges):
         begin = edges[first]
@@ -88,14 +88,16 @@ def _starts(x: np.ndarray, columns: int) -> np.ndarray:
 
 def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """Index of the first smallest and the first largest point of each column."""
-    group = np.repeat(np.arange(starts.size), np.diff(np.r_[starts, y.size]))
-    order = np.arange(y.size)
+    ends = np.append(starts[1:], y.size)
+    lowest, highest = (
+        _first_at(y, extreme.reduceat(y, starts), starts, ends) for extreme in (np.fmin, np.fmax)
+    )
+    both = np.stack([np.minimum(lowest, highest), np.maximum(lowest, highest)], axis=1).ravel()
+    return both[np.diff(both, prepend=-1) > 0]
 
-    def first_where(hit: np.ndarray) -> np.ndarray:
-        return np.minimum.reduceat(np.where(hit, order, y.size), starts)
 
-    lowest = first_where(y == np.fmin.reduceat(y, starts)[group])
-    highest = first_where(y == np.fmax.reduceat(y, starts)[group])
-    empty = lowest == y.size  # NaN equals nothing: the column has no number
-    lowest[empty] = highest[empty] = starts[empty]
-    return np.unique(np.r_[lowest, highest])
+def _first_at(y: np.ndarray, level: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Index of the first point of each column that is as high; its own first where none is."""
+    hits = np.append(np.flatnonzero(y == np.repeat(level, ends - starts)), y.size)
+    first = hits[np.searchsorted(hits, starts)]
+    return np.where(first < ends, first, starts)  # NaN equals nothing

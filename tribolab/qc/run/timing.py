@@ -185,7 +185,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     """
     interval = np.diff(time)
     parts = min(16, interval.size // 8)
-    if parts < 2:
+    if parts < 2 or 0 < interval.max() <= factor * interval.min():
         return None
     edges = np.linspace(0, interval.size, parts + 1).astype(int)
     medians = np.array([np.median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
