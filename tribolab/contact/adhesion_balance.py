@@ -10,7 +10,8 @@ same root, but goes round in circles where gamma_eff(1) is about to lift off fro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,17 +20,23 @@ from scipy.special import erfcx
 
 from tribolab.contact.area import AreaTheory, area_of
 from tribolab.contact.first_passage import Diffusion
+from tribolab.contact.guided_root import guided_root
 from tribolab.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
 from tribolab.units import positive, to_si
 
 # Share of the nodes that is spread evenly in ln q; the others follow the growth of the stress.
 _EVEN_SHARE = 0.2
+_THINNED = 4  # nodes for one that the root is first looked for on
+_FELT = 1e-11  # of the elastic energy
+_NEAR = 2e-5  # relative: of a guess that wants no correction
 _SMALLEST_AREA = 1e-15
 _LARGEST_RESIDUAL = 1e-8
 # Below this share of E* xi/2 a pressure is the limit p -> 0: the theory is linear in p there, and
 # differences of probabilities near 1 lose the digits that are left.
 _SMALL_PRESSURE = 1e-4
+
+March = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 class Balance(NamedTuple):
@@ -136,55 +143,77 @@ class Interface:
         height = -np.sqrt(np.maximum(start, 0.0) * stiffness[0])
         for i in range(n - 1):
             before, stored = area[i], self.reduced(area[i])
-            # P at the next node is guessed by its last ratio and corrected once, which is enough:
-            # a second correction changes areas by 1e-8
-            guess = before * np.maximum(before / area[i - 1], 0.5) if i else before
+            # P at the next node is guessed by the parabola through ln P at the last three, or by
+            # what is there, and corrected where that was not near
+            guess = before
+            if i > 0:
+                ratio = before / area[i - 1]
+                bend = area[i - 2] / area[i - 1] * ratio if i > 1 else 1.0
+                guess = before * np.clip(ratio * bend, 0.5, 1.0)
+            which: np.ndarray | slice = slice(None)
             for _ in range(2):
-                grown = energy[i] + self.elastic[i] * (stored + self.reduced(guess)) / 2
-                below = -np.sqrt(np.maximum(grown, 0.0) / guess * stiffness[i + 1])
-                levels[i] = (height + below) / 2
-                losses[i] = self.diffusion.lost(i, levels[i], pressure, levels, losses)
+                grown = (
+                    energy[i][which]
+                    + self.elastic[i] * (stored[which] + self.reduced(guess[which])) / 2
+                )
+                below = -np.sqrt(np.maximum(grown, 0.0) / guess[which] * stiffness[i + 1])
+                levels[i, which] = (height[which] + below) / 2
+                losses[i, which] = self.diffusion.lost(
+                    i, levels[i, which], pressure[which], levels[:i, which], losses[:i, which]
+                )
+                expected = guess
                 guess = np.maximum(before - losses[i], _SMALLEST_AREA)
+                which = np.flatnonzero(np.abs(guess - expected) > _NEAR * guess)
+                if not which.size:
+                    break
             area[i + 1] = guess
             energy[i + 1] = energy[i] + self.elastic[i] * (stored + self.reduced(guess)) / 2
             height = -np.sqrt(np.maximum(energy[i + 1], 0.0) / guess * stiffness[i + 1])
         return area, energy
 
+    def stored(self, area: np.ndarray) -> np.ndarray:
+        """Elastic energy [J/m2] (k) of a contact area P(q) (k, n)."""
+        reduced = self.reduced(area)
+        return np.asarray((self.elastic * (reduced[:, 1:] + reduced[:, :-1]) / 2).sum(axis=1))
+
+    def thinned(self) -> Interface:
+        """Return the interface on a quarter of its nodes, the first and the last among them."""
+        kept = np.unique(np.append(np.arange(0, self.wavenumber.size - 1, _THINNED), -1))
+        kept = np.append(kept[1:], self.wavenumber.size - 1)
+        return replace(
+            self,
+            wavenumber=self.wavenumber[kept],
+            diffusion=Diffusion.over(self.diffusion.time[kept]),
+            elastic=np.add.reduceat(self.elastic, kept[:-1]),
+        )
+
     def solve(self, pressure: np.ndarray, work: np.ndarray, iterations: int) -> Balance:
         """Find g at q0 so that Eq. (11) holds at q1, for each pressure and work of adhesion (k).
 
         The root is bracketed: below, no adhesion at any wavenumber; above, gamma_eff(1) at the
-        largest value that Eq. (11) can have. `pressure` and `work` must be above zero.
+        largest value that Eq. (11) can have. It is looked for on a quarter of the nodes first.
+        `pressure` and `work` must be above zero.
         """
-        from scipy.optimize.elementwise import find_root
+        unit, gained = self.stored(self.without_adhesion(pressure)), work * self.area_gain
+        area, energy = np.empty((2, self.wavenumber.size, unit.size))
 
-        dry = self.reduced(self.without_adhesion(pressure))
-        unit = (self.elastic * (dry[:, 1:] + dry[:, :-1]) / 2).sum(axis=1)
-        gained = work * self.area_gain
+        def misfit(march: March) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+            def at(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+                start = np.sinh(x) * unit[which]
+                marched = march(start, pressure[which])
+                if march == self.march:
+                    area[:, which], energy[:, which] = marched
+                (whole, bound), most = (part[-1] for part in marched), gained[which]
+                return (bound - most * whole) / (unit[which] + most * whole)
 
-        def misfit(
-            area: np.ndarray, energy: np.ndarray, unit: np.ndarray, gained: np.ndarray
-        ) -> np.ndarray:
-            return (energy - gained * area) / (unit + gained * area)
-
-        def misfit_at(
-            x: np.ndarray, pressure: np.ndarray, unit: np.ndarray, gained: np.ndarray
-        ) -> np.ndarray:
-            area, energy = self.march(np.sinh(x) * unit, pressure)
-            return misfit(area[-1], energy[-1], unit, gained)
+            return at
 
         # on the scale of asinh roots that are tiny (small pressure) and large are found as fast
-        root = find_root(
-            misfit_at,
-            (np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)),
-            args=(pressure, unit, gained),
-            tolerances={"xatol": 0.0, "xrtol": 4e-16, "fatol": 1e-11, "frtol": 0.0},
-            maxiter=iterations,
-        )
+        low, high = np.full_like(unit, np.arcsinh(-1.0)), np.arcsinh(gained / unit)
+        root = guided_root(misfit(self.march), misfit(self.thinned().march), low, high, iterations)
+        binding = np.maximum(energy, 0.0) / area
         start = np.sinh(root.x) * unit
-        area, energy = (values.T for values in self.march(start, pressure))
-        residual = np.abs(misfit(area[:, -1], energy[:, -1], unit, gained))
-        return Balance(area, np.maximum(energy, 0.0) / area, start, residual, root.nit)
+        return Balance(area.T, binding.T, start, np.abs(root.value), root.steps)
 
 
 def rough_interface(
@@ -245,7 +274,9 @@ def balance(
     start, residual, iterations = np.zeros(k), np.zeros(k), np.zeros(k, dtype=int)
     unknown = np.isnan(pressure)
     area[unknown], binding[unknown], residual[unknown] = np.nan, np.nan, np.nan
-    todo = (work > 0) & ~unknown
+    # where it is not felt beside the elastic energy the equation is met without adhesion
+    felt = work * surface.area_gain * area[:, -1] > _FELT * surface.stored(area)
+    todo = felt & ~unknown
     if todo.any():
         part = surface.solve(pressure[todo], work[todo], max_iterations)
         worst = int(np.argmax(np.where(np.isnan(part.residual), np.inf, part.residual)))

@@ -161,14 +161,11 @@ class _Growth(NamedTuple):
 def _growth(
     pressure: np.ndarray, psd: xr.Dataset, contact: LineContact, area: AreaTheory, work: Work
 ) -> _Growth:
-    from tribolab.contact.adhesion import adhesion
+    from tribolab.contact.adhesion import adhesion_by_works
 
-    value, low, high = (
-        adhesion(pressure, psd, contact.effective_modulus, max(w, 0.0), area=area)[
-            "area_enhancement"
-        ].values
-        for w in (work.value, work.low, work.high)
-    )
+    works = [max(w, 0.0) for w in (work.value, work.low, work.high)]
+    solved = adhesion_by_works(pressure, psd, contact.effective_modulus, works, area)
+    value, low, high = (part["area_enhancement"].values for part in solved)
     return _Growth(value, np.log(high / low) / (2 * _NORMAL))
 
 

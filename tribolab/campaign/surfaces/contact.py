@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from tribolab.campaign.surfaces.rubber import no_rubber, rubber_groups
-from tribolab.contact.adhesion import adhesion
+from tribolab.contact.adhesion import adhesion_by_works
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import (
@@ -207,9 +207,19 @@ def _adhesion(
     # a band is smooth, so a third of the grid tells it
     bounding = np.concatenate([[0.0], at_loads, grid[::3]])
     spectra = _bounds(psd)
+    works = {"": [medium.work_of_adhesion for medium in surface.media]}
+    works |= {"_low": [max(medium.low, 0.0) for medium in surface.media]}
+    works |= {"_high": [max(medium.high, 0.0) for medium in surface.media]}
+    middle = adhesion_by_works(pressures, psd, modulus, works[""], surface.area)
+    # the ratio of two areas need not be extreme where an area is: each end's works on both spectra
+    both = [*works["_low"], *works["_high"]]
+    ends = {
+        ending: adhesion_by_works(bounding, spectra[ending], modulus, both, surface.area)
+        for ending in _ENDINGS[1:]
+    }
     curves, points, valid = [], [], []
-    for medium in surface.media:
-        solved = adhesion(pressures, psd, modulus, medium.work_of_adhesion, area=surface.area)
+    for place, medium in enumerate(surface.media):
+        solved = middle[place]
         valid.append(solved.attrs)
         curve = solved.isel(pressure=slice(1 + at_loads.size, None))
         curve = curve[["contact_area_ratio", "area_enhancement"]]
@@ -235,12 +245,11 @@ def _adhesion(
         point["pull_off"] = np.int8(macroscopic > 0)
         growth = [point["area_enhancement"].values]
         for ending, work in (("_low", medium.low), ("_high", medium.high)):
-            bound = adhesion(bounding, spectra[ending], modulus, max(work, 0), area=surface.area)
-            growth.append(bound.area_enhancement.values[1 : 1 + at_loads.size])
-            if at_loads.size:  # the ratio of two areas need not be extreme where an area is
-                other = spectra["_low" if ending == "_high" else "_high"]
-                solved = adhesion(at_loads, other, modulus, max(work, 0), area=surface.area)
-                growth.append(solved.area_enhancement)
+            other = "_low" if ending == "_high" else "_high"
+            of_work = place + (ending == "_high") * len(surface.media)
+            bound = ends[ending][of_work]
+            for on_spectrum in (bound, ends[other][of_work]):
+                growth.append(on_spectrum.area_enhancement.values[1 : 1 + at_loads.size])
             areas = bound.contact_area_ratio.values
             through = PchipInterpolator(np.log(grid[::3]), np.log(areas[1 + at_loads.size :]))
             outer = np.minimum if ending == "_low" else np.maximum

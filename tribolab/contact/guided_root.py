@@ -1,0 +1,133 @@
+"""Roots of many functions at once that are dear, each beside a cheap one that is much like it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+_ROUGH, _FINE = 1e-4, 1e-11  # values that are as good as zero: of the cheap functions, of the dear
+_SIDE = 1e-3  # of the bracket, over which the cheap function tells its slope
+_SECANTS = 12
+
+
+class Root(NamedTuple):
+    """Where functions vanish (k), what they are there, and in how many steps that was reached."""
+
+    x: np.ndarray
+    value: np.ndarray
+    steps: np.ndarray
+
+
+def guided_root(
+    dear: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
+) -> Root:
+    """Find the root of each function between two ends, by a cheap one of nearly the same root.
+
+    Parameters
+    ----------
+    dear, cheap
+        Called as ``dear(x, which)`` with the numbers of the functions that are asked for; the last
+        call of the dear one for each is at its root.
+    low, high
+        Ends between which the functions change their sign once (k).
+    iterations
+        Largest number of steps of each search.
+
+    Returns
+    -------
+    Root
+        A value that is not nearly zero says that the search failed.
+
+    Notes
+    -----
+    The root of the cheap function is bracketed [1]_. From there on go secants of the dear one, the
+    first with the slope of the cheap one, inside what brackets the root by then. Where they do not
+    come to it in a few steps the dear function is bracketed, too.
+
+    References
+    ----------
+    .. [1] T. R. Chandrupatla, Adv. Eng. Softw. 28, 145 (1997).
+       doi:10.1016/S0965-9978(96)00051-8
+
+    Examples
+    --------
+    >>> aim = np.array([2.0, 3.0])
+    >>> root = guided_root(lambda x, k: x**2 - aim[k], lambda x, k: x**2 - 1.01 * aim[k],
+    ...                    np.zeros(2), np.full(2, 9.0), 50)
+    >>> root.x.round(6)
+    array([1.414214, 1.732051])
+    """
+    every = np.arange(low.size)
+    start, *_ = _bracketed(cheap, low, high, every, iterations, _ROUGH)
+    outside = np.flatnonzero(np.isnan(start))  # the cheap one vanishes just beyond an end
+    if outside.size:
+        ends = np.array([low[outside], high[outside]])
+        size = np.abs([cheap(end, outside) for end in ends])
+        start[outside] = np.where(size[0] < size[1], *ends)
+    side = _SIDE * (high - low)
+    aside = np.where(start + side > high, start - side, start + side)
+    slope = (cheap(aside, every) - cheap(start, every)) / (aside - start)
+    x, value, steps = _by_secants(dear, start, slope, low, high, min(_SECANTS, iterations))
+    lost = np.flatnonzero(~(np.abs(value) < _FINE))
+    if lost.size:
+        again = _bracketed(dear, low[lost], high[lost], lost, iterations, _FINE)
+        x[lost], steps[lost] = again.x, steps[lost] + again.steps
+        value[lost] = dear(x[lost], lost)
+    return Root(x, value, steps)
+
+
+def _bracketed(
+    functions: Functions,
+    low: np.ndarray,
+    high: np.ndarray,
+    which: np.ndarray,
+    iterations: int,
+    close: float,
+) -> Root:
+    """Find roots between two ends by Chandrupatla's method."""
+    from scipy.optimize.elementwise import find_root
+
+    root = find_root(
+        functions,
+        (low, high),
+        args=(which,),
+        tolerances={"xatol": 0.0, "xrtol": 4e-16, "fatol": close, "frtol": 0.0},
+        maxiter=iterations,
+    )
+    return Root(root.x, root.f_x, root.nit)
+
+
+def _by_secants(
+    functions: Functions,
+    start: np.ndarray,
+    slope: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    steps: int,
+) -> Root:
+    """Go on by secants from points where a slope is known."""
+    x, low, high, slope = (part.copy() for part in (start, low, high, slope))
+    value, taken = np.full_like(x, np.nan), np.zeros(x.size, dtype=int)
+    todo = np.arange(x.size)
+    for number in range(steps):
+        before, known = x[todo], value[todo]
+        if number:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                aim = before - known / slope[todo]
+            inside = (aim > low[todo]) & (aim < high[todo])
+            x[todo] = np.where(inside, aim, (low[todo] + high[todo]) / 2)
+        value[todo] = functions(x[todo], todo)
+        taken[todo] += 1
+        if number:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                slope[todo] = (value[todo] - known) / (x[todo] - before)
+        above = value[todo] > 0
+        high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
+        todo = todo[~(np.abs(value[todo]) < _FINE)]
+        if not todo.size:
+            break
+    return Root(x, value, taken)
