@@ -15,6 +15,7 @@ from tribolab.io.companion import describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.kinds import kind_of
+from tribolab.io.runs import facts_of
 from tribolab.io.runs import read_run as known_run
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
@@ -40,8 +41,9 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     if kind == "unknown" and holds_run(path):
         return run_lines(describe(path))
     if kind == "run":
-        described = describe(path, instrument)
-        return run_lines(described) + companion_lines(describe_companion(path, instrument))
+        run = known_run(path, instrument, pair=False)
+        facts = facts_of(run, path, instrument)
+        return run_lines(facts) + companion_lines(describe_companion(path, instrument, run))
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
 
 

@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import TypedDict
 
 import numpy as np
+import xarray as xr
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import load_dialect, recognise
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import companion_name, companion_path
-from tribolab.io.runs import read_run
+from tribolab.io.runs import read_run, with_companion
 
 
 class CompanionFacts(TypedDict, total=False):
@@ -26,7 +27,9 @@ class CompanionFacts(TypedDict, total=False):
     ways: dict[str, str]
 
 
-def describe_companion(path: str | Path, instrument: str | Path | None = None) -> CompanionFacts:
+def describe_companion(
+    path: str | Path, instrument: str | Path | None = None, run: xr.Dataset | None = None
+) -> CompanionFacts:
     """Say what was found of a raw file's companion log, and how the clocks were matched.
 
     Parameters
@@ -35,6 +38,8 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
         The main log.
     instrument
         As for `tribolab.read`.
+    run
+        The main log alone, where it is read already.
 
     Returns
     -------
@@ -53,7 +58,8 @@ def describe_companion(path: str | Path, instrument: str | Path | None = None) -
         other = companion_path(Path(path), dialect)
         if other is None or not other.is_file():
             return {"missing": companion_name(Path(path), dialect)}
-        attrs = read_run(path, instrument).attrs
+        run = read_run(path, instrument, pair=False) if run is None else run
+        attrs = with_companion(run, other, dialect).attrs
     except ReadError as error:
         return {"refused": error.told("terminal")}
     told: CompanionFacts = {

@@ -47,6 +47,9 @@ from tribolab.units import positive, to_si
 from tribolab.untyped import Json
 
 
+Logs = list[tuple[Path, Dialect]]
+
+
 class Reading(TypedDict, total=False):
     """What may be said of reading a run, besides its files and instrument; see `tribolab.read`."""
 
@@ -106,14 +109,38 @@ def read_run(
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
-        from tribolab.io.clocks.merge import merge
-
-        motion = _run(companions)
-        joined = with_companion_rows(merge(run, motion, shift), run, motion)
-        return _without_inertia(joined, mass)
+        return _without_inertia(_joined(run, companions, shift), mass)
     if pair and (expected := companion_name(*main[0])):
         run.attrs["companion_missing"] = expected
     return _without_inertia(run, mass)
+
+
+def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
+    """Return a run together with its second log, whose clock is matched by the signals.
+
+    Parameters
+    ----------
+    run
+        The main log (time).
+    path
+        The second log.
+    dialect
+        That of the main log, which names that of the second.
+
+    Raises
+    ------
+    ReadError
+        If the second log cannot be read, or does not belong to the run.
+    """
+    assert dialect.pair is not None  # whoever asks has found the second log by it
+    return _joined(run, [(path, load_dialect(dialect.pair.instrument))], None)
+
+
+def _joined(run: xr.Dataset, companions: Logs, shift: float | None) -> xr.Dataset:
+    from tribolab.io.clocks.merge import merge
+
+    motion = _run(companions)
+    return with_companion_rows(merge(run, motion, shift), run, motion)
 
 
 def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
@@ -177,7 +204,19 @@ def describe(path: PathLike, instrument: Instrument | None = None) -> FileFacts:
     ReadError
         If the file cannot be read.
     """
-    run = read_run(path, instrument, pair=False)
+    return facts_of(read_run(path, instrument, pair=False), path, instrument)
+
+
+def facts_of(run: xr.Dataset, path: Path, instrument: Instrument | None = None) -> FileFacts:
+    """Say what was understood of one raw file that is read already; see `describe`.
+
+    Parameters
+    ----------
+    run
+        The run (time).
+    path, instrument
+        As for `describe`.
+    """
     time = run["time"].to_numpy()
     gaps = np.diff(time)
     labels = run.attrs.get("columns_used", {})
@@ -223,9 +262,6 @@ def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]
         load_dialect(rule.instrument) if rule and path.stem.endswith(rule.other) else dialect
         for path in paths
     ]
-
-
-Logs = list[tuple[Path, Dialect]]
 
 
 def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[Logs, Logs]:
