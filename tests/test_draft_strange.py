@@ -387,6 +387,8 @@ def test_a_lever_above_the_table_is_asked_about(tmp_path):
     told = asked(written(tmp_path / "a.csv", head.format(3), T, FRICTION, LOAD, SPEED))
     assert "not times 'Lever ratio: 3'" in told
     tl.read(written(tmp_path / "b.csv", head.format(1), T, FRICTION, LOAD, SPEED))
+    head = head.replace("Lever ratio: {}", "Gain of the load cell = 2.5")
+    assert "not times" in asked(written(tmp_path / "c.csv", head, T, FRICTION, LOAD, SPEED))
 
 
 def test_the_mean_goes_before_the_extremes_and_these_alone_are_asked_about(tmp_path):
@@ -403,3 +405,29 @@ def test_a_speed_in_turns_is_one_of_rotation(unit, tmp_path):
     run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60))
     per_second = 60 if unit == "rev/s" else 1
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 20e-3 * per_second, rtol=1e-6)
+
+
+def test_forces_that_do_not_make_the_coefficient_beside_them_are_asked_about(tmp_path):
+    head = "Time [s],Friction [N],Load [N],COF,Speed [mm/s]"
+    told = asked(written(tmp_path / "a.csv", head, T, FRICTION, LOAD / 1e3, 0.25, SPEED))
+    assert "column 4 states 0.25" in told and "250" in told
+    tl.read(written(tmp_path / "b.csv", head, T, FRICTION, LOAD, 0.25, SPEED))
+
+
+@pytest.mark.parametrize("name", ["speed_mm_s", "speed_mm_per_s", "speed mm/s"])
+def test_units_behind_underscores_are_units(name, tmp_path):
+    """Read as turns per second, a radius above the table would make a wrong speed of it."""
+    head = f"Track radius: 20 mm\ntime_s,friction_mN,load_mN,{name}"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, SPEED))
+    np.testing.assert_allclose(run.sliding_velocity, 1e-3 * SPEED)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * FRICTION, atol=1e-6)
+
+
+def test_text_in_quotes_may_hold_the_delimiter_and_bars_may_part_cells(tmp_path):
+    head = "Time [s],Phase,Friction [mN],Load [mN],Speed [mm/s]"
+    phase = [f'"run, {n % 3}"' for n in range(N)]
+    run = tl.read(written(tmp_path / "a.csv", head, T, phase, FRICTION, LOAD, SPEED))
+    np.testing.assert_allclose(run.normal_force, 1e-3 * LOAD, atol=1e-6)
+    head = "Time [s]|Friction [mN]|Load [mN]|Speed [mm/s]"
+    run = tl.read(written(tmp_path / "b.csv", head, T, FRICTION, LOAD, SPEED, delimiter="|"))
+    np.testing.assert_allclose(run.normal_force, 1e-3 * LOAD, atol=1e-6)

@@ -285,6 +285,17 @@ def test_force_without_sign_gives_the_mean_of_both_directions(offset, loaded_res
     assert not doubts(lost, stated, "rectified")
 
 
+def test_a_sign_that_is_lost_in_a_part_of_the_run_is_in_doubt_there():
+    """Half the difference of two levels without sign is nothing, and was taken for the friction."""
+    run = programme(BOTH * 3, loaded_rests=True)
+    force = run["friction_force"].values
+    half = force.size // 2
+    lost = run.assign(friction_force=("time", np.r_[force[:half], np.abs(force[half:])]))
+    [told] = doubts(lost, analysed(lost), "rectified")
+    assert "in segments 3-4, 5-6" in told["message"] and "1-2" not in told["message"]
+    assert not doubts(run, analysed(run), "rectified")
+
+
 @pytest.mark.parametrize("offset", [12.0, 40.0, -40.0])
 def test_offset_larger_than_friction_is_no_lost_sign(offset):
     run = programme(BOTH * 3, zero=lambda u: offset + 0 * u, loaded_rests=True, turn=20)

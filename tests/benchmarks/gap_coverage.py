@@ -4,7 +4,7 @@ Run with ``PYTHONPATH=. python tests/benchmarks/gap_coverage.py [--first 100] [-
 seeds take some three minutes. The errors were set on seeds below 100. Printed is, for each kind
 and share of gaps, how often the whole scan's value lies within 1.96 stated errors: annuli of maps
 and bins of profiles that are trusted, roughness of profiles and of the rows of maps. The verdict
-is on the mean over all kinds, 93 to 99.5 %, and on each kind, at least 88 %.
+is on the mean over all kinds, 93 to 99.5 %, and on each kind, at least 90 %.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def main() -> None:
             row = "".join(f"{rates[what, kind, share]:8.1%}" for share in SHARES)
             print(f"{what:10s}{kind:9s}{row}")
     mean, least = float(np.mean(list(rates.values()))), min(rates.values())
-    good = 0.93 <= mean <= 0.995 and least >= 0.88
+    good = 0.93 <= mean <= 0.995 and least >= 0.9
     print(f"mean {mean:.1%}, least {least:.1%}: {'as stated' if good else 'MISSED'}")
     sys.exit(0 if good else 1)
 

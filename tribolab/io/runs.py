@@ -46,7 +46,6 @@ from tribolab.stamping import stamp
 from tribolab.units import positive, to_si
 from tribolab.untyped import Json
 
-
 Logs = list[tuple[Path, Dialect]]
 
 
@@ -207,7 +206,7 @@ def describe(path: PathLike, instrument: Instrument | None = None) -> FileFacts:
     return facts_of(read_run(path, instrument, pair=False), path, instrument)
 
 
-def facts_of(run: xr.Dataset, path: Path, instrument: Instrument | None = None) -> FileFacts:
+def facts_of(run: xr.Dataset, path: PathLike, instrument: Instrument | None = None) -> FileFacts:
     """Say what was understood of one raw file that is read already; see `describe`.
 
     Parameters

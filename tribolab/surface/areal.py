@@ -113,7 +113,7 @@ def psd_2d_of_map(
         def powers(maps: np.ndarray) -> np.ndarray:
             return logarithm(annuli(_power(maps, taper)))
 
-        effect = gap_effect(height, missing, powers, is_map=True)
+        effect = gap_effect(height, missing, powers, is_map=True, joint=True)
         mean, independent = mean * np.exp(-effect.shift), still_worth(independent, effect)
         lost = lost_from(node, effect)
         known &= node < max(lost, node[min(4, node.size - 1)])

@@ -121,7 +121,7 @@ def psd_1d(
         def powers(rows: np.ndarray) -> np.ndarray:
             return logarithm(binned_power(rows, taper, bins, length, workers).bins)
 
-        effect = gap_effect(heights.values, missing, powers, is_map=False)
+        effect = gap_effect(heights.values, missing, powers, is_map=False, joint=True)
         mean, worth = mean * np.exp(-effect.shift), still_worth(worth, effect)
     value = mean / ratio
     low, high = confidence_band(value, worth)

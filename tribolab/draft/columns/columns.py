@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
-from tribolab.draft.columns.values import find_levers, find_pitch, find_sampling
+from tribolab.draft.columns.ratio import disagreement
+from tribolab.draft.columns.values import find_factors, find_pitch, find_sampling
 from tribolab.draft.columns.words import COUNTS, is_count, matches, split_unit
 from tribolab.draft.file.header import is_unit
 from tribolab.draft.file.layout import Layout
@@ -35,8 +36,8 @@ def understand(layout: Layout) -> Understood:
     columns = _labelled(layout)
     pitch = find_pitch(layout)
     guesses = [
-        f"the load is read as it stands, not times '{shown(value.text, 40)}'"
-        for value in find_levers(layout)
+        f"signals are read as they stand, not times '{shown(value.text, 40)}'"
+        for value in find_factors(layout)
     ]
     if _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=pitch is not None)
@@ -47,6 +48,7 @@ def understand(layout: Layout) -> Understood:
 
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
+    guesses += disagreement(columns, numbers) if kind == "run" else []
     columns = _dated(columns, layout, numbers, text)
     columns = [
         column._replace(

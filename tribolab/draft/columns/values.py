@@ -42,14 +42,16 @@ _PITCH = re.compile(
     r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
 )
 _RADIUS = re.compile("radius|rayon|radio|raggio")
-_LEVER = re.compile(
+_FACTOR = re.compile(
     r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
+    r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
+    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
 )
 _OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
 # of the track, not of a ball or a disc
 _DIAMETER = re.compile(
     r"(?:track|wear|spur|laufbahn|reib|friction|path|piste|traccia).*"
-    r"(?:diam|durchmesser)|diam.*(?:track|piste|traccia)"
+    r"(?:dia|durchmesser)|dia(?:m\w*)?.*(?:track|piste|traccia)"
 )
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
@@ -140,21 +142,21 @@ def find_sampling(layout: Layout) -> Sampling | None:
     return None
 
 
-def find_levers(layout: Layout) -> list[DraftValue]:
-    """Return the ratios of levers before the table, but those of one.
+def find_factors(layout: Layout) -> list[DraftValue]:
+    """Return what signals may still have to be multiplied by: levers, gains, scales; but not one.
 
     Parameters
     ----------
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    levers = []
+    factors = []
     for value in find_values(layout):
         said = _said(value.text)
-        if said and value.unit is None and _LEVER.search(squeezed(said["key"])):
+        if said and value.unit is None and _FACTOR.search(squeezed(said["key"])):
             number = float(said["number"].replace(",", "."))
-            levers += [value] if number != 1 else []
-    return levers
+            factors += [value] if number != 1 else []
+    return factors
 
 
 def words_said(layout: Layout) -> list[tuple[str, str]]:

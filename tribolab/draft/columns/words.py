@@ -76,11 +76,16 @@ def is_axis(name: str) -> bool:
     return bool(_AXIS.search(squeezed(device or own)))
 
 
+_PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, mm_s
+
+
 def split_unit(label: str) -> tuple[str, str | None]:
     """Separate a unit at the end of a name that has no brackets: 'Lateral um', 'Force/N'.
 
     >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
+    >>> split_unit("speed_um_per_s"), split_unit("speed_mm_s")
+    (('speed', 'um/s'), ('speed', 'mm/s'))
     >>> split_unit("时间（s）")
     ('时间', 's')
     """
@@ -92,6 +97,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return label, None
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
+        unit = _PER.sub("/", unit)
         unit = _UNIT_WORDS.get(unit.lower(), unit)
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
             # what has no dimension is part of the name: the N/N of F_N/N

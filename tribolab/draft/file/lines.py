@@ -14,7 +14,7 @@ from tribolab.io.dialects.signature import HEAD
 _EASTERN = ("gb18030", "cp932", "big5")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
 _VOTERS = 300  # lines at the start and at the end that decide on the delimiter
-DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "whitespace": "blanks"}
+DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", "whitespace": "blanks"}
 _NUMBER = {
     ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",

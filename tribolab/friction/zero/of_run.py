@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.zero.offsets import pair_strokes
+from tribolab.friction.zero.part_folded import of_parts
 from tribolab.friction.zero.parts import Known, Reference, Strokes
 from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, Pressed, folded
 from tribolab.friction.zero.reference import find_reference
@@ -126,7 +127,8 @@ def zero_of_run(
         words = [f"recorded without sign: {text}" for text in reference.zero_from]
         method = WITHOUT_SIGN if reference.method == "half loop" else reference.method
         reference = replace(reference, zero_from=np.array(words, dtype=object), method=method)
-    doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *reference.doubts)
+    parts_of_it = of_parts(strokes) if fold.kind == "signed" and settings.rectified is None else ()
+    doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *parts_of_it, *reference.doubts)
     return replace(reference, doubts=doubts), Signs(sign, unfold), pair
 
 

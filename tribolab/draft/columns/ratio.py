@@ -1,0 +1,56 @@
+"""Whether a coefficient of friction that a file holds agrees with its forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.draft.model import DraftColumn
+from tribolab.quantities import unit_conversion
+
+_APART = 1.5  # times: filters and zeros that the instrument took off make less
+_FEW = 20  # rows under load that tell
+_LOADED = 0.5  # of the largest load
+
+
+def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
+    """Say so where the ratio of the forces is not the coefficient that stands beside them.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written.
+
+    Returns
+    -------
+    list of str
+        One guess, or none.
+    """
+    held = {column.quantity: column for column in columns if column.used and column.quantity}
+    names = ("friction_coefficient", "friction_force", "normal_force")
+    if any(name not in held for name in names):
+        return []
+    stated, friction, load = (_si(held[name], numbers) for name in names)
+    sound = np.isfinite(stated) & np.isfinite(friction) & np.isfinite(load) & (stated != 0)
+    if sound.sum() < _FEW:
+        return []
+    sound &= np.abs(load) > _LOADED * np.abs(load[sound]).max()
+    if sound.sum() < _FEW:
+        return []
+    sizes = [
+        float(np.median(np.abs(x[sound]))) for x in (stated, friction / np.where(sound, load, 1))
+    ]
+    if min(sizes) > 0 and max(sizes) / min(sizes) <= _APART:
+        return []
+    return [
+        f"the forces are right, whose ratio is {sizes[1]:.3g}; column "
+        f"{held['friction_coefficient'].place} states {sizes[0]:.3g}"
+    ]
+
+
+def _si(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
+    scale, offset = unit_conversion(column.read_unit or "", str(column.quantity))
+    return np.asarray(column.sign * scale * numbers[:, column.place - 1] + offset)

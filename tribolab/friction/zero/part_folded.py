@@ -1,0 +1,56 @@
+"""A friction force that lost its sign in a part of the run only, or whose zero jumped there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.friction.zero.parts import Doubt, Strokes, doubt
+
+_CLEAR = 5.0  # standard errors beyond which a level has a sign
+_CENTRED = (
+    0.3  # of the half loop: a middle that is nearer to zero belongs to a signal with its sign
+)
+_ALIKE = 0.5  # of the larger of both levels, the smaller one where the sign was lost
+_LIKE = 4.0  # times the half loops of the others, or less by as much: the same friction
+
+
+def of_parts(strokes: Strokes) -> tuple[Doubt, ...]:
+    """Doubt pairs of strokes with one sign both ways, beside others whose sign changes.
+
+    Half the difference of such a pair is no friction: of levels mu N and mu N nothing is left.
+
+    Parameters
+    ----------
+    strokes
+        Means of the segments and their pairs.
+    """
+    pairs = np.arange(strokes.pair.max(initial=-1) + 1)
+    if not pairs.size:
+        return ()
+    members = np.array([np.flatnonzero(strokes.pair == p)[:2] for p in pairs])
+    mean, error = strokes.mean[members], np.nan_to_num(strokes.error[members])
+    middle, half = mean.mean(axis=1), np.abs(np.diff(mean, axis=1)[:, 0]) / 2
+    size = np.abs(mean)
+    signed = (np.prod(mean, axis=1) < 0) & (np.abs(middle) < _CENTRED * half)
+    clear = (size > _CLEAR * error).all(axis=1)
+    alike = size.min(axis=1) > _ALIKE * size.max(axis=1)
+    one_sign = (np.prod(mean, axis=1) > 0) & clear & alike
+    if not signed.any() or not one_sign.any():
+        return ()
+    usual = float(np.median(half[signed]))
+    one_sign &= (np.abs(middle) > usual / _LIKE) & (np.abs(middle) < usual * _LIKE)
+    if not one_sign.any():
+        return ()
+    named = ", ".join("-".join(str(strokes.number[i]) for i in pair) for pair in members[one_sign])
+    text = (
+        f"friction has one sign both ways in segments {named}, and changes it with the direction "
+        f"in others: its sign was lost there, or its zero moved by about "
+        f"{np.median(np.abs(middle[one_sign])):.3g}{strokes.unit}"
+    )
+    cure = (
+        "Look at the trace: reject the part where the signal changed, or part the run there and "
+        "state `rectified` of each."
+    )
+    remark = doubt(text, cure, members[one_sign].ravel())
+    remark["check"] = "rectified"
+    return (remark,)
