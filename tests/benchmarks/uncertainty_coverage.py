@@ -7,10 +7,11 @@ run, points of a curve against that of the law; a single run says nothing of rep
 points are held against its own friction. One direction: forward strokes alone, the zero as stated.
 Reversal: half loops. Both should hold the truth in 93 to 97 %, with 1, 2 and 5 repeats.
 
-All values of a campaign share its gains, cross-talk and linearity, so that 500 campaigns are 500
-draws of them and no more: drawn at random, the coverage would err by 1 % (standard deviation), and
-one study in twenty would miss the range by chance. They are scrambled Sobol points instead, which
-have the same distribution and half the error; the rest of the chance is drawn at random.
+All values of a campaign share its gains, cross-talk and linearity, and all points of a curve the
+levels and the tilts of its runs, so that 500 campaigns are 500 draws of them and no more: drawn at
+random, the coverage would err by 1 % (standard deviation), and one study in twenty would miss the
+range by chance. They are scrambled Sobol points instead, which have the same distribution and half
+the error; the rest of the chance is drawn at random.
 
 Signals go from the rig to the analysis in memory; those of the first campaigns are written and read
 as raw files besides, and have to give the same coefficients.
@@ -27,7 +28,9 @@ from __future__ import annotations
 import dataclasses
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -40,6 +43,7 @@ from tribolab.rig import (
     ForceCell,
     Protocol,
     Rig,
+    Scatter,
     StickSlip,
     friction_law,
     simulate_run,
@@ -50,7 +54,7 @@ from tribolab.stamping import stamp
 LOAD, REPEATS, SPEEDS = 31.0, (1, 2, 5), (3e-5, 3e-4, 3e-3)
 ZERO, DRIFT, STEP = 0.04, 0.02, 0.002  # N
 CELL = ForceCell(offset_friction=ZERO, offset_normal=ZERO, drift=DRIFT, step=STEP, hum=0.0)
-RIG = Rig(Protocol(SPEEDS, stroke=0.15e-3), force_cell=CELL)
+RIG = Rig(Protocol(SPEEDS, stroke=0.15e-3), Scatter(repeat=0.0), force_cell=CELL)
 LAW = friction_law("Sb-S", "glycerol", LOAD)
 NO_SLIP = StickSlip()
 SHARED = {
@@ -62,6 +66,7 @@ SHARED = {
     "normal_linearity": 0.06,
 }
 TILT = np.radians(0.4)
+LEVEL = 0.01  # of a run, relative
 UNITS = {"tilt": "rad", "friction_zero": "N", "normal_zero": "N", "resolution": "N"}
 UNITS |= {"friction_linearity": "N", "normal_linearity": "N"}
 WITHIN = (0.93, 0.97)
@@ -75,6 +80,11 @@ def stated() -> dict[str, dict[str, str]]:
         for name, size in ((name, float(size)) for name, size in sizes.items())
     }
     return tables | {"resolution": {"value": f"{STEP} N", "as": "step"}}
+
+
+def scaled(level: float, speed: np.ndarray) -> np.ndarray:
+    """Friction of a run whose level is its own."""
+    return level * LAW(speed)
 
 
 def signals_of(run) -> xr.Dataset:
@@ -122,22 +132,34 @@ def from_files(run, offset: str, memory: xr.Dataset) -> float:
     return float(np.max(np.abs(apart) / np.hypot(*errors)))
 
 
-def calibrations(campaigns: int, seed: int) -> list[Calibration]:
-    """What the campaigns' calibrations are, normal with their standard uncertainties."""
-    sobol = qmc.Sobol(len(SHARED), rng=np.random.default_rng([18, seed]))
-    drawn = special.ndtri(sobol.random_base2(int(np.ceil(np.log2(campaigns))))[:campaigns])
-    sizes = drawn * np.array(list(SHARED.values()))
-    return [Calibration(**dict(zip(SHARED, map(float, row), strict=True))) for row in sizes]
+class Drawn(NamedTuple):
+    """What a campaign's values share: its calibration, and of each run the level and the tilt."""
+
+    shared: Calibration
+    level: np.ndarray
+    tilt: np.ndarray
 
 
-def campaign(seed: int, shared: Calibration, with_files: bool, counts: dict) -> float:
+def drawn(campaigns: int, seed: int) -> list[Drawn]:
+    """What the campaigns' calibrations and runs are, normal with their standard uncertainties."""
+    runs = max(REPEATS)
+    sobol = qmc.Sobol(len(SHARED) + 2 * runs, rng=np.random.default_rng([18, seed]))
+    points = special.ndtri(sobol.random_base2(int(np.ceil(np.log2(campaigns))))[:campaigns])
+    shared, level, tilt = np.split(points, [len(SHARED), len(SHARED) + runs], axis=1)
+    sizes = shared * np.array(list(SHARED.values()))
+    calibrations = [Calibration(**dict(zip(SHARED, map(float, row), strict=True))) for row in sizes]
+    return list(map(Drawn, calibrations, 1 + LEVEL * level, TILT * tilt))
+
+
+def campaign(seed: int, of: Drawn, with_files: bool, counts: dict) -> float:
     """Simulate and analyse one campaign; count what its U95 hold."""
     rng = np.random.default_rng([18, seed])
     runs = []
-    for number in range(max(REPEATS)):
-        calibration = dataclasses.replace(shared, tilt=float(rng.normal(0, TILT)))
-        given = {"rig": RIG, "law": LAW, "slip": NO_SLIP, "calibration": calibration}
-        runs.append(simulate_run("Sb-S", "glycerol", LOAD, number + 1, seed=rng, **given))
+    for number, (level, tilt) in enumerate(zip(of.level, of.tilt, strict=True), start=1):
+        calibration = dataclasses.replace(of.shared, tilt=float(tilt))
+        law = partial(scaled, float(level))
+        given = {"rig": RIG, "law": law, "slip": NO_SLIP, "calibration": calibration}
+        runs.append(simulate_run("Sb-S", "glycerol", LOAD, number, seed=rng, **given))
     apart, known = 0.0, stated()
     signals = [signals_of(run) for run in runs]
     found_in = [tl.find_segments(run) for run in signals]
@@ -169,8 +191,8 @@ def main() -> int:
     campaigns, first, files = (*given, *(500, 0, 3)[len(given) :])
     counts: dict[tuple[str, str, int], list[bool]] = {}
     apart = 0.0
-    for seed, shared in enumerate(calibrations(campaigns, first), start=first):
-        apart = max(apart, campaign(seed, shared, seed < first + files, counts))
+    for seed, of in enumerate(drawn(campaigns, first), start=first):
+        apart = max(apart, campaign(seed, of, seed < first + files, counts))
     missed = []
     for (way, what, repeats), holds in counts.items():
         share = float(np.mean(holds))
