@@ -90,3 +90,14 @@ def matches(segments: xr.Dataset, made: Made, slack=0.05, error=0.01) -> bool:
         and (np.abs(segments["stop"].values - made.stop) <= slack * length).all()
         and (np.abs(signed - made.velocity) <= error * np.abs(made.velocity)).all()
     )
+
+
+def reasons(segments):
+    return set(segments["omitted_reason"].values)
+
+
+def velocity_run(velocity, dt=0.01):
+    velocity = np.asarray(velocity, dtype=float)
+    return xr.Dataset(
+        {"sliding_velocity": ("time", velocity)}, {"time": np.arange(velocity.size) * dt}
+    )

@@ -3,14 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
-from dialects import dialect_of
 from made_runs import strokes, with_friction
 from real_runs import actuator, rock
+from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
-from tribolab.campaign.pipeline import process
-from tribolab.campaign.settings.load import load_campaign
-from tribolab.draft.read import read
-from tribolab.errors import AnalysisError, ConfigError
+from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.segments.find import find_segments
@@ -18,76 +15,7 @@ from tribolab.friction.zero.middles import middles
 from tribolab.friction.zero.offsets import wander
 from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
-from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run.checks import check_run
-
-MU, LOAD, SPEED = 0.3, 31.0, 1e-3
-
-
-def programme(
-    speeds,
-    *,
-    mu=lambda v: np.full(np.shape(v), MU),
-    zero=lambda u: 0.0 * u,
-    normal_zero=lambda u: 0.0 * u,
-    loaded_rests=False,
-    samples=300,
-    turn=4,
-    noise=0.02,
-    seed=0,
-):
-    """Strokes at signed speeds with unloaded rests before, after and, where None stands, between.
-
-    `mu` follows the signed speed, `zero` and `normal_zero` [N] the share of the run that passed.
-    Friction turns over within `turn` samples of a reversal.
-    """
-    rng = np.random.default_rng(seed)
-    speed, load = [], []
-    for v in (None, *speeds, None):
-        if v is None:
-            speed += [np.zeros(120)]
-            load += [np.r_[np.zeros(5), np.full(100, float(loaded_rests)), np.ones(15)]]
-            load[-1][:105] = float(loaded_rests)
-        else:
-            leg = np.linspace(0, v, turn + 2)[1:-1]
-            speed += [np.r_[leg, np.full(samples, v), leg[::-1], 0.0]]
-            load += [np.ones(speed[-1].size)]
-    v, pressed = np.concatenate(speed), np.concatenate(load)
-    pressed[-100:] = float(loaded_rests)
-    time = 0.01 * np.arange(v.size)
-    share = time / time[-1]
-    top = np.abs(v).max()
-    built = np.clip(v / (0.5 * np.min(np.abs([s for s in speeds if s]))), -1, 1)
-    force = built * mu(np.where(v == 0, top, v)) * LOAD * pressed
-    force = force + zero(share) + noise * rng.standard_normal(v.size)
-    normal = LOAD * pressed + normal_zero(share) + noise * rng.standard_normal(v.size)
-    return xr.Dataset(
-        {
-            "sliding_velocity": ("time", v + 1e-4 * top * rng.standard_normal(v.size)),
-            "friction_force": ("time", force),
-            "normal_force": ("time", normal),
-        },
-        {"time": time},
-        attrs={"source": "made.csv"},
-    )
-
-
-def analysed(run, **options):
-    return friction_coefficient(run, find_segments(run), **options)
-
-
-def off(friction, truth=MU):
-    """Error of each coefficient in standard errors."""
-    return (friction["friction_coefficient"] - truth) / friction["friction_coefficient_sem"]
-
-
-def doubts(run, friction, check="zero_reference"):
-    found = check_run(run, find_segments(run), friction)
-    return [row for row in found.rows if row["check"] == check and row["status"] == "suspect"]
-
-
-BOTH = [SPEED, -SPEED]
-
 
 # drift
 
@@ -111,7 +39,7 @@ def test_linear_drift_of_the_zero_over_six_pairs_leaves_nothing(total):
 @pytest.mark.slow
 def test_error_covers_the_truth_where_the_zero_walks_or_drifts():
     errors = []
-    for seed in range(20):
+    for seed in range(12):
         walk = np.random.default_rng(seed).standard_normal(4000).cumsum() / np.sqrt(4000)
         run = programme(
             BOTH * 6,
@@ -272,7 +200,7 @@ def test_sound_loops_with_rests_are_not_objected_to(seed):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("loaded_rests", [False, True])
-@pytest.mark.parametrize("offset", [0.0, 2.0, -2.0])
+@pytest.mark.parametrize("offset", [0.0, -2.0])
 def test_force_without_sign_gives_the_mean_of_both_directions(offset, loaded_rests):
     run = programme(BOTH * 3, zero=lambda u: offset + 0 * u, loaded_rests=loaded_rests)
     lost = run.assign(friction_force=np.abs(run["friction_force"]))
@@ -446,78 +374,3 @@ def test_turns_within_a_sample_do_not_prove_a_sign(lost, kind):
         force, Pressed(None, parts, 0.5), parts, mean, np.full(8, 1e-3), sign, np.nan
     )
     assert folded(trace).kind.startswith(kind)
-
-
-# a campaign
-
-DIALECT = dialect_of(
-    "one_rig", time="t", sliding_velocity="v", friction_force="F", normal_force="N"
-)
-
-
-def write_campaign(folder, runs, entry=""):
-    (folder / "raw").mkdir(parents=True, exist_ok=True)
-    (folder / "one_rig.toml").write_text(DIALECT, "utf-8")
-    for name, run in runs.items():
-        columns = [run["time"], run["sliding_velocity"], run["friction_force"], run["normal_force"]]
-        rows = np.column_stack([column.values for column in columns])
-        header = "t [s],v [m/s],F [N],N [N]"
-        np.savetxt(folder / "raw" / name, rows, "%.9g", ",", header=header, comments="")
-    text = '[campaign]\nname = "zeros"\n[[run]]\nfiles = "*.csv"\ninstrument = "one_rig.toml"\n'
-    (folder / "campaign.toml").write_text(text + entry, "utf-8")
-    return load_campaign(folder / "campaign.toml")
-
-
-@pytest.mark.slow
-def test_runs_of_a_campaign_lend_their_zeros_to_one_that_has_none(tmp_path):
-    runs = {
-        f"{i}.csv": programme(BOTH, zero=lambda u, f=f: f + 0 * u, loaded_rests=True, seed=i)
-        for i, f in enumerate((1.9, 2.0, 2.15))
-    }
-    stops = [SPEED, None, SPEED]
-    runs["one_way.csv"] = programme(stops, zero=lambda u: 2.05 + 0 * u, loaded_rests=True, seed=9)
-    campaign = write_campaign(tmp_path, runs)
-    outcome = process(campaign, tmp_path / "first")
-    lent = {run.name: run for run in outcome.runs}["one_way"]
-    friction = read_netcdf(tmp_path / "first" / lent.data_file, group="friction")
-    assert friction.attrs["offset"] == "other runs"
-    assert set(friction["zero_from"].values) == {"zeros of 3 other runs on this instrument"}
-    assert (np.abs(off(friction)) < 3).all()
-    # taken over as it is, and done again once a lender is gone
-    again = process(campaign, tmp_path / "second", previous=tmp_path / "first")
-    assert all(run.reused for run in again.runs)
-    (tmp_path / "raw" / "2.csv").unlink()
-    left = process(campaign, tmp_path / "third", previous=tmp_path / "second")
-    done = [run.name for run in left.runs if not run.reused and not run.kept]
-    assert done == ["one_way"]  # and the result of the file that is gone is kept, but lends nothing
-    friction = read_netcdf(tmp_path / "third" / lent.data_file, group="friction")
-    assert set(friction["zero_from"].values) == {"zeros of 2 other runs on this instrument"}
-
-
-@pytest.mark.parametrize("entry", ["", 'zero_uncertainty = "1 N"\n', "rectified = true\n"])
-def test_what_the_campaign_file_states_of_the_zero_reaches_the_result(tmp_path, entry):
-    run = programme([SPEED, None, SPEED], zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
-    outcome = process(write_campaign(tmp_path, {"one.csv": run}, entry), tmp_path / "new")
-    friction = read_netcdf(tmp_path / "new" / outcome.runs[0].data_file, group="friction")
-    stated = "zero_uncertainty" in entry
-    assert (friction.attrs["offset"] == "stated") == stated
-    assert friction["zero_from"].values[0].startswith("recorded without sign") == (
-        "rectified" in entry
-    )
-    assert (outcome.runs[0].quality == "pass") == stated
-
-
-def test_the_dialect_states_zero_and_sign_of_friction_only(tmp_path):
-    run = programme([SPEED] * 2, zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
-    write_campaign(tmp_path, {"one.csv": run})
-    stated = DIALECT.replace(
-        'name = "F"', 'name = "F"\nzero_uncertainty = "500 mN"\nrectified = false'
-    )
-    (tmp_path / "one_rig.toml").write_text(stated, "utf-8")
-    found = read(tmp_path / "raw" / "one.csv", tmp_path / "one_rig.toml")
-    assert found.attrs["friction_force_zero_uncertainty_N"] == 0.5
-    assert found.attrs["friction_force_rectified"] is False
-    wrong = DIALECT.replace('name = "N"', 'name = "N"\nzero_uncertainty = "1 N"')
-    (tmp_path / "one_rig.toml").write_text(wrong, "utf-8")
-    with pytest.raises(ConfigError, match="zero_uncertainty is for friction_force"):
-        read(tmp_path / "raw" / "one.csv", tmp_path / "one_rig.toml")
