@@ -59,8 +59,7 @@ def logs(
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("shift", "sign", "rate"),
-    [(-1.7, 1.0, 100.0), (0.0, -1.0, 100.0), (1.234, -1.0, 100.0), (-1.7, -1.0, 1000.0)]
-    + [(1.234, 1.0, 1000.0)],
+    [(-1.7, 1.0, 100.0), (0.0, -1.0, 100.0), (1.234, -1.0, 1000.0)],
 )
 def test_without_build_up_the_error_is_below_two_samples(shift, sign, rate):
     estimate = estimate_clock_shift(*logs(shift, sign=sign, rate=rate))
@@ -68,7 +67,7 @@ def test_without_build_up_the_error_is_below_two_samples(shift, sign, rate):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("build_up", "seed"), [(3e-6, 0), (1e-5, 1), (3e-5, 2), (3e-5, 3)])
+@pytest.mark.parametrize(("build_up", "seed"), [(3e-6, 0), (3e-5, 2)])
 def test_friction_that_builds_up_over_a_distance_does_not_delay_the_shift(build_up, seed):
     estimate = estimate_clock_shift(*logs(build_up=build_up, seed=seed))
     assert abs(estimate.shift - 1.234) < 0.02
@@ -77,7 +76,7 @@ def test_friction_that_builds_up_over_a_distance_does_not_delay_the_shift(build_
 
 @pytest.mark.slow
 def test_reversals_without_rest_tell_the_shift():
-    strokes = tuple((way * 1e-3, 3.0) for way in (1, -1) * 10)
+    strokes = tuple((way * 1e-3, 3.0) for way in (1, -1) * 4)
     estimate = estimate_clock_shift(*logs(strokes=strokes, rest=0.0, build_up=1e-5))
     assert abs(estimate.shift - 1.234) < 0.02
 
@@ -89,7 +88,8 @@ def test_logs_of_different_rates_are_matched():
 
 @pytest.mark.slow
 def test_a_long_run_tells_which_clock_is_faster():
-    strokes = tuple((way * 1e-2, 10.0) for way in (1, -1) * 60)
+    # two slow ones, as in a sweep: where all are alike, other shifts are tried and take longest
+    strokes = ((1e-5, 10.0), (-1e-5, 10.0), *((way * 1e-2, 10.0) for way in (1, -1) * 50))
     quiet = estimate_clock_shift(*logs(strokes=strokes, rate=200.0, clock_rate=20e-6))
     assert quiet.rate == pytest.approx(20e-6, abs=3 * quiet.rate_uncertainty)
     assert quiet.rate_uncertainty < 3e-6
@@ -113,8 +113,11 @@ def test_speed_changes_after_one_start_do_not_mislead():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("kind", ["noise", "random walk", "drift", "constant"])
+@pytest.mark.parametrize(
+    ("kind", "seed"),
+    [("noise", 0), ("noise", 1), ("random walk", 0), ("random walk", 1), ("drift", 0)]
+    + [("constant", 0)],
+)
 def test_a_force_that_does_not_follow_the_motion_tells_nothing(kind, seed):
     time, _, shown, velocity = logs()
     noise = np.random.default_rng(seed).standard_normal(len(time))
@@ -144,8 +147,8 @@ def test_a_table_that_does_not_move_tells_nothing():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("surface", "medium", "load"),
-    [("Smooth", "glycerol", 31.0), ("Smooth", "glycerol", 211.0), ("Sb-S", "glycerol", 91.0)]
-    + [("Sb-R", "glycerol", 151.0), ("Smooth", "dry", 31.0), ("Sb-R", "dry", 31.0)],
+    [("Smooth", "glycerol", 31.0), ("Sb-R", "glycerol", 151.0)]
+    + [("Smooth", "dry", 31.0), ("Sb-S", "dry", 31.0)],
 )
 def test_runs_of_the_rig_are_matched_to_what_the_fast_strokes_need(surface, medium, load):
     run = rig.simulate_run(surface, medium, load, seed=5)

@@ -177,7 +177,7 @@ def test_no_offset_to_be_had_is_said():
 def test_error_of_the_half_loop_covers_the_truth():
     # offset, white noise on the force; the mean of each stroke wanders by itself
     errors = []
-    for seed in range(30):
+    for seed in range(16):
         friction = analysed(small(seed=seed, offset=5.0, scatter=0.02))
         error = friction["friction_coefficient"].values - MU
         errors.append((error / friction["friction_coefficient_sem"].values)[::2])
@@ -351,7 +351,7 @@ runs = st.integers(0, 10_000).map(lambda seed: small(seed=seed, scatter=0.01))
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=4)
 @given(runs)
 def test_reversing_velocity_and_force_changes_nothing(run):
     reverse = run.assign({k: -run[k] for k in ("sliding_velocity", "friction_force")})
@@ -361,7 +361,7 @@ def test_reversing_velocity_and_force_changes_nothing(run):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=4)
 @given(runs, st.floats(1e-3, 1e3))
 def test_scaling_both_forces_changes_nothing(run, scale):
     scaled = run.assign({k: scale * run[k] for k in ("normal_force", "friction_force")})
@@ -371,7 +371,7 @@ def test_scaling_both_forces_changes_nothing(run, scale):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=4)
 @given(runs, st.floats(-50, 50))
 def test_constant_offset_leaves_paired_forces_unchanged(run, offset):
     shifted = run.assign(friction_force=run["friction_force"] + offset)
@@ -383,7 +383,7 @@ def test_constant_offset_leaves_paired_forces_unchanged(run, offset):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=4)
 @given(runs, st.floats(0, 1e4))
 def test_shifting_time_leaves_all_unchanged(run, shift):
     later = run.assign_coords(time=run["time"].values + shift)
@@ -393,7 +393,7 @@ def test_shifting_time_leaves_all_unchanged(run, shift):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=4)
 @given(st.integers(0, 10_000))
 def test_taking_every_other_sample_leaves_the_coefficient_within_its_error(seed):
     run = small(seed=seed, scatter=0.01)

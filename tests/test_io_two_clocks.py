@@ -51,7 +51,7 @@ def logs(seed, shift, noise=0.3, begin=3.0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shift", [0.0, 1.7, -1.9, 0.3331, -1234.5, 57.0])
+@pytest.mark.parametrize("shift", [0.0, 0.3331, -1234.5])
 def test_a_known_shift_is_found_to_two_samples_of_the_fastest_strokes(shift):
     estimate = estimate_clock_shift(*logs(1, shift))
     assert abs(estimate.shift - shift) < 2 * FASTEST

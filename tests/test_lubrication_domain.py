@@ -19,17 +19,15 @@ def friction(name, speeds, load=310.0, **more):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "load"), [("Smooth", 310.0), ("Smooth", 2110.0), ("Sb-S", 310.0), ("Sb-R", 2110.0)]
-)
+@pytest.mark.parametrize(("name", "load"), [("Smooth", 2110.0), ("Sb-S", 310.0)])
 def test_friction_at_a_speed_is_that_of_the_speed_alone(name, load):
     """Whatever the list ends with: it was 0.01877 to 0.01964 for Sb-S at 310 N/m and 1 cm/s."""
     asked = [1e-3, 1e-2]
     mu = [
         friction(name, [*asked, *others], load).sel(sliding_speed=asked).values
-        for others in ([], [1e-7], [0.1], [1.0], [0.3, 10.0])
+        for others in ([], [1e-7], [0.1], [0.3, 10.0])
     ]
-    np.testing.assert_allclose(mu, np.broadcast_to(mu[0], (5, 2)), rtol=1e-7)
+    np.testing.assert_allclose(mu, np.broadcast_to(mu[0], (4, 2)), rtol=1e-7)
 
 
 def test_so_is_the_film():

@@ -76,7 +76,7 @@ def test_disagreeing_runs_are_known_only_as_well_as_they_agree():
 def test_error_of_the_curve_covers_the_truth(runs, between):
     rng = np.random.default_rng(1)
     errors = []
-    for _ in range(250):
+    for _ in range(120):
         sems = rng.uniform(0.001, 0.005, runs)
         means = 0.3 + between * rng.standard_normal(runs) + sems * rng.standard_normal(runs)
         curve = measured_stribeck_curve(

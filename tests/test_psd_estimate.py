@@ -49,7 +49,7 @@ def with_form(scans, seed):
 def test_bands_of_95_percent_cover_the_truth_in_95_percent_of_bins(form):
     spectrum = xu2026.surface("Sb-R").spectrum
     one, two = [], []
-    for seed in range(50):
+    for seed in range(25):
         scans = cut_from_longer(spectrum, seed, points=20_001)
         if form == "circle":
             scans = with_form(scans, seed)

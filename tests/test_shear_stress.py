@@ -122,7 +122,7 @@ def test_intervals_hold_whether_or_not_neighbouring_errors_go_together(correlati
     error = 0.02 * EXACT.friction_coefficient.values
     weights = area / error**2 / np.sum((area / error) ** 2)
     held = []
-    for noise in rng.standard_normal((2500, SPEEDS.size)):
+    for noise in rng.standard_normal((1000, SPEEDS.size)):
         mu = EXACT.friction_coefficient.values + error * (lower @ noise)
         stress = weights @ (mu - fluid)
         found = residual_error(mu - fluid - stress * area, area[:, None], error, np.log(SPEEDS))

@@ -66,6 +66,7 @@ def sentences(path):
     return [(line, text) for line, text in found if " " in text.strip()]
 
 
+@functools.cache
 def words_of_the_field():
     """Names that are quantities, keys of a campaign or dialect: everyone may read them."""
     from tribolab.campaign.settings.config import Campaign
