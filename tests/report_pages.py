@@ -5,6 +5,7 @@ import json
 import re
 import zlib
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 from reporting import made_outcome, made_run, with_run
@@ -130,6 +131,22 @@ DRAW_ALL = (
     "one => report.charts.chartOf(one).draw()))"
     ".then(() => document.querySelectorAll('figure.live .js-plotly-plot').length)"
 )
+AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
+# of one page seen twice: what hangs on its width and its colours
+BY_LOOKS = "runOnly: ['color-contrast', 'scrollable-region-focusable', 'target-size']"
+
+
+def faults_of(page, rules=""):
+    """What keeps somebody from reading a page: the rules it breaks, and where."""
+    page.run(f"{AXE};0")
+    return page.run(
+        f"axe.run(document, {{resultTypes: ['violations'], preload: false, {rules}}})"
+        ".then(told => told.violations"
+        ".filter(v => ['serious', 'critical'].includes(v.impact))"
+        ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
+    )
+
+
 PACKED = r'<script type="application/octet-stream"%s>([^<]*)</script>'
 
 

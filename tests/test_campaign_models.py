@@ -250,7 +250,7 @@ def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, mo
     assert (model.status, model.data_file) == ("failed", "")
     assert model.reason == "at 1 m/s: no film was found; take more cells"
     assert all(curve.done for curve in made.curves)
-    write_report(made)
+    write_report(made, figures="none")
     (found,) = pd.read_csv(folder / "tables/findings.csv").query("severity == 'fail'").message
     assert found == f"no model: {model.reason}"
 

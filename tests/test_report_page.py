@@ -3,16 +3,17 @@
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from report_pages import (
+    BY_LOOKS,
     DRAW_ALL,
     OPEN_ALL,
     Reader,
     details_of,
+    faults_of,
     figures_of,
     folded_of,
     page_of,
@@ -24,7 +25,6 @@ from tribolab.report.page.templating import _DRAWING, _SCRIPTS, data_address
 from tribolab.report.results import write_report
 
 SCRIPTS = _SCRIPTS + _DRAWING
-AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
 HOSTILE = [
     "<script>document.title='broken into'</script>",
     '"><img src=x onerror="document.title=\'broken into\'">',
@@ -145,18 +145,12 @@ def alone(results, tmp_path):
 
 @pytest.mark.slow
 def test_no_accessibility_fault_of_weight_and_no_scrolling_sideways(browser, results):
-    for width, dark in ((1400, False), (400, True)):
+    for width, dark, rules in ((1400, False, ""), (400, True, BY_LOOKS)):
         with browser.page(results / "report.html", width, 900, dark) as page:
             page.run(OPEN_ALL)
             page.run(DRAW_ALL)
             assert page.run("document.documentElement.scrollWidth") <= width
-            page.run(f"{AXE};0")
-            faults = page.run(
-                "axe.run(document, {resultTypes: ['violations']}).then(found => found.violations"
-                ".filter(v => ['serious', 'critical'].includes(v.impact))"
-                ".map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
-            )
-            assert faults == []
+            assert faults_of(page, rules) == []
 
 
 @pytest.mark.slow

@@ -3,12 +3,11 @@
 import datetime as dt
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import copied
-from report_pages import Reader
+from report_pages import AXE, Reader
 from reviews import FROZEN, LATE, SLIP, SLIPPED, SOUND, rows_of
 
 from tribolab.app.run import run_campaign
@@ -23,7 +22,6 @@ from tribolab.report.page.reviewing import decision_texts
 NUMBERS = {name: number for number, name in enumerate((FROZEN, SLIPPED, LATE, SOUND), start=1)}
 SAVING = "window.saved = []; report.save = (...file) => saved.push(file); 0"
 UNKNOWN = "report.book.author = ''"  # a reader whom this browser does not know yet
-AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
 TODAY = dt.date.today()  # a reader's day
 BAR = "document.getElementById('review-bar').textContent"
 
