@@ -229,6 +229,42 @@ def read_groups(
         As `read_netcdf`.
     """
     path = Path(path)
+    _make_sure(path)
+    return _load(path, list(groups), optional, only or {})
+
+
+def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
+    """Read all groups of a file that are short, and its root if that is.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most
+        Values that a group may have in all its variables.
+
+    Raises
+    ------
+    ReadError
+        As `read_netcdf`.
+    """
+    path = Path(path)
+    _make_sure(path)
+    try:
+        with opened(path) as file:
+            short: list[str | None] = [None] if _values(file) <= most else []
+            short += [name for name, group in file.groups.items() if _values(group) <= most]
+            return {name: _group(file, name, None) for name in short}
+    except _DAMAGE as error:
+        raise _damaged(path, error) from error
+
+
+def _values(group: netCDF4.Dataset) -> int:
+    return sum(variable.size for variable in group.variables.values())
+
+
+def _make_sure(path: Path) -> None:
+    """Refuse what is not there, and try out what is not known to be whole."""
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file")
     try:
@@ -236,7 +272,10 @@ def read_groups(
             try_out(path)
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
-    return _load(path, list(groups), optional, only or {})
+
+
+def _damaged(path: Path, error: Exception) -> ReadError:
+    return ReadError(f"{path}: this is not a netCDF file that can be read: {brief(error)}")
 
 
 def _load(
@@ -260,9 +299,7 @@ def _load(
                     )
         return datasets
     except _DAMAGE as error:
-        raise ReadError(
-            f"{path}: this is not a netCDF file that can be read: {brief(error)}"
-        ) from error
+        raise _damaged(path, error) from error
 
 
 def _loaded(data: xr.Dataset) -> xr.Dataset:

@@ -11,13 +11,22 @@ import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import AnalysisError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.io.netcdf import read_groups
 from tribolab.rig import read_truth
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _HALF = 0.5
+# columns beside the true ones, with the results that they show
+_READ = {
+    "start_s": "start",
+    "stop_s": "stop",
+    "direction": "direction",
+    "sliding_speed_m_s": "sliding_speed",
+    "friction_coefficient": "friction_coefficient",
+    "friction_coefficient_sem": "friction_coefficient_sem",
+}
 
 
 @dataclass(frozen=True)
@@ -73,7 +82,10 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
         true = truth.segments[run.name]
         friction, origin = None, 0.0
         if run.done:
-            friction = read_netcdf(outcome.folder / run.data_file, group="friction")
+            file = outcome.folder / run.data_file
+            friction = read_groups(file, ["friction"], only={"friction": _READ.values()})[
+                "friction"
+            ]
             origin = float(friction.attrs["time_origin_s"])
         tables.append(compare_run(run.name, true, friction, origin))
     return summary(pd.concat(tables, ignore_index=True))
@@ -105,14 +117,7 @@ def compare_run(
     size = 0 if found is None else found.sizes["segment"]
     values = {
         column: np.full(size, np.nan) if found is None or key not in found else found[key].values
-        for column, key in {
-            "start_s": "start",
-            "stop_s": "stop",
-            "direction": "direction",
-            "sliding_speed_m_s": "sliding_speed",
-            "friction_coefficient": "friction_coefficient",
-            "friction_coefficient_sem": "friction_coefficient_sem",
-        }.items()
+        for column, key in _READ.items()
     }
     values["start_s"] = values["start_s"] + time_origin
     values["stop_s"] = values["stop_s"] + time_origin

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
-from tribolab.campaign.store.data_files import read_data
+from tribolab.campaign.store.data_files import NETCDF
 from tribolab.errors import ReadError
 from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of
@@ -94,8 +94,11 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     xarray.Dataset or None
         What reading the raw files would give (time).
     """
+    from tribolab.io.netcdf import read_netcdf
+
     try:
-        marked = read_data(earlier.file, "run")
+        with NETCDF:
+            marked = read_netcdf(earlier.file, "run")
     except ReadError:  # gone or damaged: the raw files are there
         return None
     noted = marked.attrs.get(READING)

@@ -68,10 +68,10 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
 
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.io.kept import read_kept
 
     with NETCDF:
-        return read_netcdf(path, group=group)
+        return read_kept(path, group)
 
 
 def optional_data(path: Path, group: str) -> xr.Dataset | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab import plot
-from tribolab.io.netcdf import read_netcdf
+from tribolab.campaign.store.data_files import read_data
 from tribolab.report.figures.files import Drawn
 from tribolab.words import force_text, many, span, speeds
 
@@ -49,7 +49,7 @@ def surface_of(curve: CurveOutcome) -> str:
 
 def read_curve(folder: Path, curve: CurveOutcome) -> xr.Dataset:
     """Open a measured curve, labelled for `tribolab.plot.stribeck`."""
-    data = read_netcdf(folder / curve.data_file)
+    data = read_data(folder / curve.data_file)
     data.attrs |= {"surface": surface_of(curve), "medium": curve.medium}
     if curve.normal_force is not None:
         data.attrs["normal_force_N"] = curve.normal_force

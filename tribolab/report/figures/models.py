@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import pandas as pd
 
 from tribolab import plot
-from tribolab.io.netcdf import read_netcdf
+from tribolab.campaign.store.data_files import read_data
 from tribolab.records.model_words import has_shear_stress
 from tribolab.records.parts import Row
 from tribolab.report.document.models import SHEAR_STRESS, ModelRow
@@ -165,7 +165,7 @@ class _Opened(NamedTuple):
 
 
 def _read(task: _Opened, model: ShownModel, group: str) -> xr.Dataset:
-    return read_netcdf(task.folder / model.data_file, group=group)
+    return read_data(task.folder / model.data_file, group=group)
 
 
 def _by_surface(task: _Opened, group: str) -> dict[str, xr.Dataset]:
@@ -176,7 +176,7 @@ def _curve(task: _Opened) -> tuple[Figure, str]:
     (model,) = task.figure.models
     fit = _read(task, model, "fit")
     spread = _read(task, model, "uncertainty") if "uncertainty" in model.parts else None
-    dry = read_netcdf(task.folder / task.figure.dry) if task.figure.dry else None
+    dry = read_data(task.folder / task.figure.dry) if task.figure.dry else None
     figure = plot.mixed_curve(
         fit,
         _read(task, model, "curve"),

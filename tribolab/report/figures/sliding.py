@@ -11,8 +11,9 @@ import numpy as np
 
 from tribolab import plot
 from tribolab.campaign.curves import SLIP
+from tribolab.campaign.store.data_files import read_data
 from tribolab.friction.decisions.rejected import kept
-from tribolab.io.netcdf import read_groups, read_netcdf
+from tribolab.io.netcdf import read_groups
 from tribolab.plot.runs.signals import LOOKED_AT
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.records.wording import with_error
@@ -160,7 +161,7 @@ Made = tuple["Figure", str, list[str]]
 
 
 def _slips(what: SlipFigure, folder: Path, group: str = "stick_slip") -> list[xr.Dataset]:
-    return [read_netcdf(folder / trace.data_file, group=group) for trace in what.shown]
+    return [read_data(folder / trace.data_file, group=group) for trace in what.shown]
 
 
 def _traces(what: SlipFigure, folder: Path) -> Made:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab import plot
+from tribolab.campaign.store.data_files import read_data
 from tribolab.errors import ReadError
-from tribolab.io.netcdf import read_netcdf
 from tribolab.report.figures.files import Drawn
 from tribolab.words import force_text, many
 
@@ -93,14 +93,14 @@ class _Opened(NamedTuple):
 
 
 def _read(task: _Opened, group: str) -> dict[str, xr.Dataset]:
-    return {name: read_netcdf(task.folder / file, group=group) for name, file in task.figure.shown}
+    return {name: read_data(task.folder / file, group=group) for name, file in task.figure.shown}
 
 
 def _optional(task: _Opened, group: str) -> dict[str, xr.Dataset]:
     opened = {}
     for name, file in task.figure.shown:
         try:
-            opened[name] = read_netcdf(task.folder / file, group=group)
+            opened[name] = read_data(task.folder / file, group=group)
         except ReadError:  # the campaign knows too little for it; its findings say so
             continue
     return opened

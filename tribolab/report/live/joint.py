@@ -30,9 +30,9 @@ def record_of_joint_fits(joints: Sequence[JointRecord], folder: Path) -> LiveRec
 
 
 def _figure(joint: JointRecord, folder: Path) -> LiveFigure:
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.campaign.store.data_files import read_data
 
-    points, curves = (read_netcdf(folder / joint.file, part) for part in ("points", "curves"))
+    points, curves = (read_data(folder / joint.file, part) for part in ("points", "curves"))
     series: list[Series] = []
     for number, name in enumerate(curves["curve"].values.tolist()):
         mine = points.isel(point=points["curve"].values == name)

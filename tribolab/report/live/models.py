@@ -80,9 +80,9 @@ def _of_curves(
 
 
 def _read(row: ModelRow, folder: Path, group: str) -> xr.Dataset:
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.campaign.store.data_files import read_data
 
-    return read_netcdf(folder / row.model.data_file, group=group)
+    return read_data(folder / row.model.data_file, group=group)
 
 
 def _labels(row: ModelRow) -> Labels:

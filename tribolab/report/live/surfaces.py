@@ -33,9 +33,9 @@ class _Surface(NamedTuple):
     label: str
 
     def read(self, group: str) -> xr.Dataset | None:
-        from tribolab.io.netcdf import read_netcdf
+        from tribolab.campaign.store.data_files import read_data
 
-        return read_netcdf(self.file, group=group) if group in self.parts else None
+        return read_data(self.file, group=group) if group in self.parts else None
 
     def series(self, what: str, x: Any, y: Any, **more: Any) -> Series:
         told = (f"{self.label}: {what}",) if what else ()
