@@ -2,14 +2,19 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from tribolab.app.run import run_campaign
+from tribolab.campaign.models.plan import plan_models
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.campaign.store.catalogue import Catalogue
 from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.viscosity import liquid_viscosity
+from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.rig import (
     Calibration,
     ForceCell,
@@ -149,3 +154,34 @@ def test_the_fit_knows_load_and_radius_and_the_liquid_its_temperature(tilted):
     assert (fit.friction_coefficient_residual_u.values > own).all()
     # a gain of 1 % and a liquid known to 3 % cannot make sigma_f known better than 1 %
     assert fit.attrs["shear_stress_total_error_Pa"] > 0.01 * fit.attrs["shear_stress_Pa"]
+
+
+def test_what_the_runs_state_of_load_and_radius_reaches_the_models_without_the_campaign_file(
+    tilted, tmp_path
+):
+    """As from an instrument's file; where the campaign file says another value, that counts."""
+    results, _ = tilted
+    catalogue = Catalogue.of(results)
+    curves = [entry.record for entry in catalogue.all("curve", CurveRecord)]
+    surfaces = [entry.record for entry in catalogue.all("surface", SurfaceRecord)]
+    catalogue.close()
+    assert all(
+        record.model_inputs == {"load": 0.01, "radius": pytest.approx(0.005)} for record in curves
+    )
+    text = (results.parent / "campaign.toml").read_text("utf-8").replace(STATED, "")
+    text = text.replace('raw = "raw"', f'raw = "{results.parent}/raw"')
+    assert "[uncertainty." not in text
+    file = tmp_path / "campaign.toml"
+    for more, load in (("", 0.01), ('[uncertainty.load]\nvalue = "3 %"\nas = "standard"\n', 0.03)):
+        file.write_text(f"{text}\n{more}", "utf-8")
+        (model,) = plan_models(load_campaign(file), curves, surfaces)
+        assert model.input_errors["load"] == pytest.approx(load)
+        assert model.input_errors["radius"] == pytest.approx(0.005)
+    known = [
+        replace(record, model_inputs={"speed": 0.02, "youngs_modulus": 0.1}) for record in curves
+    ]
+    file.write_text(text, "utf-8")
+    (model,) = plan_models(load_campaign(file), known, surfaces)
+    assert model.abscissa_error >= 0.02
+    low, high = model.youngs_modulus_range
+    assert np.log(high / low) / (2 * 1.96) == pytest.approx(0.1, rel=1e-3)

@@ -15,6 +15,7 @@ from tribolab.campaign.settings.plan import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import NETCDF, digest, write_data
 from tribolab.errors import TribolabError
+from tribolab.io.uncertainty import MODEL_INPUTS
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
@@ -182,6 +183,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
         points_found,
         tuple(budget_rows(curve, known)),
         str(curve.attrs["uncertainty_says"]),
+        _model_inputs(frictions),
     )
 
 
@@ -191,6 +193,18 @@ def _with_budget(frictions: list[xr.Dataset]) -> tuple[xr.Dataset, Mapping[str, 
 
     budget = uncertainty_budget(frictions)
     return budget.data, budget.known
+
+
+def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
+    """Return what the runs state of what a model takes as given; of several, the largest."""
+    from tribolab.metrology.budget import known_uncertainties
+
+    stated = [known_uncertainties(friction) for friction in frictions]
+    return {
+        name: max(known[name].standard for known in stated if name in known)
+        for name in MODEL_INPUTS
+        if any(name in known for known in stated)
+    }
 
 
 def _as_found(task: CurveTask) -> xr.Dataset | None:

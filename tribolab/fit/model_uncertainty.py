@@ -13,7 +13,8 @@ from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
-from tribolab.fit.variations import Base, Changed, Skipped, Variation, held_fixed, variations
+from tribolab.fit.variation import Base, Changed, Skipped, Variation
+from tribolab.fit.variations import held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.system import CELLS

@@ -153,6 +153,8 @@ NAMES: dict[str, tuple[str, Varies]] = {
     "youngs_modulus": ("1", "calibration"),
 }
 
+MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus")  # what a model takes as given
+
 
 class Uncertainty(_Strict):
     """What is known of the instrument, the mount and the medium, each with how well."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from tribolab.records.annotations import Columns, means
@@ -73,6 +74,9 @@ class CurveRecord:
         A row for each point and each part of its uncertainty.
     uncertainty_says
         What the uncertainty does not hold; "" where it holds all.
+    model_inputs
+        Relative standard uncertainties of what a model takes as given, by name, as its runs'
+        instrument and campaign state them.
     """
 
     outcome: CurveOutcome
@@ -84,6 +88,7 @@ class CurveRecord:
     points_as_found: tuple[Point, ...] = ()
     budget: tuple[BudgetRow, ...] = ()
     uncertainty_says: str = ""
+    model_inputs: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def done(self) -> bool:

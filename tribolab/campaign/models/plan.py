@@ -121,13 +121,15 @@ def plan_models(
     if not wet:
         return ()
     spread, freedom = _repeatability(done)
-    stated = {name: entry["standard"] for name, entry in campaign.uncertainty.plain().items()}
+    of_all = {name: entry["standard"] for name, entry in campaign.uncertainty.plain().items()}
     known = {surface.outcome.name: surface for surface in surfaces}
     contact = campaign.contact.line()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
+        stated = {**record.model_inputs, **of_all}  # an instrument's file, and the campaign's first
+        modulus_range = _modulus_range(campaign, stated.get("youngs_modulus"))
         missing = _missing(curve, contact, surface.outcome if surface else None)
         work, works = _adhesion(campaign, curve.medium)
         if campaign.model.adhesion and work is None:
@@ -141,9 +143,9 @@ def plan_models(
             contact=contact,
             viscosity=viscosity.value,
             viscosity_range=viscosity.bounds,
-            youngs_modulus_range=_modulus_range(campaign),
+            youngs_modulus_range=modulus_range,
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
-            input_errors=_input_errors(stated, _modulus_range(campaign)),
+            input_errors=_input_errors(stated, modulus_range),
             work_of_adhesion=work,
             work_of_adhesion_range=works,
             settings=settings,
@@ -159,13 +161,12 @@ def plan_models(
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
 
 
-def _modulus_range(campaign: Campaign) -> tuple[float, float] | None:
+def _modulus_range(campaign: Campaign, error: float | None) -> tuple[float, float] | None:
     """Return between which values [Pa] Young's modulus is, as stated or by its uncertainty."""
     modulus, stated = campaign.contact.youngs_modulus, campaign.contact.youngs_modulus_range
-    known = campaign.uncertainty.plain().get("youngs_modulus")
-    if stated is not None or modulus is None or known is None:
+    if stated is not None or modulus is None or error is None:
         return stated
-    factor = float(np.exp(_95 * known["standard"]))
+    factor = float(np.exp(_95 * error))
     return modulus / factor, modulus * factor
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.fit.joint.common_errors import calibration_covariance, model_covariance
 from tribolab.fit.joint.load_curve import LoadCurve, Measured, points_of
 from tribolab.fit.joint.model import (
     SPEED,
@@ -21,7 +22,6 @@ from tribolab.fit.joint.model import (
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit, Marginal
-from tribolab.fit.joint.spectrum import calibration_covariance, spectrum_covariance
 from tribolab.stamping import stamp
 
 _ENDS = 0.025, 0.975
@@ -109,7 +109,7 @@ def fit_loads(
     posterior = posterior._replace(covariance=posterior.covariance + added)
     if spectrum_error:
         bands = {surfaces.index(surface): band for surface, band in spectrum_error.items()}
-        added = spectrum_covariance(model, posterior, priors, bands)
+        added = model_covariance(model, posterior, priors, bands)
         posterior = posterior._replace(covariance=posterior.covariance + added)
     names = surfaces if len(surfaces) > 1 else [""]
     return JointFit(

@@ -20,7 +20,7 @@ _NORMAL = 1.959963984540054
 _FEWEST = 4
 
 
-def spectrum_covariance(
+def model_covariance(
     model: JointModel,
     posterior: Posterior,
     priors: JointPriors,

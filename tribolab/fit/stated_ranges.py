@@ -1,0 +1,81 @@
+"""Inputs of a mixed-lubrication model that are varied over the ranges that are stated of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from tribolab.fit.variation import Base, Changed, Skipped, Variation
+
+
+@dataclass(frozen=True)
+class Stated:
+    """An input of the model that is varied over the range that is stated of it.
+
+    Parameters
+    ----------
+    name, argument
+        What a reader calls it; of `model_uncertainty` the argument with ``_range`` behind it.
+    reason
+        On what it hangs.
+    shown
+        The end of a range in words.
+    changed
+        What an end changes.
+    """
+
+    name: str
+    argument: str
+    reason: str
+    shown: Callable[[float], str]
+    changed: Callable[[Base, float], Changed]
+
+    def __call__(self, base: Base) -> Variation | Skipped:
+        """Vary the input over the range that is stated."""
+        ends = getattr(base, f"{self.argument}_range")
+        if ends is None:
+            return Skipped(self.name, f"no {self.argument}_range was given")
+        low, high = ends
+        return Variation(
+            self.name,
+            f"as stated; {self.reason}",
+            (self.shown(low), self.shown(high)),
+            (self.changed(base, low), self.changed(base, high)),
+        )
+
+
+VISCOSITY = Stated(
+    "viscosity",
+    "viscosity",
+    "that of a liquid hangs on temperature and on the water it takes up",
+    lambda value: f"{value:.3g} Pa s",
+    lambda base, value: {"viscosity": value},
+)
+YOUNGS_MODULUS = Stated(
+    "Young's modulus",
+    "youngs_modulus",
+    "that of an elastomer hangs on batch, cure, age and frequency",
+    lambda value: f"{value / 1e6:.3g} MPa",
+    lambda base, value: {"contact": replace(base.contact, youngs_modulus=value)},
+)
+LOAD = Stated(
+    "load",
+    "load",
+    "it hangs on the force cell and on the length that carries it",
+    lambda value: f"{value:.4g} N/m",
+    lambda base, value: {"load": value},
+)
+RADIUS = Stated(
+    "radius",
+    "radius",
+    "of a ground or cast cylinder it is that near the contact",
+    lambda value: f"{1e3 * value:.4g} mm",
+    lambda base, value: {"contact": replace(base.contact, radius=value)},
+)
+WORK_OF_ADHESION = Stated(
+    "work of adhesion",
+    "work_of_adhesion",
+    "it hangs on surface energies and contact angles, which differ between sources",
+    lambda value: f"{1e3 * value:.3g} mJ/m²",
+    lambda base, value: {"work_of_adhesion": value},
+)

@@ -1,0 +1,70 @@
+"""One unknown of a mixed-lubrication model, the ends of its range, and the model that is varied."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypedDict
+
+import xarray as xr
+
+from tribolab.contact.area import AreaTheory
+from tribolab.contact.geometry import LineContact
+from tribolab.lubrication.factors import FlowFactors, RoughBody
+
+
+class Base(NamedTuple):
+    """The model that is varied."""
+
+    psd: xr.Dataset | None
+    rough_body: RoughBody
+    friction_factors: bool
+    gamma: float
+    measured_to: float | None  # wavenumber [1/m] above which the spectrum is a guess
+    contact: LineContact
+    load: float  # [N/m]
+    viscosity: float  # [Pa s]
+    viscosity_range: tuple[float, float] | None  # None if it is not known
+    youngs_modulus_range: tuple[float, float] | None
+    inlet_length: float  # [m], infinite if nothing is stated
+    area: AreaTheory
+    work_of_adhesion: float | None = None  # [J/m2], None if the model is without adhesion
+    work_of_adhesion_range: tuple[float, float] | None = None
+    load_range: tuple[float, float] | None = None
+    radius_range: tuple[float, float] | None = None
+
+    @property
+    def spectrum(self) -> xr.Dataset:
+        """The spectrum of a rough surface."""
+        assert self.psd is not None  # what is `OF_ROUGHNESS` is varied of rough surfaces alone
+        return self.psd
+
+
+class Changed(TypedDict, total=False):
+    """Arguments of `stribeck_curve` that one end of a range changes."""
+
+    psd: xr.Dataset
+    factors: FlowFactors
+    gamma: float
+    rough_body: RoughBody
+    friction_factors: bool
+    viscosity: float
+    contact: LineContact
+    load: float
+    inlet_length: float
+    area: AreaTheory
+    work_of_adhesion: float
+
+
+class Variation(NamedTuple):
+    """One unknown, the ends of its range, and what each end changes in `stribeck_curve`."""
+
+    name: str
+    reason: str
+    texts: tuple[str, str]  # of the low and the high end; empty where there is only one
+    ends: tuple[Changed | None, Changed | None]
+
+
+class Skipped(NamedTuple):
+    """An unknown that cannot be varied here, and why."""
+
+    name: str
+    reason: str
