@@ -1,10 +1,12 @@
-"""The real measured runs that several tests use."""
+"""The real measured runs and profiles that several tests use."""
 
+from functools import cache
 from pathlib import Path
 
 import xarray as xr
 
 from tribolab.draft.read import read
+from tribolab.draft.scans import read_scans
 
 
 def actuator(folder: Path, name: str) -> xr.Dataset:
@@ -21,3 +23,9 @@ def paper(folder: Path, stiffness: int, speed: int) -> xr.Dataset:
 
 def reciprocating(folder: Path) -> xr.Dataset:
     return read(folder / "cetr_umt2_MIT" / "HT-2n-6-4 2_001.csv")
+
+
+@cache
+def mitutoyo(folder: Path, name: str) -> xr.Dataset:
+    """A workbook takes a second to read; not to be changed."""
+    return read_scans(folder / "surfacetopography_MIT" / f"{name}.xlsx")

@@ -56,7 +56,7 @@ def files(draw):
 @pytest.mark.slow
 @given(made=files())
 @settings(
-    max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 def test_any_way_of_writing_the_same_table_is_read_back(made, tmp_path_factory):
     content, columns = made

@@ -178,7 +178,7 @@ def written_by_xarray(groups, path):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=15)
 @given(
     st.dictionaries(st.sampled_from([*SIZES, *"abcdef"]), variables(), max_size=6),
     st.lists(st.sampled_from("abcdef"), max_size=2),

@@ -22,7 +22,7 @@ def test_boundary_friction_is_the_adhesive_area_of_the_dry_contact(name):
     inside = pressure > 1e-3 * pressure.max()
     area = adhesion(pressure[inside], psd, E_STAR, WET).contact_area_ratio.values
     exact = area.sum() * float(dry.x[1] - dry.x[0]) / 310.0
-    curve = stribeck_curve(CONTACT, psd, 1.4, 310.0, 0.1e6, [0.0], work_of_adhesion=WET)
+    curve = stribeck_curve(CONTACT, psd, 1.4, 310.0, 0.1e6, [0.0], cells=200, work_of_adhesion=WET)
     assert float(curve.friction_per_shear_stress[0]) == pytest.approx(exact, rel=1e-2)
 
 

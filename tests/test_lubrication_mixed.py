@@ -240,7 +240,7 @@ def test_finer_meshes_converge_at_least_linearly(name, speed, finest):
 
 
 @pytest.mark.slow
-@settings(properties, max_examples=8)
+@settings(properties, max_examples=5)
 @given(
     modulus=st.floats(5, 9),
     viscosity=st.floats(-3, 2),

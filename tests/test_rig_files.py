@@ -32,22 +32,27 @@ def campaign(tmp_path_factory):
     return rig.simulate_campaign(tmp_path_factory.mktemp("rig") / "new", seed=3, small=True).parent
 
 
-def test_same_seed_gives_the_same_bytes(tmp_path):
-    one, again, other = (
-        rig.simulate_campaign(tmp_path / name, seed=seed, **TINY).parent
-        for name, seed in (("one", 1), ("again", 1), ("other", 2))
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    """Digests of a tiny campaign's files."""
+    folder = tmp_path_factory.mktemp("tiny") / "one"
+    return digests(rig.simulate_campaign(folder, seed=1, **TINY).parent)
+
+
+def test_same_seed_gives_the_same_bytes(tiny, tmp_path):
+    again, different = (
+        digests(rig.simulate_campaign(tmp_path / name, seed=seed, **TINY).parent)
+        for name, seed in (("again", 1), ("other", 2))
     )
-    assert digests(one) == digests(again)
-    different = digests(other)
-    raw = [name for name in digests(one) if name.startswith("raw")]
-    assert raw and all(digests(one)[name] != different[name] for name in raw)
+    assert tiny == again
+    raw = [name for name in tiny if name.startswith("raw")]
+    assert raw and all(tiny[name] != different[name] for name in raw)
 
 
 @pytest.mark.slow
-def test_processes_change_nothing(tmp_path):
-    one = rig.simulate_campaign(tmp_path / "one", seed=1, **TINY).parent
+def test_processes_change_nothing(tiny, tmp_path):
     two = rig.simulate_campaign(tmp_path / "two", seed=1, jobs=2, **TINY).parent
-    assert digests(one) == digests(two)
+    assert tiny == digests(two)
 
 
 def test_a_run_does_not_depend_on_what_else_is_made(campaign, tmp_path):

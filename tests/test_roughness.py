@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import xarray as xr
+from real_runs import mitutoyo as workbook
 
-from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, UnitError
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
@@ -24,7 +24,7 @@ def wave(length, amplitude=1e-6):
 
 @pytest.fixture(scope="module")
 def mitutoyo(shared_data):
-    return read_scans(shared_data / "surfacetopography_MIT" / "mitutoyo_2_mock.xlsx").squeeze()
+    return workbook(shared_data, "mitutoyo_2_mock").squeeze()
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from real_runs import mitutoyo
 
 from tribolab import rig
 from tribolab.draft.scans import read_scans
@@ -88,7 +89,7 @@ def test_real_profiles_a_person_would_accept_are_not_failed(shared_data):
         read_scans(shared_data / "bearing_profiles_MIT" / "NU208-IR-1.txt"),
         read_scans(shared_data / "nanovea_map_MIT" / "test1.txt", "nanovea_map"),
         read_scans(shared_data / "surfacetopography_MIT" / "dektak-1.csv"),
-        read_scans(shared_data / "surfacetopography_MIT" / "mitutoyo_2_mock.xlsx"),
+        mitutoyo(shared_data, "mitutoyo_2_mock"),
         read_scans(
             shared_data / "surfacetopography_MIT" / "xy-4.txt", x_unit="mm", height_unit="um"
         ),
@@ -108,7 +109,7 @@ def test_dektak_s_rounded_positions_are_told_as_rounding(shared_data):
 
 def test_results_that_do_not_belong_to_their_profile_are_found(shared_data):
     # the README of the data calls this workbook noise: its Ra is an eighth of the profile's
-    found = check_scans(read_scans(shared_data / "surfacetopography_MIT" / "mitutoyo_mock.xlsx"))
+    found = check_scans(mitutoyo(shared_data, "mitutoyo_mock"))
     assert status(found, "results") == "fail"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from real_runs import mitutoyo
 
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
@@ -51,12 +52,12 @@ def test_dektak_with_rounded_positions_is_even(shared_data):
 @pytest.mark.parametrize(
     ("name", "points", "pitch", "rq", "cutoff"),
     [
-        ("mitutoyo_2_mock.xlsx", 6664, 1.5e-6, 3.959e-6, 2.5e-3),
-        ("mitutoyo_mock.xlsx", 960, 0.5e-6, 0.027e-6, 0.08e-3),
+        ("mitutoyo_2_mock", 6664, 1.5e-6, 3.959e-6, 2.5e-3),
+        ("mitutoyo_mock", 960, 0.5e-6, 0.027e-6, 0.08e-3),
     ],
 )
 def test_mitutoyo_workbooks(shared_data, name, points, pitch, rq, cutoff):
-    scan = read_scans(shared_data / "surfacetopography_MIT" / name)
+    scan = mitutoyo(shared_data, name)
     assert scan.sizes["x"] == points
     assert scan.attrs["pitch_m"] == pytest.approx(pitch, rel=1e-9)
     assert scan.attrs["length_m"] == pytest.approx((points - 1) * pitch, rel=1e-9)
