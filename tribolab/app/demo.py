@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -67,7 +68,7 @@ def run_demo(
 
     def finish(outcome: Outcome) -> None:
         known = paper.result() if paper else compare_with_paper()
-        compared.append(_compared(outcome, folder, known))
+        compared.append(_compared(outcome, folder, known, pool))
         _write(outcome, compared[0])
 
     with workers(jobs, modules=SIMULATION + ANALYSIS) as pool:
@@ -89,9 +90,12 @@ def run_demo(
     return outcome, compared[0]
 
 
-def _compared(outcome: Outcome, folder: Path, paper: pd.DataFrame) -> DemoComparison:
-    runs, surfaces = compare_with_truth(outcome, folder), compare_surfaces(outcome, folder)
-    return DemoComparison(folder, runs, surfaces, compare_shear_stress(outcome, folder), paper)
+def _compared(
+    outcome: Outcome, folder: Path, paper: pd.DataFrame, executor: Executor | None = None
+) -> DemoComparison:
+    runs = compare_with_truth(outcome, folder, executor)
+    surfaces, stresses = compare_surfaces(outcome, folder), compare_shear_stress(outcome, folder)
+    return DemoComparison(folder, runs, surfaces, stresses, paper)
 
 
 def _write(outcome: Outcome, compared: DemoComparison) -> None:

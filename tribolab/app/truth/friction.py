@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,7 +54,9 @@ class TruthComparison:
     within_3: float
 
 
-def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
+def compare_with_truth(
+    outcome: Outcome, folder: str | Path, executor: Executor | None = None
+) -> TruthComparison:
     """Compare a campaign's results with the truth.
 
     Parameters
@@ -62,6 +65,8 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
         Results whose data files lie in ``outcome.folder``.
     folder
         The simulated campaign's folder.
+    executor
+        Where the runs are compared; without one it is done here.
 
     Returns
     -------
@@ -75,20 +80,23 @@ def compare_with_truth(outcome: Outcome, folder: str | Path) -> TruthComparison:
         If the truth knows nothing of a run.
     """
     truth = read_truth(folder)
-    tables = []
     for run in outcome.runs:
         if run.name not in truth.segments:
             raise AnalysisError(f"{run.name}: the truth in {folder} knows nothing of this run")
-        true = truth.segments[run.name]
-        friction, origin = None, 0.0
-        if run.done:
-            file = outcome.folder / run.data_file
-            friction = read_groups(file, ["friction"], only={"friction": _READ.values()})[
-                "friction"
-            ]
-            origin = float(friction.attrs["time_origin_s"])
-        tables.append(compare_run(run.name, true, friction, origin))
+    names = [run.name for run in outcome.runs]
+    files = [outcome.folder / run.data_file if run.done else None for run in outcome.runs]
+    each = executor.map if executor else map
+    tables = each(_compared_file, names, [truth.segments[name] for name in names], files)
     return summary(pd.concat(tables, ignore_index=True))
+
+
+def _compared_file(name: str, true: pd.DataFrame, file: Path | None) -> pd.DataFrame:
+    """Compare a run by its data file; None for a run that failed."""
+    if file is None:
+        return compare_run(name, true, None, 0.0)
+    only = {"friction": _READ.values()}
+    friction = read_groups(file, ["friction"], only=only)["friction"]
+    return compare_run(name, true, friction, float(friction.attrs["time_origin_s"]))
 
 
 def compare_run(

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib import textpath
+from matplotlib import text as mpl_text
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
+from matplotlib.textpath import TextToPath
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType  # newer than the oldest matplotlib that will do
@@ -298,21 +301,40 @@ def _smaller(text: str) -> str:
     return text
 
 
-_FORMULAS = MathTextParser("path")
+class _KnownTexts(TextToPath):
+    """Sets a formula, and measures a text, once and not once in every figure."""
+
+    _formulas = MathTextParser("path")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.mathtext_parser = self._formulas
+
+    def get_text_width_height_descent(
+        self, s: str, prop: FontProperties, ismath: bool | Literal["TeX"]
+    ) -> tuple[float, float, float]:
+        return _measured(s, prop.copy(), ismath)
+
+
+@functools.lru_cache(4096)
+def _measured(
+    text: str, font: FontProperties, formula: bool | Literal["TeX"]
+) -> tuple[float, float, float]:
+    return TextToPath.get_text_width_height_descent(_KnownTexts(), text, font, formula)
 
 
 @contextlib.contextmanager
-def _formulas_set_once() -> Iterator[None]:
-    """Set the formula of a label once, not once in every figure.
+def _texts_set_once() -> Iterator[None]:
+    """Have renderers share what they know of texts.
 
-    Every renderer has a parser of its own, whose memory goes with it.
+    Every renderer has a parser and a memory of its own, which go with it.
     """
-    own = vars(textpath)["MathTextParser"]
-    vars(textpath)["MathTextParser"] = lambda output: _FORMULAS
+    own = vars(mpl_text)["TextToPath"]
+    vars(mpl_text)["TextToPath"] = _KnownTexts
     try:
         yield
     finally:
-        vars(textpath)["MathTextParser"] = own
+        vars(mpl_text)["TextToPath"] = own
 
 
 def svg(figure: Figure) -> str:
@@ -331,7 +353,7 @@ def svg(figure: Figure) -> str:
     True
     """
     buffer = io.StringIO()
-    with paper_style(), _formulas_set_once():
+    with paper_style(), _texts_set_once():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
     return _smaller(buffer.getvalue())
 
