@@ -1,10 +1,11 @@
 """One engine does every kind of work: known is taken over, failures are recorded, order holds."""
 
+import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from tribolab.campaign.engine.stage import Stage, perform
+from tribolab.campaign.engine.stage import Stage, begun, perform
 from tribolab.errors import OutputError
 
 
@@ -68,6 +69,26 @@ def test_work_begins_in_the_order_of_the_stage():
     stage = Squares([3, 1, 8])
     assert perform(stage, None, lambda *_: None) == [9, 1, 64]
     assert [place for place, _ in stage.kept] == [2, 0, 1]
+
+
+class Knocking(Squares):
+    """Says that it works."""
+
+    heard = threading.Event()
+
+    @staticmethod
+    def work(task):
+        Knocking.heard.set()
+        return task
+
+
+def test_what_was_begun_is_worked_on_before_anyone_waits_for_it():
+    stage = Knocking([3, 9], known={9})
+    with ThreadPoolExecutor(1) as threads:
+        wait = begun(stage, threads)
+        assert Knocking.heard.wait(10)
+        assert not stage.kept  # written down by whoever waits
+        assert wait() == [3, "known 9"]
 
 
 def test_results_that_cannot_be_written_end_the_campaign(executor):

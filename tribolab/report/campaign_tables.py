@@ -85,9 +85,8 @@ def write_tables(
     surfaces: Sequence[SurfaceRecord],
     models: Mapping[str, ModelRow],
     joints: Sequence[JointRecord],
-    findings: Iterable[Notice],
 ) -> None:
-    """Write all tables of a campaign.
+    """Write all tables of a campaign but that of its findings.
 
     Parameters
     ----------
@@ -97,18 +96,13 @@ def write_tables(
         Those that are shown.
     surfaces, models, joints
         What is recorded of them; of joint fits those that were done.
-    findings
-        In any order; the gravest come first.
     """
     folder = Path(outcome.folder) / "tables"
     for long in _long_tables(outcome, curves):
         if long.columns or any(True for _ in long.rows()):
             tables.write_rows(long.rows, folder / long.file, long.columns)
     columns = ["file", "sha256", "bytes"]
-    short = {
-        "sources": pd.DataFrame(list(outcome.sources), columns=columns),
-        "findings": tables.findings_table(findings),
-    }
+    short = {"sources": pd.DataFrame(list(outcome.sources), columns=columns)}
     rows = [surface.rows for surface in surfaces if surface.rows is not None]
     for name, wanted in (("roughness", ROUGHNESS), ("contact", CONTACT), ("adhesion", ADHESION)):
         short[name] = table(rows, name, wanted)
@@ -122,6 +116,11 @@ def write_tables(
         short["model_comparison"] = pd.DataFrame(comparison_table_rows(joints))
     for name, made in short.items():
         tables.write(made, folder / f"{name}.csv")
+
+
+def write_findings(findings: Iterable[Notice], folder: Path) -> None:
+    """Write the table of findings of a results folder, the gravest first."""
+    tables.write(tables.findings_table(findings), folder / "tables" / "findings.csv")
 
 
 def _saying(says: str, rows: Iterable[Row]) -> Iterator[Row]:

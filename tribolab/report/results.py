@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine.stage import Progress, perform, silent
+from tribolab.campaign.engine.stage import Progress, begun, silent
 from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
@@ -18,7 +18,7 @@ from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
 from tribolab.records.run_record import RunRecord
-from tribolab.report.campaign_tables import write_tables
+from tribolab.report.campaign_tables import write_findings, write_tables
 from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import (
     brief_run,
@@ -43,7 +43,7 @@ from tribolab.report.figures.models import draw_model, plan_model_figures
 from tribolab.report.figures.sliding import draw_sliding, plan_sliding_figures
 from tribolab.report.figures.stage import Figures, FigureTask, planned
 from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
-from tribolab.report.live.gather import live_figures
+from tribolab.report.live.gather import begun_live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.page.page import write_page
 from tribolab.report.page.reviewing import review_data
@@ -101,11 +101,12 @@ def write_report(
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
     findings += [note for curve in shown for note in curve_notices(curve)]
-    stage = Modes(outcome.campaign, curves, surfaces, models, store)
-    judged, unjudged = done_and_failed(perform(stage, executor))
+    fitting = begun(JointFits(outcome.campaign, curves, models, surfaces, store), executor)
+    judging = begun(Modes(outcome.campaign, curves, surfaces, models, store), executor)
+    judged, unjudged = done_and_failed(judging())
     modes = {mode.curve: mode for mode in judged}
     findings += unjudged
-    joints = perform(JointFits(outcome.campaign, curves, models, surfaces, store), executor)
+    joints = fitting()
     findings += [
         Notice("note", "", f"joint fit of {joint.surface} in {joint.medium}", joint.reason)
         for joint in joints
@@ -114,20 +115,22 @@ def write_report(
     fitted = [joint for joint in joints if joint.done]
 
     rows = model_rows_of(models)
-    live, undrawn = live_figures(outcome, shown, points, rows, modes, fitted, executor)
-    findings += undrawn
+    making = begun_live_figures(outcome, shown, points, rows, modes, fitted, executor)
     known = [curve.outcome for curve in shown]
     tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
+    drawing = begun(Figures(store, tasks), executor, tell)
+    write_tables(outcome, shown, surfaces, rows, fitted)  # while workers draw
+    live, undrawn = making()
+    findings += undrawn
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
-    figured = perform(Figures(store, tasks), executor, tell)
-    for task, record in zip(tasks, figured, strict=True):
+    for task, record in zip(tasks, drawing(), strict=True):
         if isinstance(record, Notice):
             findings.append(record)
         elif record is not None:
             drawn[task.section].append(record)
 
     ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
-    write_tables(outcome, shown, surfaces, rows, fitted, ordered)
+    write_findings(ordered, folder)
     named = {surface.outcome.name: surface.rows for surface in surfaces}
     head = report_head(
         outcome,

@@ -8,8 +8,8 @@ place of a record when that failed. Where the work is done is any `concurrent.fu
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future
 from typing import ClassVar, Generic, TypeVar
 
 from tribolab.campaign.engine.executor import completed
@@ -89,6 +89,22 @@ def perform(
     OutputError
         If results cannot be written. What else goes wrong is in the records.
     """
+    return begun(stage, executor, tell)()
+
+
+def begun(
+    stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
+) -> Callable[[], list[Came]]:
+    """Begin the work of a stage, and return what waits for it and gives what `perform` gives.
+
+    What is called in between is done while workers work; without an executor nothing is done
+    before it is waited for.
+
+    Parameters
+    ----------
+    stage, executor, tell
+        As for `perform`.
+    """
     tasks = stage.plan()
     tell = tell or silent
     came: dict[int, Came] = {}
@@ -101,14 +117,19 @@ def perform(
             came[place] = known
     if came:
         tell(stage.name, len(came), len(tasks))
-    for place, task, answer in answers(type(stage).work, stage.order(left), executor):
-        if isinstance(answer, OutputError):
-            raise answer
-        if isinstance(answer, BaseException):
-            answer = stage.failed(task, answer)
-        came[place] = stage.keep(task, place, answer)
-        tell(stage.name, len(came), len(tasks))
-    return [came[place] for place in range(len(tasks))]
+    coming = answers(type(stage).work, stage.order(left), executor)
+
+    def ended() -> list[Came]:
+        for place, task, answer in coming:
+            if isinstance(answer, OutputError):
+                raise answer
+            if isinstance(answer, BaseException):
+                answer = stage.failed(task, answer)
+            came[place] = stage.keep(task, place, answer)
+            tell(stage.name, len(came), len(tasks))
+        return [came[place] for place in range(len(tasks))]
+
+    return ended
 
 
 def answers(
@@ -118,6 +139,12 @@ def answers(
 ) -> Iterator[tuple[int, Task, Record | BaseException]]:
     """Give (place, task, record or error) as the tasks end; nothing of them is held here."""
     places = {id(task): place for place, task in tasks}
-    for task, future in completed(executor, work, [task for _, task in tasks]):
+    return _answered(places, completed(executor, work, [task for _, task in tasks]))
+
+
+def _answered(
+    places: Mapping[int, int], done: Iterable[tuple[Task, Future[Record]]]
+) -> Iterator[tuple[int, Task, Record | BaseException]]:
+    for task, future in done:
         error = future.exception()
         yield places[id(task)], task, error if error is not None else future.result()

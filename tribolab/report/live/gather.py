@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine.stage import perform
+from tribolab.campaign.engine.stage import begun
 from tribolab.campaign.recorded import done_and_failed
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome
 
 
-def live_figures(
+def begun_live_figures(
     outcome: OpenOutcome,
     curves: Sequence[CurveRecord],
     points: Mapping[str, Sequence[RunPoint]],
@@ -37,8 +37,10 @@ def live_figures(
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],
     executor: Executor | None = None,
-) -> tuple[list[ShownFigure], list[Notice]]:
-    """Return the figures that the page draws, and why others could not be made.
+) -> Callable[[], tuple[list[ShownFigure], list[Notice]]]:
+    """Begin the figures that the page draws, and return what waits for them.
+
+    That gives the figures, and why others could not be made.
 
     Parameters
     ----------
@@ -60,19 +62,24 @@ def live_figures(
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     models = list(rows.values())
     tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
-    records, findings = done_and_failed(perform(LiveFigures(outcome.store, tasks), executor))
-    bands: dict[str, Band] = {}
-    missed: dict[str, Missed] = {}
-    for record in records:
-        bands |= record.bands
-        missed |= record.missed
-    by_curve = {row.model.curve: row for row in models}
-    known = Friction(curves, points, by_curve, bands, missed, surfaces)
-    made = [*card_figures(known), *comparisons(known), *model_figures(known)]
-    return [
-        *(shown_figure(figure) for figure in made),
-        *(figure for record in records for figure in record.figures),
-    ], findings
+    making = begun(LiveFigures(outcome.store, tasks), executor)
+
+    def made() -> tuple[list[ShownFigure], list[Notice]]:
+        records, findings = done_and_failed(making())
+        bands: dict[str, Band] = {}
+        missed: dict[str, Missed] = {}
+        for record in records:
+            bands |= record.bands
+            missed |= record.missed
+        by_curve = {row.model.curve: row for row in models}
+        known = Friction(curves, points, by_curve, bands, missed, surfaces)
+        figures = [*card_figures(known), *comparisons(known), *model_figures(known)]
+        return [
+            *(shown_figure(figure) for figure in figures),
+            *(figure for record in records for figure in record.figures),
+        ], findings
+
+    return made
 
 
 def _tasks(
