@@ -2,6 +2,8 @@
 
 import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import netCDF4
@@ -281,3 +283,24 @@ def test_of_a_group_only_the_wanted_variables_are_read(tmp_path):
     path = write_netcdf(run, tmp_path / "run.nc", "run")
     found = read_groups(path, ["run"], only={"run": ("b", "c")})["run"]
     assert found.identical(run[["b"]])
+
+
+_READ_IN_THREADS = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from tribolab.io.netcdf import read_netcdf
+with ThreadPoolExecutor(6) as threads:
+    read = threads.map(read_netcdf, 80 * sys.argv[1:], 240 * ["run"])
+    sizes = [data.sizes["time"] for data in read]
+print(sum(sizes))
+"""
+
+
+def test_threads_read_one_after_the_other_as_the_library_stands_no_two(tmp_path):
+    values = {f"signal_{k}": ("time", np.arange(100.0)) for k in range(20)}
+    files = [write_groups({None: xr.Dataset(), "run": xr.Dataset(values)}, tmp_path / f"{k}.nc")
+             for k in range(3)]  # fmt: skip
+    told = subprocess.run(
+        [sys.executable, "-c", _READ_IN_THREADS, *map(str, files)], capture_output=True, text=True
+    )
+    assert (told.returncode, told.stdout) == (0, "24000\n"), told.stderr[-300:]

@@ -13,7 +13,7 @@ from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.settings.plan import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
-from tribolab.campaign.store.data_files import NETCDF, digest, write_data
+from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.errors import TribolabError
 from tribolab.io.uncertainty import MODEL_INPUTS
 from tribolab.provenance import sha256_of
@@ -147,9 +147,8 @@ def process_curve(task: CurveTask) -> CurveRecord:
     from tribolab.records.budget_rows import budget_rows
     from tribolab.records.frames import curve_table, plain_rows
 
-    with NETCDF:
-        files = [task.folder / name for name in task.data_files]
-        parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
+    files = [task.folder / name for name in task.data_files]
+    parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
     frictions = [part["friction"] for part in parts]
     curve, known = _with_budget(frictions)
     levels: list[float | None] = []
@@ -214,8 +213,7 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     if not task.found_files:
         return None
     wanted = ("friction", FRICTION_AS_FOUND)
-    with NETCDF:
-        parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
+    parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
     return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])[0]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import tempfile
+import threading
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -22,6 +23,8 @@ from tribolab.room import is_long, room
 if TYPE_CHECKING:
     import netCDF4
 
+# The library is not safe under threads, which some executors use.
+_LIBRARY = threading.RLock()
 _CACHE = 1 << 20  # bytes of a long variable that the library keeps
 GROUPS = "groups"  # attribute of the root of a file of groups
 # What netCDF4 and xarray raise on a file that is damaged.
@@ -122,7 +125,7 @@ def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w
     try:
         if mode == "a" and path.is_file():
             unseal(path)
-        with _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
+        with _LIBRARY, _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
             write_into(file, groups)
             if any(groups):  # whoever opens the file without a group sees the root alone
                 file.setncattr(GROUPS, "; ".join(file.groups))
@@ -148,7 +151,7 @@ def _plain_name(path: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
-    """Open a netCDF file to read it, whatever the bytes of its name are.
+    """Open a netCDF file to read it, whatever the bytes of its name are; one thread at a time.
 
     Parameters
     ----------
@@ -167,7 +170,7 @@ def opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
     """
     import netCDF4
 
-    with _plain_name(Path(path)) as plain, netCDF4.Dataset(plain) as file:
+    with _LIBRARY, _plain_name(Path(path)) as plain, netCDF4.Dataset(plain) as file:
         yield file
 
 

@@ -45,7 +45,7 @@ from tribolab.report.figures.stage import Figures, FigureTask, planned
 from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
 from tribolab.report.live.gather import begun_live_figures
 from tribolab.report.live.points import RunPoint, run_points
-from tribolab.report.page.page import write_page
+from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
 from tribolab.report.tables import SEVERITIES
 from tribolab.untyped import Json
@@ -119,7 +119,9 @@ def write_report(
     known = [curve.outcome for curve in shown]
     tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
     drawing = begun(Figures(store, tasks), executor, tell)
-    write_tables(outcome, shown, surfaces, rows, fitted)  # while workers draw
+    # while workers draw
+    write_tables(outcome, shown, surfaces, rows, fitted)
+    prepare_page()
     live, undrawn = making()
     findings += undrawn
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}

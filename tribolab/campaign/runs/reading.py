@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
-from tribolab.campaign.store.data_files import NETCDF
 from tribolab.errors import ReadError
 from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of
@@ -97,8 +96,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     from tribolab.io.netcdf import read_netcdf
 
     try:
-        with NETCDF:
-            marked = read_netcdf(earlier.file, "run")
+        marked = read_netcdf(earlier.file, "run")
     except ReadError:  # gone or damaged: the raw files are there
         return None
     noted = marked.attrs.get(READING)

@@ -6,7 +6,6 @@ import errno
 import hashlib
 import os
 import shutil
-import threading
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 UNFINISHED = ".part"
-# The netCDF library is not safe under threads, which some executors use.
-NETCDF = threading.Lock()
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
 
@@ -48,8 +45,7 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
-        with NETCDF:
-            write_groups(groups, part)
+        write_groups(groups, part)
         part.replace(path)
     except (OSError, RuntimeError, TribolabError) as error:
         # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"
@@ -70,8 +66,7 @@ def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
     from tribolab.io.kept import read_kept
 
-    with NETCDF:
-        return read_kept(path, group)
+    return read_kept(path, group)
 
 
 def optional_data(path: Path, group: str) -> xr.Dataset | None:

@@ -19,7 +19,7 @@ from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.answer import cards, of_nothing
 from tribolab.report.page.in_short import in_short
 from tribolab.report.page.sections import shown_sections
-from tribolab.report.page.templating import environment, framing
+from tribolab.report.page.templating import environment, framing, library
 from tribolab.untyped import Json
 from tribolab.words import force_text
 
@@ -69,6 +69,15 @@ def write_page(
     stream.enable_buffering(256)
     stream.dump(str(path), encoding="utf-8")
     return path
+
+
+def prepare_page() -> None:
+    """Compile the templates, and compress the library: what a page takes before its numbers."""
+    library()
+    jinja = environment(Path())
+    for name in jinja.list_templates():
+        if not name.startswith(("across/", "paper/")):
+            jinja.get_template(name)
 
 
 class Traces(Protocol):
