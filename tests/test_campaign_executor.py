@@ -89,6 +89,22 @@ def test_workers_are_copies_of_a_process_that_has_imported_their_work_and_ends_w
     assert not _lives(nursery)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere every worker is started anew")
+def test_a_pool_that_is_prepared_begins_before_there_is_work_and_ends_without_any():
+    with LastingPool(2, ["colorsys"]) as pool:
+        pool.prepare()
+        nursery = pool._nursery._forkserver_pid
+        assert _lives(nursery)
+        assert pool.submit(imported_and_parent, "colorsys").result(timeout=60) == (True, nursery)
+    assert not _lives(nursery)
+    with LastingPool(2) as pool:
+        pool.prepare()
+        nursery = pool._nursery._forkserver_pid
+    assert not _lives(nursery)
+    pool.prepare()  # closed: nothing begins any more
+    assert pool._nursery._forkserver_pid is None
+
+
 def test_workers_know_the_environment_of_now(monkeypatch):
     monkeypatch.setenv("OF_BEFORE", "1")
     with LastingPool(1) as pool:

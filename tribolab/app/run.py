@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tribolab.app.needed import ANALYSIS
 from tribolab.campaign.engine.executor import workers
+from tribolab.campaign.engine.pool import LastingPool
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.load import load_and_plan
@@ -106,13 +107,15 @@ def run_campaign(
     known = unchanged(campaign, runs, place, options, verify=verify)
     if known is not None:
         return known
-    # imported only now: where nothing has changed, nobody waits for it
-    from tribolab.campaign.pipeline import process
-    from tribolab.report.results import write_report
-
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
+            if isinstance(pool, LastingPool):  # its workers import the same, at the same time
+                pool.prepare()
+            # only now: where nothing has changed, nobody waits for it
+            from tribolab.campaign.pipeline import process
+            from tribolab.report.results import write_report
+
             outcome = process(
                 campaign,
                 folder,

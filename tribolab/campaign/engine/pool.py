@@ -65,6 +65,12 @@ class LastingPool(Executor):
         self._alone = _Lane(1, self._context)
         self._closed = False
 
+    def prepare(self) -> None:
+        """Have the modules of the work imported, while the caller goes on with its own."""
+        with _undisturbed(), self._lock:
+            if self._nursery is not None and not self._closed:
+                self._nursery.ensure_running()
+
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
         with _undisturbed(), self._lock:
