@@ -431,3 +431,43 @@ def test_text_in_quotes_may_hold_the_delimiter_and_bars_may_part_cells(tmp_path)
     head = "Time [s]|Friction [mN]|Load [mN]|Speed [mm/s]"
     run = tl.read(written(tmp_path / "b.csv", head, T, FRICTION, LOAD, SPEED, delimiter="|"))
     np.testing.assert_allclose(run.normal_force, 1e-3 * LOAD, atol=1e-6)
+
+
+def test_words_of_others_and_a_clock_that_restarts_make_a_disc_with_steps(tmp_path):
+    clock = np.tile(np.arange(N // 3), 3) / 600
+    block = np.repeat([1, 2, 3], N // 3)
+    head = "Wear track radius;18,5;mm\nBlock;Clock [min];Spindle [rpm];Drag [cN];Pressing force [N]"
+    columns = [block, clock, 60.0 * block, FRICTION / 10, LOAD / 1e3]
+    file = written(
+        tmp_path / "a.csv", head, *columns, delimiter=";",
+        number=lambda x: f"{x:.5f}".replace(".", ","),
+    )  # fmt: skip
+    run = tl.read(file)
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 18.5e-3 * block, rtol=1e-6)
+    np.testing.assert_allclose(run.friction_force, 1e-3 * FRICTION, atol=1e-6)
+    assert (np.diff(run.time) > 0).all()
+
+
+def test_a_column_in_a_unit_of_time_that_rises_may_be_the_time(tmp_path):
+    head = "Rolex [s],Friction [mN],Load [mN],Speed [mm/s]"
+    assert "time" in asked(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, SPEED))
+
+
+@pytest.mark.parametrize(
+    ("said", "stroke"),
+    [("Amplitude of motion (peak to peak) = 12 mm", 12e-3), ("Half stroke = 6 mm", 12e-3)],
+)
+def test_an_amplitude_from_end_to_end_is_the_stroke(said, stroke, tmp_path):
+    head = f"{said}\nReciprocation = 0.5 Hz\nProfile = sinusoidal\nDead load = 0.2 kgf"
+    head += "\nLogger interval = 50 ms\nLateral [mN]\tChamber [degC]"
+    force = 300 * np.sign(np.cos(np.pi * T)) + np.sin(7 * T)
+    run = tl.read(written(tmp_path / "a.dat", head, force, 24.0, delimiter="\t"))
+    assert run.attrs["stroke_m"] == pytest.approx(stroke)
+    np.testing.assert_allclose(run.normal_force, 0.2 * 9.80665)
+
+
+def test_heights_alone_say_that_their_distance_is_missing(tmp_path):
+    file = tmp_path / "trace.txt"
+    file.write_text("Traverse: 2.0 mm\nElevation (um)\n" + "".join(f"{x:.4f}\n" for x in T))
+    with pytest.raises(tl.TribolabError, match="how far they lie apart"):
+        tl.read(file)

@@ -87,9 +87,12 @@ def holds_run(path: Path, *, by_name: bool = True) -> bool:
 
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
+    from tribolab.draft.dialect.draft import HEIGHTS
     from tribolab.draft.dialect.questions import GuessedError, questions
 
     draft = draft_of(path)
+    if draft is not None and draft.answer == HEIGHTS:
+        raise ReadError(draft.answer, where=path, cure=error.cure) from error
     if draft is None or draft.kind == "table":
         raise error
     if asked := questions(draft):

@@ -30,7 +30,8 @@ RUN_WORDS = (
         _words("t time zeit ts xvalue dt deltat δt interval intervall"),
         _words(
             "steptime testtime elapsedtime timestamp time zeit elapsed dauer uhr seconds sekunden "
-            "temps duree tiempo tempo durata 时间 時間 经过时间 経過時間 時刻"
+            "temps duree tiempo tempo durata clock tijd runtime laufzeit stopwatch "
+            "时间 時間 经过时间 経過時間 時刻"
         ),
     ),
     Word(
@@ -39,7 +40,7 @@ RUN_WORDS = (
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
             "horizontalforce horizontalload "
-            "tractionforce shearforce "
+            "tractionforce shearforce dragforce drag lateral tangential wrijvingskracht wrijving "
             "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung "
             "forcex xforce sledforce pullforce pullingforce zugkraft "
             "forcedefrottement efforttangentiel forcetangentielle frottement "
@@ -58,6 +59,8 @@ RUN_WORDS = (
         _words(
             "normalforce normalload axialforce axialload verticalforce verticalload "
             "balload ballload "
+            "pressingforce pressforce clampingforce downforce appliedforce "
+            "normaalkracht aandrukkracht belasting "
             "appliedload contactforce normalkraft axialkraft anpresskraft auflast normallast "
             "load last belastung forcez zforce forcenormale effortnormal charge "
             "fuerzanormal carga forzanormale carico "
@@ -127,7 +130,8 @@ RUN_WORDS = (
         "rotation_speed",
         _words("rpm n omega"),
         _words(
-            "rotation drehzahl rotary angularspeed angularvelocity rotationalspeed "
+            "rotation drehzahl rotary spindle spindel toerental "
+            "angularspeed angularvelocity rotationalspeed "
             "vitessederotation velocidaddegiro velocidadderotacion giri velocitadirotazione "
             "转速 轉速 回転数 回転速度"
         ),
@@ -181,7 +185,7 @@ RUN_WORDS = (
     Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
     Word(
         "step",
-        _words("step schritt segment stage etape paso passo 步骤"),
+        _words("step schritt segment stage etape paso passo block phase stap 步骤"),
         _words("stepno stepnumber"),
     ),
     Word(
@@ -201,6 +205,7 @@ SCAN_WORDS = (
         _words("z h"),
         _words(
             "height hoehe profile profil amplitude topography depth tiefe raw hauteur altura "
+            "elevation relief ordinate hoogte "
             "altezza 高度 高さ"
         ),
     ),

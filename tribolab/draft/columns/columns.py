@@ -10,8 +10,8 @@ import pandas as pd
 from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
 from tribolab.draft.columns.ratio import disagreement
 from tribolab.draft.columns.values import find_factors, find_pitch, find_sampling
-from tribolab.draft.columns.words import COUNTS, is_count, matches, split_unit
-from tribolab.draft.file.header import is_unit
+from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
+from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
@@ -21,6 +21,8 @@ from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import split_name, split_row
 
+_RISES = 0.9  # share of the steps from row to row; a clock may start anew
+_BY_UNIT = 0.6  # score of a name that says nothing beside a unit that does
 _PURE = ("1", "-")  # what stands for the unit of a pure number
 
 
@@ -251,6 +253,7 @@ def _by_name(
     bare = [_bare(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
+    run = _timed(bare, run, numbers)
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
@@ -259,6 +262,22 @@ def _by_name(
         return "scan", assigned(columns, bare, scan, numbers, "scan")
     kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
     return kind, assigned(columns, bare, run, numbers, kind)
+
+
+def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
+    """Take the one column in a unit of time that rises for time, where no name says which it is."""
+    if any(options and options[0].quantity == "time" for options in run):
+        return run
+    rising = [
+        place
+        for place, (_, unit, _) in enumerate(bare)
+        if unit is not None and not run[place] and converts(unit, "s")
+        if (np.diff(numbers[:, place]) >= 0).mean() > _RISES
+    ]
+    if len(rising) != 1:
+        return run
+    guess = [Match("time", _BY_UNIT, None)]
+    return [guess if place == rising[0] else options for place, options in enumerate(run)]
 
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:

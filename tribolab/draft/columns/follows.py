@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.strokes import (
+    END_TO_END,
     FREQUENCY,
     HALF_STROKE,
     STROKE,
@@ -21,7 +22,9 @@ from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.headers import split_name
 
 _TORQUE = re.compile(r"torque|drehmoment|reibmoment|couple|coppia|扭矩|转矩|トルク|^(?:m|mr|tq)$")
-_DRIVE = re.compile(r"drive|motion|waveform|antrieb|bewegung|entrainement|movimento|movimiento")
+_DRIVE = re.compile(
+    r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|movimento|movimiento"
+)
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _LOAD = re.compile(
@@ -161,8 +164,9 @@ def _of_values(values: Sequence[DraftValue]) -> _Strokes | None:
     """Return the length and frequency of strokes that stand above the table."""
     stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
     if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
-        stroke = half._replace(scale=2.0)
-        if "half" not in half.name:
+        whole = END_TO_END.search(half.text) is not None
+        stroke = half if whole else half._replace(scale=2.0)
+        if not whole and "half" not in half.name:
             guess = f"'{half.text}' is half of a stroke"
     if stroke is None or frequency is None:
         return None

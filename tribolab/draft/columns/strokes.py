@@ -9,13 +9,20 @@ from tribolab.draft.columns.roles import without_role
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 
-STROKE = re.compile(r"^(?:stroke|strokelength|hub|hublaenge|course|carrera|corsa|行程|ストローク)$")
+STROKE = re.compile(
+    r"^(?:stroke|strokelength|slaglengte|hub|hublaenge|course|carrera|corsa|行程|ストローク)$"
+)
 HALF_STROKE = re.compile(
-    r"^(?:half(?:the)?stroke(?:length)?|(?:stroke)?amplitude|halbhub|demicourse)$"
+    r"^(?:half(?:the)?stroke(?:length)?|(?:stroke|motion)?amplitude(?:of(?:the)?(?:motion|stroke))?"
+    r"|halbhub|demicourse)$"
+)
+END_TO_END = re.compile(
+    r"peak\W?to\W?peak|\bpk\W?pk\b|\bp\W?p\b|spitze\W{1,3}spitze", re.IGNORECASE
 )
 FREQUENCY = re.compile(
     r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
-    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数)$"
+    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数"
+    r"|reciprocation|oscillation|strokerate|cyclerate|frequencyof(?:motion|reciprocation))$"
 )
 
 

@@ -22,7 +22,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
 
 PathLike = str | Path
-_HEIGHTS = (
+HEIGHTS = (
     "heights without positions, of which the file does not say how far they lie apart: pitch = "
     '"0.25 um" in a dialect does'
 )
@@ -91,7 +91,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     )
     if toml:
         _validate(draft)
-    return draft._replace(answer=_HEIGHTS) if not toml and holds_heights(draft) else draft
+    return draft._replace(answer=HEIGHTS) if not toml and holds_heights(draft) else draft
 
 
 def _understood(file: File) -> tuple[Layout, Understood]:
