@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 import time
 from collections import Counter
 from pathlib import Path
@@ -11,6 +12,8 @@ from chromium import BROWSER, chromium
 from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+# of jsonschema, for a format that no schema of ours has: its grammar takes a second to build
+sys.modules.setdefault("rfc3987_syntax", None)
 # workers of the suite beside each other: more threads of BLAS than processors only wait
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
