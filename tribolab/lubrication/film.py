@@ -10,7 +10,7 @@ from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.limits import line_limits
 from tribolab.lubrication.factors import FlowFactors, RoughBody
-from tribolab.lubrication.speeds import solve_speeds
+from tribolab.lubrication.speeds import Point, System, solve_speeds
 from tribolab.lubrication.system import (
     CELLS,
     PROOF,
@@ -70,22 +70,23 @@ def film_profile(
     '5.89 um, 52.3 kPa'
     """
     force = positive(load, "N/m", "load")
-    if np.ndim(speed):
-        numerics = (
-            rough_body, factors, gamma, cells, domain, inlet_length, area, work_of_adhesion
-        )  # fmt: skip
-        films = [
-            film_profile(contact, psd, viscosity, load, float(v), *numerics)
-            for v in checked_speeds(speed, psd).values
-        ]
-        return _put_together(films)
-    v = float(checked_speeds(speed, psd).values[0])
+    speeds = checked_speeds(speed, psd).values
+    magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
     with one_thread():
         system = system_of(
             contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length, area
         )
         system = with_adhesion(system, force, work_of_adhesion)
-        ((_, problem, solution),) = solve_speeds(system, force, np.array([abs(v)]))
+        points = solve_speeds(system, force, magnitudes)
+    films = [
+        _profile(system, force, float(v), points[i]) for v, i in zip(speeds, back, strict=True)
+    ]
+    return _put_together(films) if np.ndim(speed) else films[0]
+
+
+def _profile(system: System, force: float, v: float, point: Point) -> xr.Dataset:
+    """Say what was solved at one speed."""
+    _, problem, solution = point
     fields = solution.fields
     side = -1 if v < 0 else 1
     solid = fields.contact * problem.pressure
@@ -95,7 +96,7 @@ def film_profile(
         "contact_pressure": solid,
         "fluid_pressure": fields.fluid * problem.pressure,
         "pressure": whole,
-        "contact_area_ratio": real_area(system, solid, whole, area),
+        "contact_area_ratio": real_area(system, solid, whole, system.area),
     }
     x = side * problem.mesh.x * problem.half_width
     unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
@@ -109,8 +110,9 @@ def film_profile(
         {name: ("x", value[::side]) for name, value in values.items()} | scalars,
         coords={"x": x[::side], "sliding_speed": v, "load": force},
     )
-    thinnest = values["separation"].min()
-    limits = line_limits("film_profile", contact, force, psd, system.separation, [v], [thinnest])
+    thinnest = [values["separation"].min()]
+    around = system.contact, force, system.psd, system.separation
+    limits = line_limits("film_profile", *around, [v], thinnest)
     return stamp(data, **system_attributes(system), **limits)
 
 

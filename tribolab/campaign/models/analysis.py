@@ -22,7 +22,6 @@ from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp
 from tribolab.untyped import Arguments
-from tribolab.validity import together
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -245,25 +244,20 @@ def _profiles(
     moving = points[points > 0]
     body = model.settings["rough_body"]
     begins = model.settings["inlet_length"] or np.inf
-    films = [
-        film_profile(
-            contact,
-            psd,
-            model.viscosity,
-            load,
-            v,
-            body,
-            inlet_length=begins,
-            area=model.area,
-            work_of_adhesion=model.work_of_adhesion,
-        )
-        .reset_index("x")
-        .reset_coords("x")
-        .rename_dims(x="point")
-        for v in (float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES))
+    speeds = [
+        float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES).tolist()
     ]
-    profiles = xr.concat(films, "sliding_speed", combine_attrs="drop_conflicts")
-    return stamp(profiles, **together([film.attrs for film in films]))
+    return film_profile(
+        contact,
+        psd,
+        model.viscosity,
+        load,
+        speeds,
+        body,
+        inlet_length=begins,
+        area=model.area,
+        work_of_adhesion=model.work_of_adhesion,
+    )
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
