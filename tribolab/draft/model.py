@@ -69,7 +69,6 @@ class Understood(NamedTuple):
     radius: str = ""
     drive: str = ""
     pitch_pattern: str = ""
-    pitch_unit: str = ""
     pitch: str = ""
 
 

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
 from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.draft.columns.words import SURE, Match, is_axis, is_count, squeezed
 from tribolab.draft.file.header import converts
-from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind, other_units, time_unit
-from tribolab.errors import shown
+from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 
-Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 SIGNALS = {
     "friction_force",
     "normal_force",
@@ -25,20 +23,13 @@ SIGNALS = {
     "shear_stress",
     "film_thickness",
 }
-_CHANNELS = {"friction_force", "normal_force", "friction_coefficient"}
-_DECIDING = _CHANNELS | {"sliding_velocity", "rotation_speed"}
+_DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 # of two columns for a quantity the measured one counts, and what was set or worked out gives way
 _WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5, "extreme": 0.4}
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
-_NOISE = 0.1  # of the highest load, what a sensor without a load shows
 _ACROSS = {"fy"}
-_FACTOR = re.compile(
-    r"[x×*·]?\s*\b10\s*\^\s*-?\d+|[x×*·]\s*1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
-)
 _APART = 0.01  # relative difference of two columns that do not hold the same
-# beside friction: which of several such columns is taken changes no coefficient of friction
-_ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
 
 
 class _Proposal(NamedTuple):
@@ -78,7 +69,7 @@ def assigned(
         if option:
             # of names used twice the later counts: exporters repeat first what was plotted
             weight = _WEIGHT[role_of(bare[index][0])] if kind == "run" else 1.0
-            if option.quantity in _CHANNELS and np.ptp(numbers[:, index]) == 0:
+            if option.quantity in FORCES and np.ptp(numbers[:, index]) == 0:
                 weight *= _STILL
             rank = (option.score * weight, bool(filled[index]), index)
             proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
@@ -107,7 +98,7 @@ def assigned(
                 note = f"also looks like {name}; column {best} is used"
                 result[place] = columns[place]._replace(quantity=name, note=note)
             else:
-                column = _column(
+                column = filled_in(
                     columns[place],
                     bare[place],
                     rival.option,
@@ -164,7 +155,7 @@ def _is_spare(rivals: list[_Proposal]) -> bool:
     """Whether just one of the columns for a force is filled; in another file it may be another."""
     alike = _alike(rivals)
     filled = sum(rival.rank[1] for rival in alike)
-    return len(alike) > 1 and filled == 1 and rivals[0].option.quantity in _CHANNELS
+    return len(alike) > 1 and filled == 1 and rivals[0].option.quantity in FORCES
 
 
 def _spare(
@@ -176,7 +167,7 @@ def _spare(
     rivals: list[_Proposal],
 ) -> DraftColumn:
     """Fill in one of several columns for a force: the first that is filled will be taken."""
-    column = _column(columns[rival.place], bare, rival.option, values, kind, several=False)
+    column = filled_in(columns[rival.place], bare, rival.option, values, kind, several=False)
     best = max(rivals).place
     note = "" if rival.place == best else f"nothing but zeros here; column {best + 1} is filled"
     return column._replace(optional=True, note=note)
@@ -252,68 +243,3 @@ def _preferred(
         if top[0].quantity == "time" and not (steps >= 0).all():
             return top[1]
     return options[0]
-
-
-def _column(
-    column: DraftColumn,
-    bare: Bare,
-    option: Match,
-    values: np.ndarray,
-    kind: Kind,
-    several: bool,
-) -> DraftColumn:
-    """Fill in a column that holds a quantity."""
-    _, unit, say_unit = bare
-    si_unit = quantity(option.quantity).unit
-    guessed = []
-    options: tuple[str, ...] = ()
-    if option.score < SURE:
-        guessed.append(f"the name means {quantity(option.quantity).long_name}")
-    if several and option.quantity not in _ASIDE:
-        guessed.append(f"of several columns for {option.quantity} it is the one meant")
-    written = unit if say_unit else None
-    if option.unit:
-        written = option.unit
-        guessed.append(f"'{shown(unit)}' means {option.unit}")
-    fill_in = ""
-    if role_of(bare[0]) == "extreme" and option.quantity in _CHANNELS:
-        guessed.append("by its name it is not the signal but its extremes or scatter")
-    if factor := _FACTOR.search(column.label):
-        guessed.append(f"'{factor[0]}' in its name changes no number")
-    if unit is not None and is_count(unit):
-        fill_in = f"what one count of '{shown(column.label)}' ({option.quantity}) is, e.g. "
-        fill_in += f'"0.5 m{si_unit}"'
-    elif unit is None and si_unit not in ("", "1"):
-        if option.quantity == "time":
-            written = time_unit(values)
-            guessed.append(f"time is in {written}")
-            options = other_units("s", written)
-        elif kind == "scan":
-            written = "mm" if option.quantity in ("x", "y") else "um"
-            guessed.append(f"{option.quantity} is in {written}")
-            options = other_units("m", written)
-        else:
-            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
-            options = other_units(si_unit)
-    finite = values[np.isfinite(values)]
-    sign = 1
-    # noise about zero before the contact is loaded may have the other sign
-    pressed = finite.size and finite.min() < 0 and finite.max() < _NOISE * -finite.min()
-    if option.quantity == "normal_force" and pressed:
-        sign = -1
-        guessed.append("the normal force is counted negative")
-        options = (*options, "counted positive")
-    used, note = not fill_in, ""
-    if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
-        used, note, fill_in = False, "it stands still", ""
-    return column._replace(
-        quantity=option.quantity,
-        unit=written,
-        sign=sign,
-        optional=not finite.size and option.quantity != "time",
-        used=used and (bool(finite.size) or option.quantity != "time"),
-        guessed=tuple(guessed),
-        options=options,
-        note=note or ("" if finite.size else "no value in this file"),
-        fill_in=fill_in,
-    )

@@ -7,7 +7,8 @@ import io
 import numpy as np
 import pandas as pd
 
-from tribolab.draft.columns.assign import SIGNALS, Bare, assigned
+from tribolab.draft.columns.assign import SIGNALS, assigned
+from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.ratio import disagreement
 from tribolab.draft.columns.values import find_factors, find_pitch, find_sampling
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
@@ -80,7 +81,6 @@ def understand(layout: Layout) -> Understood:
             False,
             tuple(guesses),
             pitch_pattern=pitch.pattern,
-            pitch_unit=pitch.unit or "m",
         )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in

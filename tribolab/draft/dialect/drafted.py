@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.dialect.toml import FILL_IN
+from tribolab.draft.dialect.tables import FILL_IN
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import Kind, Understood
 from tribolab.errors import shown

@@ -5,20 +5,23 @@ Only the first megabyte is looked at line by line, and the end of a longer file 
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.file.header import Heading, escaped, find_heading, first_cells
+from tribolab.draft.file.blocks import find_blocks, main_blocks
+from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
     DELIMITERS,
-    Grammar,
     find_encoding,
     find_grammar,
     find_line_ends,
 )
 from tribolab.draft.file.marks import Block, without_marks
+from tribolab.draft.file.patterns import (
+    end_pattern,
+    header_pattern,
+    last_lines,
+    step_pattern,
+)
 from tribolab.errors import ReadError
 from tribolab.io.dialects.headers import line_feeds, split_row
 from tribolab.io.dialects.signature import HEAD, File
@@ -30,9 +33,7 @@ from tribolab.io.dialects.spelling import (
 )
 from tribolab.io.dialects.thousands import Mark, find_thousands, without_thousands
 
-_TAIL = 1 << 14
 _FEW = 20  # lines at the end that tell what parts cells
-_TRIED = 20  # patterns of a step's number
 _MOST_COLUMNS = 20_000
 
 
@@ -137,8 +138,8 @@ def find_layout(file: File) -> Layout:
             f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
             "at least one row of numbers"
         )
-    blocks, skip_lines = without_marks(lines, _blocks(lines, grammar), grammar)
-    main, others = _main(blocks)
+    blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+    main, others = main_blocks(blocks)
     first = main[0]
     if first.width > _MOST_COLUMNS:
         raise ReadError(
@@ -146,12 +147,12 @@ def find_layout(file: File) -> Layout:
             f"({_MOST_COLUMNS}); is it the right file, and is each row on a line of its own?"
         )
     heading = first.heading
-    pattern, repeats = _pattern(lines, main, grammar) if heading else (None, False)
+    pattern, repeats = header_pattern(lines, main, grammar) if heading else (None, False)
     if heading and pattern is None and len(main) > 1:
         main, others = main[:1], others + len(main) - 1
         guesses.append("only the first of several tables is read: their headers are not unique")
-    tail = _tail(file, encoding)
-    end = _end(lines, main, tail, grammar)
+    tail = last_lines(file, encoding)
+    end = end_pattern(lines, main, tail, grammar)
     if tail and pattern is not None and end is not None:
         repeats = True  # only then is the whole file searched for the end of the table
     if heading:
@@ -175,7 +176,7 @@ def find_layout(file: File) -> Layout:
         header_pattern=pattern,
         skip=skip,
         repeats=repeats,
-        step=_step(lines, main) if repeats else None,
+        step=step_pattern(lines, main) if repeats else None,
         end=end,
         skip_lines=skip_lines,
         whole=file.size <= HEAD,
@@ -184,147 +185,3 @@ def find_layout(file: File) -> Layout:
         thousands=thousands,
         quoted=quoted,
     )
-
-
-def _blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
-    """Rows of numbers of equal width that only blank lines part."""
-    blocks: list[Block] = []
-    rows: list[int] = []
-    width = 0
-
-    def close() -> None:
-        if rows:
-            heading = find_heading(lines, rows[0], grammar, width)
-            blocks.append(Block(rows[0], rows[-1] + 1, tuple(rows), width, heading))
-            rows.clear()
-
-    last = max((index for index, line in enumerate(lines) if line.strip()), default=0)
-    for index, line in enumerate(lines):
-        if not line.strip():
-            continue
-        cells = grammar.width(line)
-        if cells and rows and grammar.is_footer(line) and not grammar.is_footer(lines[rows[0]]):
-            cells = 0
-        if not cells and rows and grammar.goes_on(line, width):
-            cells = width
-        if cells != width and not (rows and index == last and 0 < cells < width):
-            close()
-            width = cells
-        if cells == width and cells:
-            rows.append(index)
-    close()
-    return blocks
-
-
-def _main(blocks: list[Block]) -> tuple[list[Block], int]:
-    """Return the blocks under the same header that hold most numbers; how many others there are."""
-    weight: Counter[tuple[tuple[str, ...] | None, int]] = Counter()
-    for block in blocks:
-        weight[_key(block)] += len(block.rows) * block.width
-    key = weight.most_common(1)[0][0]
-    main = [block for block in blocks if _key(block) == key]
-    if key[0] is None:  # without a header nothing joins several tables
-        main = [max(main, key=lambda block: len(block.rows))]
-    return main, len(blocks) - len(main)
-
-
-def _key(block: Block) -> tuple[tuple[str, ...] | None, int]:
-    heading = block.heading
-    if heading is None:
-        return None, block.width
-    # the order of columns may change from step to step, where names tell which is which
-    cells = tuple(sorted(heading.cells)) if heading.aligned else heading.cells
-    return cells, block.width
-
-
-def _pattern(
-    lines: tuple[str, ...], blocks: list[Block], grammar: Grammar
-) -> tuple[str | None, bool]:
-    """Return a pattern that finds the headers and nothing else; whether there are several."""
-    wanted = [block.heading.names for block in blocks if block.heading]
-    headers = list(dict.fromkeys(lines[index] for index in wanted))
-    repeats = len(wanted) > 1
-    if wanted == [0]:
-        return None, False
-    for short in (True, False):
-        texts = [
-            escaped(first_cells(line, grammar.delimiter) if short else line.strip() or line)
-            for line in headers
-        ]
-        texts = list(dict.fromkeys(texts))
-        pattern = "^" + (texts[0] if len(texts) == 1 else f"(?:{'|'.join(texts)})")
-        matched = [i for i, line in enumerate(lines) if re.match(pattern, line)]
-        if matched == wanted or (not repeats and matched[:1] == wanted):
-            return pattern, repeats
-    return None, False
-
-
-def _step(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
-    """Return a pattern for the steps' numbers, if they stand in the text before each header."""
-    texts, done = [], 0
-    for block in blocks:
-        texts.append(lines[done : block.heading.names if block.heading else block.start])
-        done = block.stop
-    tried: set[str] = set()
-    for line in texts[0]:
-        told = re.match(
-            r"(?i)(\W*(?:[a-z]+ ?- ?|(?:step|schritt|segment|stage)\D{0,5}))(\d+)\b", line
-        )
-        told = told or re.match(r"(.* - )(\d+)$", line)
-        if not told:
-            continue
-        general = r"^.* - (\d+)$" if told[1].endswith(" - ") else f"^{escaped(told[1])}(\\d+)"
-        if general in tried:
-            continue
-        tried.add(general)
-        if len(tried) > _TRIED:
-            break
-        hits = [re.findall(general, "\n".join(text), re.MULTILINE) for text in texts]
-        if not all(hits):
-            continue
-        numbers = [int(hit[-1]) for hit in hits]
-        if all(b > a for a, b in zip(numbers, numbers[1:], strict=False)):
-            return general
-    return None
-
-
-def _tail(file: File, encoding: str) -> list[str]:
-    """Last lines of a file longer than what is looked at."""
-    if file.size <= HEAD:
-        return []
-    with file.path.open("rb") as handle:
-        handle.seek(max(file.size - _TAIL, HEAD))
-        text = handle.read().decode(encoding, errors="replace")
-    return line_feeds(text).split("\n")[1:]
-
-
-def _end(
-    lines: tuple[str, ...], blocks: list[Block], tail: list[str], grammar: Grammar
-) -> str | None:
-    """Return a pattern for the line that ends the table, if anything stands below it."""
-    stops: list[tuple[Sequence[str], int]] = [(lines, block.stop) for block in blocks]
-    if tail:
-        stops[-1] = (
-            tail,
-            max((n for n, row in enumerate(tail, 1) if grammar.width(row)), default=0),
-        )
-    below, blank = [], True
-    for text, stop in stops:
-        after = next((n for n in range(stop, len(text)) if text[n].strip()), None)
-        if after is not None:
-            below.append(text[after])
-            blank = blank and after > stop
-    if not below:
-        return None
-    dense = all(block.stop - block.start == len(block.rows) for block in blocks)
-    if blank and dense:
-        return r"^\s*$"
-    starts = {line.lstrip()[:1] for line in below}
-    if all(start.isascii() and start.isalpha() for start in starts):
-        starts = {"A-Za-z"}
-    rows = {lines[index].lstrip()[:1] for block in blocks for index in block.rows}
-    if "A-Za-z" in starts and not any(row.isalpha() for row in rows):
-        return "^[A-Za-z]"
-    if not starts & rows:
-        return "^[" + "".join(re.escape(start) for start in sorted(starts)) + "]"
-    return "^" + escaped(below[0].strip()[:20])
