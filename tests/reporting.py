@@ -12,7 +12,7 @@ from tribolab.campaign.store.data_files import write_data
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.records.frames import curve_table, stick_slip_table
+from tribolab.records.frames import curve_table, plain_rows, stick_slip_columns
 from tribolab.records.notices import notices_of
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome
@@ -126,7 +126,7 @@ def record_run(store, place, outcome, run, segments, friction):
         (("raw/made.csv", "ab" * 32, 9),),
         facts=facts_of(run, segments, friction, slip),
         notices=tuple(notices_of(outcome.name, run, segments, friction)),
-        slip=tuple(plain_value(stick_slip_table(slip).to_dict("records"))),
+        slip=plain_rows(stick_slip_columns(slip)),
     )
     trace = page_trace(run, segments, friction, *trace_size(5))
     store.put("run", outcome.name, place, "", record, trace)

@@ -14,7 +14,7 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.io.logs import group_files
-from tribolab.records.frames import friction_table
+from tribolab.records.frames import friction_columns, rows_of
 from tribolab.records.run_facts import friction_facts
 from tribolab.report.live.points import run_points
 from tribolab.rig.campaign import simulate_campaign
@@ -185,7 +185,7 @@ def test_the_table_of_runs_the_card_and_the_curve_have_one_error(offset):
     run = xr.Dataset({k: ("segment", v) for k, v in data.items()}, attrs={"offset": offset})
     [curve] = measured_stribeck_curve([run]).friction_coefficient_sem.values
     [mark] = friction_facts(run).highlights
-    rows = friction_table(run).to_dict("records")
+    rows = rows_of(friction_columns(run))
     [point] = run_points("r", rows, offset)
     assert curve == pytest.approx(0.002 / (1 if offset == "half loop" else np.sqrt(2)))
     assert (mark.sem, point.within) == pytest.approx((curve, curve))

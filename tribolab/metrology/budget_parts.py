@@ -136,7 +136,8 @@ def combined(
         friction_coefficient_U95=(dim, coverage_factor(nu) * u),
         uncertainty_part=(("part", dim), counted),
         uncertainty_part_dof=(("part", dim), dof),
-    ).assign_coords(part=np.array(names, dtype=str))
+        part=("part", np.array(names, dtype=str)),
+    )
     return stamp(result, uncertainty_says=_says(known, names, counted, missing, unstated))
 
 

@@ -18,7 +18,7 @@ value meaning        when
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,6 +92,9 @@ def is_uniform(flags: np.ndarray) -> bool:
     return flags.size > 0 and not any(flags.strides)
 
 
+_Flags = tuple[tuple[Hashable, ...], np.ndarray, dict[str, object]]  # dims, values, attributes
+
+
 def attach(
     data: xr.Dataset, name: str, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
 ) -> xr.Dataset:
@@ -113,34 +116,49 @@ def attach(
     -----
     The pair is linked to the variable by ``ancillary_variables`` (CF-1.11, section 3.5).
     """
-    shape, dims = data[name].shape, data[name].dims
+    return attach_all(data, [(name, flags)], bits)
+
+
+def attach_all(
+    data: xr.Dataset,
+    flags: Iterable[tuple[str, Mapping[str, np.ndarray]]],
+    bits: Mapping[str, int],
+) -> xr.Dataset:
+    """Return the same as `attach` of several variables, given with the flags of each."""
+    pairs: dict[str, _Flags] = {}
+    names = []
+    for name, own in flags:
+        quality, objections = _pair(name, data.variables[name], own, bits)
+        pairs |= {f"{name}_qc": quality, f"{name}_qc_tests": objections}
+        names.append(name)
+    result = data.assign(pairs)
+    for name in names:
+        result.variables[name].attrs["ancillary_variables"] = f"{name}_qc {name}_qc_tests"
+    return result
+
+
+def _pair(
+    name: str, variable: xr.Variable, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
+) -> tuple[_Flags, _Flags]:
+    """Give the quality of a variable, and which checks objected to it."""
+    shape, called = variable.shape, variable.attrs.get("long_name", name)
     severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
-    if anywhere(np.isnan, data[name].values):
-        severity = np.where(np.isnan(data[name].values), np.int8(MISSING), severity)
+    if anywhere(np.isnan, variable.values):
+        severity = np.where(np.isnan(variable.values), np.int8(MISSING), severity)
     tests = _objecting(shape, {1 << bits[check]: values for check, values in flags.items()})
     known = sorted(bits, key=bits.__getitem__)
-    quality = (
-        dims,
-        severity,
-        {
-            "long_name": f"quality of {data[name].attrs.get('long_name', name)}",
-            "standard_name": "aggregate_quality_flag",
-            "flag_values": _VALUES,
-            "flag_meanings": _MEANINGS,
-        },
-    )
-    objections = (
-        dims,
-        tests,
-        {
-            "long_name": f"checks that objected to {data[name].attrs.get('long_name', name)}",
-            "flag_masks": np.array([1 << bits[check] for check in known], dtype=np.int32),
-            "flag_meanings": " ".join(known),
-        },
-    )
-    result = data.assign({f"{name}_qc": quality, f"{name}_qc_tests": objections})
-    result.variables[name].attrs["ancillary_variables"] = f"{name}_qc {name}_qc_tests"
-    return result
+    of_quality: dict[str, object] = {
+        "long_name": f"quality of {called}",
+        "standard_name": "aggregate_quality_flag",
+        "flag_values": _VALUES,
+        "flag_meanings": _MEANINGS,
+    }
+    of_tests: dict[str, object] = {
+        "long_name": f"checks that objected to {called}",
+        "flag_masks": np.array([1 << bits[check] for check in known], dtype=np.int32),
+        "flag_meanings": " ".join(known),
+    }
+    return (variable.dims, severity, of_quality), (variable.dims, tests, of_tests)
 
 
 def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,6 +75,11 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
     pandas.DataFrame
         Columns are called as the variables with their unit; text stays text.
     """
+    return pd.DataFrame(columns_of(data, dim, first))
+
+
+def columns_of(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> dict[str, np.ndarray]:
+    """Return the columns of the table that `frame` makes, of the same arguments."""
     # not data[name], which puts coordinates around each: of a hundred variables that takes longer
     # than all the rest
     names = [str(n) for n, variable in data.variables.items() if variable.dims == (dim,)]
@@ -83,10 +88,10 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
     for name in ordered:
         values = data.variables[name].values
         columns[name if values.dtype.kind in "OUS" else column(name)] = values
-    return pd.DataFrame(columns)
+    return columns
 
 
-def rows_of(table: pd.DataFrame) -> list[Row]:
+def rows_of(table: pd.DataFrame | Mapping[str, np.ndarray]) -> list[Row]:
     """Return the rows of a table, each by the names of the columns.
 
     Examples
@@ -94,25 +99,30 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
     >>> rows_of(pd.DataFrame({"medium": ["dry"], "normal_force_N": [31.0]}))
     [{'medium': 'dry', 'normal_force_N': 31.0}]
     """
-    names = [str(name) for name in table.columns]
-    columns = [table[name].tolist() for name in table.columns]
+    names = [str(name) for name in table]
+    columns = [table[name].tolist() for name in names]
     return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
-def plain_rows(table: pd.DataFrame) -> tuple[Row, ...]:
+def plain_rows(table: pd.DataFrame | Mapping[str, np.ndarray]) -> tuple[Row, ...]:
     """Return the rows of a table as a record keeps them: plain numbers, None where not known."""
     return tuple(plain_value(rows_of(table)))
 
 
-def friction_table(friction: xr.Dataset) -> pd.DataFrame:
-    """Return a run's friction result as a table, a row per segment, numbered from 1."""
-    table = frame(friction, "segment", _FRICTION_FIRST)
-    number = np.arange(1, friction.sizes["segment"] + 1)
-    table = table.drop(columns="segment", errors="ignore")
-    if "steady" in table:
-        table["steady"] = table["steady"].map(WORDS)
-    table.insert(0, "segment", number)
-    return table
+def friction_columns(friction: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the columns of a run's friction result, a row per segment, numbered from 1.
+
+    Of these no `pandas.DataFrame` is made: that would take most of the time of a small run's rows.
+    """
+    columns = columns_of(friction, "segment", _FRICTION_FIRST)
+    if "steady" in columns:
+        steady = [WORDS.get(value) for value in columns["steady"].tolist()]
+        columns["steady"] = np.array(steady, dtype=object)
+    return {"segment": np.arange(1, friction.sizes["segment"] + 1)} | _but("segment", columns)
+
+
+def _but(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {key: values for key, values in columns.items() if key != name}
 
 
 def curve_table(curve: xr.Dataset) -> pd.DataFrame:
@@ -132,12 +142,10 @@ _START = [
 ]
 
 
-def static_friction_table(starts: xr.Dataset) -> pd.DataFrame:
-    """Return a run's static friction as a table, a row per start, its segment numbered from 1."""
-    table = frame(starts, "start_of_sliding", _START)
-    table = table.drop(columns="start_of_sliding", errors="ignore")
-    table.insert(0, "segment", starts["start_of_sliding"].values + 1)
-    return table
+def static_friction_columns(starts: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the columns of a run's static friction, a row per start, its segment from 1."""
+    columns = _but("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
+    return {"segment": starts["start_of_sliding"].values + 1} | columns
 
 
 _FIRST = [
@@ -154,10 +162,9 @@ _FIRST = [
 ]
 
 
-def stick_slip_table(slip: xr.Dataset) -> pd.DataFrame:
-    """Return a run's stick-slip as a table, a row per segment, numbered from 1."""
-    table = frame(slip, "segment", _FIRST).drop(columns="segment", errors="ignore")
+def stick_slip_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the columns of a run's stick-slip, a row per segment, numbered from 1."""
+    number = {"segment": np.arange(1, slip.sizes["segment"] + 1)}
+    columns = list(_but("segment", columns_of(slip, "segment", _FIRST)).items())
     probability = slip["class_probability"].max("waveform_class").values
-    table.insert(3, "class_probability", probability)
-    table.insert(0, "segment", np.arange(1, slip.sizes["segment"] + 1))
-    return table
+    return number | dict([*columns[:3], ("class_probability", probability), *columns[3:]])

@@ -12,7 +12,7 @@ from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.decision_rows import decision_rows
-from tribolab.records.frames import friction_table, plain_rows
+from tribolab.records.frames import friction_columns, plain_rows
 from tribolab.records.judgement import SURE, not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.traces import flagged_spans
@@ -50,7 +50,7 @@ def facts_of(
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
         omitted=tuple(left_out(segments)),
-        segments=plain_rows(friction_table(friction)),
+        segments=plain_rows(friction_columns(friction)),
         uncertainty_says=str(friction.attrs.get("uncertainty_says", "")),
         flagged=tuple(flagged_spans(run)),
     )

@@ -200,7 +200,7 @@ def process_run(task: RunTask) -> RunAnswer:
     """
     from tribolab.friction.decisions.rejected import rejected
     from tribolab.records.decision_rows import not_applied
-    from tribolab.records.frames import plain_rows, stick_slip_table
+    from tribolab.records.frames import plain_rows, stick_slip_columns
     from tribolab.records.notices import notices_of
     from tribolab.records.run_facts import facts_of
 
@@ -220,7 +220,7 @@ def process_run(task: RunTask) -> RunAnswer:
         facts = _with_dead_weight(facts, run, signals)
         notices = notices_of(run.name, signals, segments, friction, facts.decisions)
         trace, why = _trace(task, signals, segments, friction)
-        rows = plain_rows(stick_slip_table(slip))
+        rows = plain_rows(stick_slip_columns(slip))
         starts = _starts(signals, segments, friction)
     except OutputError:
         raise
@@ -269,11 +269,11 @@ def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> 
 def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:
     """Rows of static friction; none where no coefficient is known."""
     from tribolab.friction.coefficient.static import static_friction
-    from tribolab.records.frames import plain_rows, static_friction_table
+    from tribolab.records.frames import plain_rows, static_friction_columns
 
     if "friction_coefficient" not in friction:
         return ()
-    return plain_rows(static_friction_table(static_friction(signals, segments, friction)))
+    return plain_rows(static_friction_columns(static_friction(signals, segments, friction)))
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:

@@ -142,11 +142,11 @@ class _Peak(NamedTuple):
 
 def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[_Start]:
     """Segments that a rest goes before, or the beginning of the record."""
-    time = run["time"].values
-    resting = segments["omitted_reason"].values == "at rest"
-    begin, end = (segments[f"omitted_{k}"].values[resting] for k in ("start", "stop"))
-    start, trimmed = segments["start"].values, segments["trimmed_start"].values
-    stop, speed = segments["stop"].values, segments["sliding_speed"].values
+    time = run.variables["time"].values
+    resting = segments.variables["omitted_reason"].values == "at rest"
+    begin, end = (segments.variables[f"omitted_{k}"].values[resting] for k in ("start", "stop"))
+    start, trimmed = segments.variables["start"].values, segments.variables["trimmed_start"].values
+    stop, speed = segments.variables["stop"].values, segments.variables["sliding_speed"].values
     starts = []
     for i in range(start.size):
         before = np.flatnonzero(end <= start[i] + 1e-9)
@@ -168,11 +168,11 @@ def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[
 
 def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> float:
     """How long the contact rested under load before it moved [s]."""
-    time = run["time"].values
+    time = run.variables["time"].values
     first, last = np.searchsorted(time, [begin[rest], end[rest]])
     if "normal_force" not in run or last <= first:
         return float(end[rest] - begin[rest])
-    load = run["normal_force"].values[first:last]
+    load = run.variables["normal_force"].values[first:last]
     level = float(np.nanmedian(load[-max(load.size // 10, 1) :]))
     light = np.flatnonzero(load < 0.5 * level)
     since = time[first + light[-1]] if light.size and level > 0 else begin[rest]
@@ -182,12 +182,12 @@ def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> f
 def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) -> _Peak:
     i = start.number
     part = slice(start.first, start.last)
-    time = run["time"].values[part]
-    zero = float(friction[f"{signal}_offset"].values[i])
-    way = int(friction["direction"].values[i]) or 1
-    values = way * (np.asarray(run[signal].values[part], float) - zero)
-    sliding = float(friction["friction_coefficient"].values[i])
-    sem = float(friction["friction_coefficient_sem"].values[i])
+    time = run.variables["time"].values[part]
+    zero = float(friction.variables[f"{signal}_offset"].values[i])
+    way = int(friction.variables["direction"].values[i]) or 1
+    values = way * (np.asarray(run.variables[signal].values[part], float) - zero)
+    sliding = float(friction.variables["friction_coefficient"].values[i])
+    sem = float(friction.variables["friction_coefficient_sem"].values[i])
     load = _load(run, friction, i, part)
     ratio = values / load if load is not None else values
     moment, height, error, stands = _peak(time, ratio, sliding, sem)
@@ -203,7 +203,7 @@ def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start)
         breakaway_time=moment,
         waiting_time=start.rested,
         direction=way,
-        sliding_speed=float(friction["sliding_speed"].values[i]),
+        sliding_speed=float(friction.variables["sliding_speed"].values[i]),
     )
 
 
@@ -211,9 +211,10 @@ def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndar
     """Return the normal force over a start without its zero; what is not pressed is NaN."""
     if "normal_force" not in run or "friction_force" not in run:
         return None
-    offset = friction["normal_force_offset"].values[i] if "normal_force_offset" in friction else 0.0
-    load = np.asarray(run["normal_force"].values[part], float) - float(offset)
-    usual = float(friction["normal_force"].values[i])
+    zeros = friction.variables.get("normal_force_offset")
+    offset = 0.0 if zeros is None else zeros.values[i]
+    load = np.asarray(run.variables["normal_force"].values[part], float) - float(offset)
+    usual = float(friction.variables["normal_force"].values[i])
     return np.where(load > 0.5 * usual, load, np.nan)
 
 

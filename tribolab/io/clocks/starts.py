@@ -50,6 +50,13 @@ class _Start(NamedTuple):
     sampling: float  # s, how finely the two logs see it
 
 
+class _Curve(NamedTuple):
+    """Path at a start [m], and the lengths of the exponentials after it [m]."""
+
+    begin: float
+    lengths: Array
+
+
 class Logs:
     """The two logs, and what is derived from them once: integrals over time."""
 
@@ -67,16 +74,27 @@ class Logs:
         self.speed = np.abs(velocity)
         self.change = np.diff(self.speed) / np.diff(motion_time)
         self.path = _integral(motion_time, self.speed)
+        self._curves: dict[_Start, _Curve] = {}
 
     def slid(self, start: _Start, since: Array) -> Array:
         """Distance [m] since the start, at times since then."""
-        return np.maximum(self._path(start.time + since) - self._path(start.time), 0.0)
+        return np.maximum(self._path(start.time + since) - self._curve(start).begin, 0.0)
 
-    def _path(self, time: Array | float) -> Array:
+    def _curve(self, start: _Start) -> _Curve:
+        if start not in self._curves:
+            ends = start.time + np.array([0.0, start.few, start.after])
+            begin, early, end = self._path(ends).tolist()
+            end = max(end - begin, 1e-300)
+            shortest = max(early - begin, 1e-5 * end)
+            lengths = shortest * (end / shortest) ** np.linspace(0.0, 1.0, _LENGTHS)
+            self._curves[start] = _Curve(begin, lengths)
+        return self._curves[start]
+
+    def _path(self, time: Array) -> Array:
         """Path [m]; the velocity is linear between two samples, so the path is a parabola."""
         time = np.clip(time, self.motion_time[0], self.motion_time[-1])
         # looked up in the part that is needed
-        ends = np.searchsorted(self.motion_time, [np.min(time), np.max(time)], "right")
+        ends = np.searchsorted(self.motion_time, [time.min(), time.max()], "right")
         first, last = np.minimum(ends, len(self.path) - 1) - 1
         part = slice(first, last + 2)
         i = np.searchsorted(self.motion_time[part], time, "right") - 1
@@ -90,9 +108,7 @@ class Logs:
 
     def shapes(self, start: _Start, since: Array) -> Array:
         """Functions of the time since the start that make up the force (..., function, time)."""
-        early, end = self.slid(start, np.array([start.few, start.after]))
-        shortest = max(early, 1e-5 * end)
-        lengths = shortest * (end / shortest) ** np.linspace(0.0, 1.0, _LENGTHS)
+        lengths = self._curve(start).lengths
         out = np.empty((*since.shape[:-1], 3 + _LENGTHS, since.shape[-1]))
         out[..., 0, :] = 1.0
         np.minimum(since, 0.0, out=out[..., 1, :])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
-from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach, combine, uniform
+from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach_all, combine, uniform
 from tribolab.qc.manual import BIT, MANUAL, reviewed
 from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.run.reading import READING_CHECKS
@@ -107,16 +107,18 @@ def check_run(
     answers = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
-    flagged = run
     # what is wrong with the time is wrong with every signal; that the time is right says nothing
     # of a signal's value
     of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
-    for variable in subject.signals:
-        by_check: dict[str, list[np.ndarray]] = {}
-        for check, values in (*_flags_on(results, variable), *of_time):
-            by_check.setdefault(check.name, []).append(values)
-        combined = {name: combine(found) for name, found in by_check.items()}
-        flagged = attach(flagged, variable, combined, bits)
+
+    def flags() -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+        for variable in subject.signals:
+            by_check: dict[str, list[np.ndarray]] = {}
+            for check, values in (*_flags_on(results, variable), *of_time):
+                by_check.setdefault(check.name, []).append(values)
+            yield variable, {name: combine(own) for name, own in by_check.items()}
+
+    flagged = attach_all(run, flags(), bits)
     findings = Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
     return findings if segments is None else reviewed(findings, segments)
 
