@@ -47,7 +47,7 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     level = _quantile(rest, 0.4)
     rest -= level
     best, shift = _least_off(rest, weight)
-    return np.exp(models[best] + level[best] + shift)
+    return np.exp(models[best] + (level[best] + shift))
 
 
 def _least_off(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
@@ -80,7 +80,8 @@ def _quantile(values: np.ndarray, share: float) -> np.ndarray:
     place = share * (values.shape[1] - 1)
     first = min(int(place), values.shape[1] - 2)
     part = np.partition(values, (first, first + 1), axis=1)[:, first : first + 2]
-    return part[:, :1] + (place - first) * (part[:, 1:] - part[:, :1])
+    low, high, after = part[:, :1], part[:, 1:], place - first
+    return high - (high - low) * (1 - after) if after >= 0.5 else low + (high - low) * after
 
 
 def false_alarm(power: np.ndarray, background: np.ndarray, freedom: np.ndarray) -> np.ndarray:
