@@ -105,6 +105,16 @@ def test_a_pool_that_is_prepared_begins_before_there_is_work_and_ends_without_an
     assert pool._nursery._forkserver_pid is None
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere every worker is started anew")
+def test_what_workers_are_copied_of_has_no_threads():
+    modules = needed.SIMULATION + needed.ANALYSIS + needed.FILES
+    with LastingPool(1, modules) as pool:
+        imported, nursery = pool.submit(imported_and_parent, modules[-1]).result(timeout=120)
+        assert imported
+        assert len(os.listdir(f"/proc/{nursery}/task")) == 1  # noqa: PTH208 - a process table
+
+
 def test_workers_know_the_environment_of_now(monkeypatch):
     monkeypatch.setenv("OF_BEFORE", "1")
     with LastingPool(1) as pool:

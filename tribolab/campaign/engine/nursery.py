@@ -19,6 +19,9 @@ from typing import Any
 
 from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, environment
 
+# Arrow's allocator has a thread of its own, beside which a process should not be copied.
+_NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
+
 
 class Nursery(ForkServer):
     """The process that the workers of a pool are copies of; it ends with the pool.
@@ -42,7 +45,7 @@ class Nursery(ForkServer):
     def ensure_running(self) -> None:
         """Start it, unless it runs, with our own search path, and BLAS on one thread."""
         paths = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}
-        with environment(ONE_THREAD | paths):
+        with environment(ONE_THREAD | _NO_THREAD | paths):
             super().ensure_running()
 
     def close(self) -> None:
