@@ -211,11 +211,16 @@ def respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
         steps.append(lambda table: without_thousands(table, text.thousands, text.delimiter))
     if text.is_quoted:
         steps.append(without_commas_in_quotes)
-    if is_unusual(head.decode(text.encoding, errors="replace")):
+    if _is_unusual(head, text.encoding):
         steps.append(usual)
     if not steps:
         return None
     return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)
+
+
+@functools.lru_cache(maxsize=4)  # dozens of dialects look at the same head, one after the other
+def _is_unusual(head: bytes, encoding: str) -> bool:
+    return is_unusual(head.decode(encoding, errors="replace"))
 
 
 def _respelt(
