@@ -40,12 +40,12 @@ def test_so_is_the_film():
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "load"), [("Smooth", 2110.0), ("Sb-S", 310.0), ("Sb-R", 310.0)])
 def test_friction_and_film_are_converged_up_to_a_metre_a_second(name, load):
-    """Against 300 reaches of the film on twice the cells; at 0.1 m/s it was 8 % low."""
+    """Against 300 reaches of the film on more cells; at 0.1 m/s it was 8 % low."""
     speeds = [1e-5, 1e-3, 1e-2, 1e-1, 1.0]
     psd = reference_psd(name)
     ours, brute = (
         stribeck_curve(CONTACT, psd, 1.4, load, 0.84e6, speeds, **more)
-        for more in ({}, {"domain": 5.0, "cells": 800})
+        for more in ({}, {"domain": 5.0, "cells": 500})
     )
     for part, within in (("friction_coefficient", 2e-3), ("minimum_separation", 3e-3)):
         np.testing.assert_allclose(ours[part], brute[part], rtol=within)

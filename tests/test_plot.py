@@ -304,7 +304,7 @@ def test_model_is_a_line_and_measurement_then_is_points():
 )
 def test_any_name_can_be_drawn(made, name):
     curves = [made_curve(surface=name), made_curve(surface="Sb-R")]
-    for figure in (plot.trace(*made, title=name), plot.stribeck(curves, title=name)):
+    for figure in (plot.strokes(*made, title=name), plot.stribeck(curves, title=name)):
         text = plot.svg(figure)
         assert text.startswith("<?xml") and "<script" not in text
 
