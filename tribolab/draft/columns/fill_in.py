@@ -16,7 +16,7 @@ Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whethe
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
 _NOISE = 0.1  # of the highest load, what a sensor without a load shows
 _FACTOR = re.compile(
-    r"[x×*·]?\s*\b10\s*\^\s*-?\d+|[x×*·]\s*1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
+    r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
 )
 # beside friction: which of several such columns is taken changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
