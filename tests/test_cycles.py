@@ -84,6 +84,15 @@ def test_lost_signs_are_asked_for_and_then_used():
     assert np.isnan(told["friction_coefficient_energy"].values).all()
 
 
+@pytest.mark.parametrize("known", ["position", "sliding_velocity"])
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_the_speed_of_a_strokes_middle_is_its_way_over_its_time(known, share):
+    run = crank().drop_vars({"position", "sliding_velocity"} - {known})
+    segments = tl.find_segments(run, stroke_middle=share)
+    speed = 2 * share * HALF * np.pi * FREQUENCY / np.arcsin(share)
+    assert float(segments["sliding_speed"].mean()) == pytest.approx(speed, rel=0.01)
+
+
 def test_middles_of_strokes_are_segments_with_half_loops():
     run = crank()
     segments = tl.find_segments(run, stroke_middle="40 %")

@@ -140,3 +140,27 @@ def test_heights_without_positions_are_read_once_their_pitch_is_said(tmp_path, m
     scan = tl.read_scans(file, instrument="line.toml")
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
     np.testing.assert_allclose(scan.height[0], 1e-9 * heights, atol=1e-13)
+
+
+def test_a_torque_is_no_force_and_a_force_without_a_load_is_tried(tmp_path, monkeypatch):
+    """A column in a unit of something else was taken in the unit that the question proposed."""
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "ring.txt"
+    rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i}\n" for i in range(200))
+    file.write_text("Time [s],Torque [mN m],Ways [um]\n" + rows)
+    done = command("dialect", file.name, "--ask", typed="\n2\n0\n0\n0\n0\n0\n")
+    assert "measures no friction force" in done.output, done.output
+    assert "a torque follows by a [[derived]]" in done.output
+    file = tmp_path / "bare.txt"
+    file.write_text("Time [s],Fx [N],Position [um]\n" + rows)
+    done = command("dialect", file.name, "--no-ask")
+    assert done.exit_code == 0 and "no friction coefficient" in done.output, done.output
+
+
+def test_questions_that_end_early_write_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "x.txt"
+    file.write_text("Time [s],Fx [N],Fy [N]\n" + "".join(f"{i},1,5\n" for i in range(50)))
+    done = command("dialect", file.name, "--ask", typed="")
+    assert done.exit_code == 130 and "nothing is written" in done.output
+    assert not (tmp_path / "x.toml").exists()

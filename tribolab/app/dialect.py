@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.draft.columns.follows import SAYS_SPEED
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, holds_heights
+from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.model import DraftColumn, other_units
 from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
@@ -144,6 +145,12 @@ def _ask_unit(column: DraftColumn, name: str, ask: Ask) -> str | None:
     """Return the unit to be written down; None if the file says it and it may be taken."""
     si_unit = quantity(name).unit
     said = column.file_unit is not None and fits(column.file_unit, name)
+    if column.file_unit and not said and is_unit(column.file_unit):
+        what = f"column {column.place} is in {shown(column.file_unit)}, which measures no "
+        what += quantity(name).long_name
+        if converts(column.file_unit, "N m"):
+            what += ': a torque follows by a [[derived]] of the dialect, such as "torque / arm"'
+        raise TribolabError(what)
     if si_unit == "1" or (said and column.unit is None):
         return None
     guess = column.unit if column.unit and fits(column.unit, name) else other_units(si_unit)[0]
@@ -200,9 +207,11 @@ def _run_said(file: Path, dialect: Path) -> str:
     except TribolabError as error:
         why = error.told("terminal").removeprefix(f"{file.name}: ")
         return f"{said}; no friction coefficient: {why}"
+    said += f", {Count(segments.sizes['segment']):segment|segments}"
+    if "friction_coefficient" not in friction:
+        return f"{said}, a friction force without a load: no friction coefficient"
     mu = np.atleast_1d(friction["friction_coefficient"].values)
     mu = mu[np.isfinite(mu)]
-    said += f", {Count(segments.sizes['segment']):segment|segments}"
     if not mu.size:
         return said
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")

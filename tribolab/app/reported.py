@@ -38,6 +38,8 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
         fail("interrupted; results of before are as they were", code, debug)
     except (typer.Exit, BrokenPipeError):
         raise
+    except typer.Abort:
+        fail("stopped at a question without an answer: nothing is written", INTERRUPTED, debug)
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
         from tribolab.words import explain
 

@@ -78,9 +78,9 @@ TESTER_RESULTS = Cure(
     campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
 )
 PITCH = Cure(
-    notebook='describe it in a dialect with pitch = "0.25 um" and name that with instrument=',
-    terminal='describe it in a dialect with pitch = "0.25 um" and name that with --instrument',
-    campaign='describe it in a dialect with pitch = "0.25 um" and name that with instrument = '
+    notebook='describe it in a dialect with pitch = "(a length)" and name that with instrument=',
+    terminal='describe it in a dialect with pitch = "(a length)" and name that with --instrument',
+    campaign='describe it in a dialect with pitch = "(a length)" and name that with instrument = '
     f'"..." in its {SURFACE}',
 )
 UNITS = Cure(

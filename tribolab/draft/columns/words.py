@@ -21,6 +21,7 @@ _OF_DEVICE = 0.98
 SURE = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
+_LONGEST = 200  # characters of a name that has a device before it
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
@@ -62,7 +63,7 @@ def device_of(name: str) -> tuple[str, str]:
     >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
     (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
     """
-    parts = _DEVICE.match(name.strip())
+    parts = _DEVICE.match(name.strip()) if len(name) <= _LONGEST else None
     return (parts["device"], parts["name"]) if parts else ("", name)
 
 

@@ -24,7 +24,7 @@ from tribolab.io.dialects.signature import File, is_results, is_surftest_results
 PathLike = str | Path
 HEIGHTS = (
     "heights without positions, of which the file does not say how far they lie apart: pitch = "
-    '"0.25 um" in a dialect does'
+    '"(a length)" in a dialect does'
 )
 
 
