@@ -21,7 +21,7 @@ _OF_DEVICE = 0.98
 SURE = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
-_LONGEST = 200  # characters of a name that has a device before it
+_LONGEST = 1000  # characters of a name that are looked at: searches take their square
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
@@ -47,12 +47,12 @@ class Match(NamedTuple):
 
 
 def squeezed(name: str) -> str:
-    """Return a name without blanks, signs, capitals, umlauts and accents.
+    """Return a name without blanks, signs, capitals, umlauts and accents, of its beginning.
 
     >>> squeezed("# Höhe_1"), squeezed("Déplacement (x)"), squeezed("摩擦係数 ①")
     ('hoehe1', 'deplacementx', '摩擦係数1')
     """
-    text = unicodedata.normalize("NFKC", name).lower().translate(_LETTERS)
+    text = unicodedata.normalize("NFKC", name[:_LONGEST]).lower().translate(_LETTERS)
     text = _ACCENTS.sub("", unicodedata.normalize("NFD", text))
     return "".join(filter(str.isalnum, unicodedata.normalize("NFC", text)))
 
