@@ -73,9 +73,9 @@ def said(outcome, severity):
 
 
 def holed(height):
-    """Lift the stylus for a quarter of the scan."""
+    """Lift the stylus for an eighth of the scan."""
     height = height.copy()
-    height[2000:4600] = np.nan
+    height[2000:3250] = np.nan
     return height
 
 
