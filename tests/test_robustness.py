@@ -23,8 +23,8 @@ import tribolab as tl
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
-from tribolab.io.dialects.headers import find_tables
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.text_tables import find_tables
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.results import read_tester_results
 from tribolab.io.tables.mat5 import read_variables

@@ -9,13 +9,13 @@ from typing import Any
 
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
-from tribolab.draft.on_the_fly import describe, holds_run, read_run
+from tribolab.draft.on_the_fly import holds_run, read_run
 from tribolab.errors import ReadError, TribolabError, shown
-from tribolab.io.companion import describe_companion
+from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
+from tribolab.io.file_facts import FileFacts, file_facts
 from tribolab.io.kinds import kind_of
-from tribolab.io.runs import facts_of
 from tribolab.io.runs import read_run as known_run
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
@@ -38,12 +38,13 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         If there is no such instrument.
     """
     kind = kind_of(path, instrument)
-    if kind == "unknown" and holds_run(path):
-        return run_lines(describe(path))
-    if kind == "run":
-        run = known_run(path, instrument, pair=False)
-        facts = facts_of(run, path, instrument)
-        return run_lines(facts) + companion_lines(describe_companion(path, instrument, run))
+    drafted = kind == "unknown" and holds_run(path)
+    if drafted or kind == "run":
+        run = read_run(path, instrument, pair=False)
+        lines = run_lines(file_facts(run, path, instrument))
+        if not drafted:
+            lines += companion_lines(describe_companion(path, instrument, run))
+        return lines
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
 
 
@@ -168,36 +169,37 @@ def _titled(name: str, instrument: str | Path | None) -> str:
     return f"{name} ({load_dialect(known).title})" if known else name
 
 
-def run_lines(description: Mapping[str, Any]) -> list[str]:
+def run_lines(facts: FileFacts) -> list[str]:
     """Say how a raw file of a run is understood.
 
     Parameters
     ----------
-    description
-        From `tribolab.io.runs.describe`.
+    facts
+        From `tribolab.io.file_facts.file_facts`.
     """
-    d = description
-    title = f" ({d['title']})" if d["title"] else ""
-    lines = [f"{d['file']}: {d['instrument'] or 'netCDF'}{title}"]
-    sampling = f"  {Count(d['rows']):row|rows} over {d['duration_s']:.6g} s"
-    if d["interval_s"] is not None:
-        sampling += f", one every {d['interval_s']:.3g} s, at most {d['longest_interval_s']:.3g} s"
-    lines.append(sampling + (f", {Count(d['steps']):step|steps}" if d["steps"] else ""))
-    if d.get("left_out"):
-        lines.append(f"  left out: {d['left_out']}")
-    width = max((len(name) for name in d["columns"]), default=0)
-    for name, column in d["columns"].items():
+    title = f" ({facts['title']})" if facts["title"] else ""
+    lines = [f"{facts['file']}: {facts['instrument'] or 'netCDF'}{title}"]
+    sampling = f"  {Count(facts['rows']):row|rows} over {facts['duration_s']:.6g} s"
+    if facts["interval_s"] is not None:
+        sampling += (
+            f", one every {facts['interval_s']:.3g} s, at most {facts['longest_interval_s']:.3g} s"
+        )
+    lines.append(sampling + (f", {Count(facts['steps']):step|steps}" if facts["steps"] else ""))
+    if facts["left_out"]:
+        lines.append(f"  left out: {facts['left_out']}")
+    width = max((len(name) for name in facts["columns"]), default=0)
+    for name, column in facts["columns"].items():
         span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
         span += f" {column['unit']}" if column["unit"] != "1" else ""
         label = f"   from '{shown(column['label'])}'" if column["label"] else ""
         lines.append(f"  {name:<{width}}  {span}{label}")
-    if d["not_used"]:
-        lines.append(f"  not used: {', '.join(map(shown, d['not_used']))}")
-    lines += _attribute_lines(d["metadata"])
+    if facts["not_used"]:
+        lines.append(f"  not used: {', '.join(map(shown, facts['not_used']))}")
+    lines += _attribute_lines(facts["metadata"])
     return lines
 
 
-def companion_lines(told: Mapping[str, Any]) -> list[str]:
+def companion_lines(told: CompanionFacts) -> list[str]:
     """Say whether a run's second log was found, and how its clock was matched.
 
     Parameters

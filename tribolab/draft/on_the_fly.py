@@ -60,25 +60,6 @@ def read_run(
     return run.assign_attrs(_told(paths[0]))
 
 
-def describe(path: PathLike, instrument: Instrument | None = None) -> runs.FileFacts:
-    """Say what was understood of one raw file, as `tribolab.io.runs.describe` does.
-
-    Raises
-    ------
-    ReadError
-        As for `read_run`.
-    """
-    try:
-        return runs.describe(path, instrument)
-    except UnknownFileError as error:
-        dialect = _drafted(Path(path), error)
-    facts = runs.describe(path, dialect)
-    told = _told(Path(path))
-    facts["instrument"], facts["title"] = told.pop("instrument"), ""
-    facts["metadata"] = {**facts["metadata"], **told}
-    return facts
-
-
 def holds_run(path: Path, *, by_name: bool = True) -> bool:
     """Whether a file that no dialect knows holds a run, by names in its header or at all."""
     draft = draft_of(path)

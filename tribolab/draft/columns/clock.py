@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.draft.columns.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.io.content.newest_first import is_newest_first
-from tribolab.io.dialects.headers import split_name
+from tribolab.io.dialects.cells import split_name
 from tribolab.quantities import unit_conversion
 
 if TYPE_CHECKING:

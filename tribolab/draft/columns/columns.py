@@ -19,8 +19,8 @@ from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, othe
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
+from tribolab.io.dialects.cells import split_name, split_row
 from tribolab.io.dialects.dates import seconds
-from tribolab.io.dialects.headers import split_name, split_row
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew
 _BY_UNIT = 0.6  # score of a name that says nothing beside a unit that does

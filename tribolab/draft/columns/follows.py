@@ -19,7 +19,7 @@ from tribolab.draft.columns.words import split_unit, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.io.dialects.headers import split_name
+from tribolab.io.dialects.cells import split_name
 
 _TORQUE = re.compile(r"torque|drehmoment|reibmoment|couple|coppia|扭矩|转矩|トルク|^(?:m|mr|tq)$")
 _DRIVE = re.compile(

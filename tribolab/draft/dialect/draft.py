@@ -16,8 +16,8 @@ from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
 from tribolab.draft.model import Understood
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
-from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
 

@@ -15,7 +15,7 @@ import numpy as np
 from tribolab.draft.file.layout import Held, Layout, find_layout
 from tribolab.draft.model import Understood
 from tribolab.errors import ReadError
-from tribolab.io.dialects.headers import split_name
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.signature import HEAD, File
 from tribolab.io.tables import columnar
 from tribolab.io.tables.tdms_file import open_tdms

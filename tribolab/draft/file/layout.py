@@ -23,7 +23,8 @@ from tribolab.draft.file.patterns import (
     step_pattern,
 )
 from tribolab.errors import ReadError
-from tribolab.io.dialects.headers import line_feeds, split_row
+from tribolab.io.dialects.cells import split_row
+from tribolab.io.dialects.mended import line_feeds
 from tribolab.io.dialects.signature import HEAD, File
 from tribolab.io.dialects.spelling import (
     has_commas_in_quotes,

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from tribolab.draft.vocabulary import EASTERN_WORDS
-from tribolab.io.dialects.headers import split_row
+from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.signature import HEAD
 
 _EASTERN = ("gb18030", "cp932", "big5")

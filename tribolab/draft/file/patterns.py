@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tribolab.draft.file.header import escaped, first_cells
 from tribolab.draft.file.lines import Grammar
 from tribolab.draft.file.marks import Block
-from tribolab.io.dialects.headers import line_feeds
+from tribolab.io.dialects.mended import line_feeds
 from tribolab.io.dialects.signature import HEAD, File
 
 _TAIL = 1 << 14

@@ -71,9 +71,9 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
 
 
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
-    from tribolab.io.dialects.headers import find_tables
     from tribolab.io.dialects.rows_outside import rows_outside
     from tribolab.io.dialects.text import Hasher, read_table
+    from tribolab.io.dialects.text_tables import find_tables
 
     raw = find_tables(file, dialect)
     whole = raw.memory is None and len(raw.tables) == 1

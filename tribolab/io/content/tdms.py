@@ -9,8 +9,8 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.columns import resolve, scales_of, symbols
-from tribolab.io.dialects.headers import split_name
 from tribolab.io.dialects.layout import Marks
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.io.dialects.headers import split_name
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.tables.columnar import Columns, Layout, open_columns
 

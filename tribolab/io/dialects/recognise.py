@@ -8,11 +8,12 @@ import re
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.dialects.headers import find_tables, split_row
+from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.layout import Recognise
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.signature import File, fits
+from tribolab.io.dialects.text_tables import find_tables
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
 _FIRST_LINE = re.compile(r"\s*([^\r\n]*)")

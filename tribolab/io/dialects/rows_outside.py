@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from tribolab.errors import ReadError
-from tribolab.io.dialects.headers import RawText
+from tribolab.io.dialects.text_tables import RawText
 
 # a line that begins with a number and holds neither words nor times of day nor dates
 _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
@@ -17,7 +17,7 @@ def rows_outside(raw: RawText, delimiter: str) -> int:
     Parameters
     ----------
     raw
-        The file and its tables, from `tribolab.io.dialects.headers.find_tables`.
+        The file and its tables, from `tribolab.io.dialects.text_tables.find_tables`.
     delimiter
         As the dialect says it.
 
