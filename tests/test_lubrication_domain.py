@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from contact_cases import CONTACT, reference_psd
+from contact_cases import CONTACT, RandomContact, reference_psd
 from scipy.integrate import quad
 
 from tribolab.contact.geometry import LineContact
@@ -52,6 +52,14 @@ def test_friction_and_film_are_converged_up_to_a_metre_a_second(name, load):
 
 
 @pytest.mark.slow
+def test_friction_is_converged_where_the_film_ruptures_within_the_roughness():
+    """Liquid covers all of the flat there, as before: else the place of one face told 0.3 %."""
+    contact = RandomContact("Smooth", 31e6, 7.65, 669.0, 25e-6)
+    speeds = np.array([3.16e-3, 1e-2])
+    ours, fine = (contact.curve(speeds, cells).friction_coefficient for cells in (160, 300))
+    np.testing.assert_allclose(ours, fine, rtol=3e-4)
+
+
 def test_a_short_domain_and_a_long_one_are_the_same():
     """What is not solved is known: 12, 60 and 120 reaches of the film."""
     speeds = [1e-4, 1e-2, 1e-1, 1.0]

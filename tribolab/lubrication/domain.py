@@ -137,13 +137,14 @@ def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
     -----
     There u = k + x^2, k being constant to the logarithm of the bodies' bending, and the pressure
     falls to 0 far away. With I_n = int_X^inf dx/u^n the inlet adds eta v I_1 by shear and
-    eta v (3 I_1 - 3 u* I_2) by the gradient dp/dx = 6 eta v (u - u*)/u^3. In the cavity behind,
-    liquid covers u*/u of the flat: eta v u* I_2. The load that the inlet's tail carries,
-    4 eta v R^2/X^2, is left out: in the default domain it is under 2e-4 of the whole.
+    eta v (3 I_1 - 3 u* I_2) by the gradient dp/dx = 6 eta v (u - u*)/u^3, u* = 2 J/v. In the cavity
+    behind, where roughness is thin beside the gap, liquid covers u*/u of the flat: eta v u* I_2.
+    The load that the inlet's tail carries, 4 eta v R^2/X^2, is left out: in the default domain it
+    is under 2e-4 of the whole.
     """
     mesh, film, fields = problem.mesh, solution.state.film, solution.fields
     start, end = mesh.x[0] - mesh.width[0] / 2, mesh.x[-1] + mesh.width[-1] / 2
-    full = fields.flux[0] / solution.couette  # u*
+    full = fields.flux[0] / solution.couette  # u* = 2 J/v
     couette = pressure = 0.0
     if np.isinf(problem.inlet_length):
         before = film[0] - mesh.x[0] ** 2

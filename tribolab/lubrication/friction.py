@@ -23,9 +23,10 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     Notes
     -----
     The gradient is the fluid's, and counts with the sign that it has in the drag on the flat that
-    slides to +x. In the cavity the fluid covers the part u*/u of the flat, u* = 2 J/v being the
-    film that the flux would fill, and has no pressure gradient. What the liquid outside the domain
-    adds is known in closed form (`outside_drag`).
+    slides to +x. In the cavity there is none, and the fluid covers the part of the flat on which
+    what it entrains is the flux, J = share (v/2)(u + h_rms phi_s): all of it where the film
+    ruptures, u*/u far behind. What the liquid outside the domain adds is known in closed form
+    (`outside_drag`).
     """
     u, fields, mesh = solution.state.film, solution.fields, problem.mesh
     if solution.couette == 0:
@@ -33,9 +34,10 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     flow = solution.flow
     factors = problem.factors.at(np.concatenate([u, *flow.film]) * problem.gap)
     shear = mesh.weight / u
-    # a cavity holds no more than what flows out of the full film, u* = 2 J/v
-    filled = fields.flux[fields.front] / solution.couette
-    shear[fields.front :] *= np.minimum(1, filled / u[fields.front :])
+    # a cavity holds no more than what flows out of the full film
+    cavity, flux = slice(fields.front, u.size), fields.flux[fields.front] / solution.couette
+    carried = u[cavity] + problem.factors.rms_roughness / problem.gap * factors.phi_s[cavity]
+    shear[cavity] *= np.where(carried > flux, flux / np.maximum(carried, flux), 1.0)
     # the pressure's drag from the end of the domain, where it is 0, to where the film ruptures
     rise = mesh.between.weight * flow.resistance * (flow.entrained - fields.flux[0])
     rise[:, fields.front + 1 :] = 0.0

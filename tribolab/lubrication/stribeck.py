@@ -114,7 +114,8 @@ def stribeck_curve(
     Notes
     -----
     Eqs. (3)-(5), (9), (10) of [1]_ with cavitation (p_fluid >= 0); friction by Eq. (4), whose
-    pressure gradient is the fluid's. In the cavity the fluid covers the part u*/u of the flat.
+    pressure gradient is the fluid's. In the cavity the fluid covers the part of the flat on which
+    what it entrains, (v/2)(u + h_rms phi_s), is the flux.
 
     With a work of adhesion the area is A(p_cont) A_adh(p)/A_0(p), A_adh being that of `adhesion` at
     the whole pressure, inside the nominal contact. This mean field leaves out that attraction also
