@@ -49,7 +49,7 @@ LIMITS = (
 
 def assert_seen_alike(figure, limits):
     """The picture of a figure shows what the live figure does: type and limits of all axes."""
-    for number, pair in enumerate(first_view(figure)):
+    for number, pair in enumerate(first_view(figure)[1]):
         for side, scale in zip("xy", pair, strict=True):
             log, low, high = limits[f"{side}axis{number + 1 if number else ''}"]
             told = f"{figure.id}, {side} of panel {number}"
@@ -123,7 +123,8 @@ def test_figures_that_are_compared_show_the_same_and_all_of_it():
     panel = comparable([(figure.panels[0], figure.series) for figure in (one, other)])
     assert panel.x.also == (1e-6, 1e-2)
     assert panel.y.also == pytest.approx((0.009, 2.1))
-    assert first_view(replace(one, panels=(panel,))) == first_view(replace(other, panels=(panel,)))
+    seen = [first_view(replace(figure, panels=(panel,)))[1] for figure in (one, other)]
+    assert seen[0] == seen[1]
 
 
 def test_a_band_has_a_name_in_the_legend_where_no_line_has_it():

@@ -26,7 +26,7 @@ from tribolab.io.netcdf import read_groups  # noqa: E402 - as above
 from tribolab.records.part_records import CurveRecord  # noqa: E402 - as above
 from tribolab.records.traces import page_trace, trace_size  # noqa: E402 - as above
 from tribolab.report.live.curves import Friction, card_figures  # noqa: E402 - as above
-from tribolab.report.live.shown import shown_figure  # noqa: E402 - as above
+from tribolab.report.live.shown import shown_figures  # noqa: E402 - as above
 from tribolab.report.page.page import write_page  # noqa: E402 - as above
 
 _PAINTED = (
@@ -77,7 +77,7 @@ def traces(document, outcome, count):
 def cards(outcome):
     """Return the figures of the answer's cards."""
     curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
-    return [shown_figure(figure) for figure in card_figures(Friction(curves, {}, {}, {}, {}, ()))]
+    return shown_figures(card_figures(Friction(curves, {}, {}, {}, {}, ())))
 
 
 def measure(page_file, profile):

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.parts import Row, number_of
+from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import (
     FRICTION,
     SPEED,
     Friction,
-    float_of,
     labels_of,
     system_name,
     systems,
@@ -31,12 +30,11 @@ def comparisons(known: Friction) -> list[LiveFigure]:
     What a curve itself is stands in its card and is not repeated.
     """
     colours = places([*known.surfaces, *(curve.outcome.surface for curve in known.curves)])
-    figures = [_falling(known, colours), _every_run(known, colours)]
-    return [figure for figure in figures if figure is not None]
+    return [*_falling(known, colours), _every_run(known, colours)]
 
 
-def _falling(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
-    """Return at which speed each curve leaves its highest friction."""
+def _falling(known: Friction, colours: Mapping[str, int]) -> list[LiveFigure]:
+    """Return at which speed each curve leaves its highest friction; of one alone nothing."""
     alone = len(systems(known)) == 1  # then loads are compared, and have the colours
     loads = places(force_text(curve.outcome.normal_force) for curve in known.curves)
     series = []
@@ -47,10 +45,10 @@ def _falling(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
         drawn = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
         series += [drawn] if drawn else []
     if len(series) < 2:
-        return None
+        return []
     speeds = [v for drawn in series for v in drawn.x]
     half = Series("half of it", [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6)
-    return LiveFigure(
+    figure = LiveFigure(
         id="curves-compared",
         section="curves",
         title="At which speed friction falls",
@@ -64,15 +62,21 @@ def _falling(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
         width="whole",
         height=440,
     )
+    return [figure]
 
 
 def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
-    rows = [row for row in curve.points if _mu(row) is not None and row["sliding_speed_m_s"]]
-    top = max((_mu(row) or 0.0 for row in rows), default=0.0)
+    known = [(row, number_of(row, "friction_coefficient")) for row in curve.points]
+    drawn = [(row, mu) for row, mu in known if mu is not None and row["sliding_speed_m_s"]]
+    rows = [row for row, _ in drawn]
+    top = max((mu for _, mu in drawn), default=0.0)
     if len(rows) < 2 or not top > 0:
         return None
-    shares = [(_mu(row) or 0.0) / top for row in rows]
-    errors = [None if error is None else error / top for error in map(_sem, rows)]
+    shares = [mu / top for _, mu in drawn]
+    errors = [
+        None if (sem := number_of(row, "friction_coefficient_sem")) is None else sem / top
+        for row in rows
+    ]
     return Series(
         label,
         [row["sliding_speed_m_s"] for row in rows],
@@ -81,7 +85,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
         colour=colour,
         error=errors,
         told=[
-            f"v = {plain_speed(float_of(row['sliding_speed_m_s']))}\n"
+            f"v = {plain_speed(number_of(row, 'sliding_speed_m_s'))}\n"
             f"{with_error(share, error)} of {number(top)}, the highest µ"
             for row, share, error in zip(rows, shares, errors, strict=True)
         ],
@@ -90,15 +94,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
     )
 
 
-def _mu(row: Row) -> float | None:
-    return float_of(number_of(row, "friction_coefficient"))
-
-
-def _sem(row: Row) -> float | None:
-    return float_of(number_of(row, "friction_coefficient_sem"))
-
-
-def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None:
+def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure:
     """Return all runs of the curves that have repeats; of the others the curve is the run."""
     series: list[Series] = []
     for curve in known.curves:
@@ -116,8 +112,6 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure | None
                 )
                 for name in names
             ]
-    if not series:
-        return None
     return LiveFigure(
         id="curves-runs",
         section="curves",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.parts import CurveOutcome
+from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.axes import comparable
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 SPEED = Axis("sliding speed v", "m/s", log=True)
 _UNDECIDED = 6  # a grey that no load has
+_SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"  # columns
 FRICTION = Axis("friction coefficient µ", log=True)
 
 
@@ -93,26 +94,21 @@ def _card(
         series.append(_measured(known, curve, number_, "measured"))
         series += _as_found(curve)
     name = system_name(surface, medium, curves[0].outcome.run_names)
-    values = [row["friction_coefficient"] for curve in curves for row in curve.points]
-    every = [row["sliding_speed_m_s"] for curve in curves for row in curve.points]
+    rows = [row for curve in curves for row in curve.points]
+    values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
     return LiveFigure(
         id=f"card-{place}",
         section=f"card-{place}",
         title=f"{name}: friction over sliding speed",
         note="",
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
-        f"{speeds(map(float_of, every))}, µ {span(map(float_of, values))}.",
+        f"{speeds(every)}, µ {span(values)}.",
         panels=(Panel(SPEED, FRICTION),),
         series=tuple(series),
         one_load=True,
         width="card",
         height=230,
     )
-
-
-def float_of(value: Any) -> float | None:
-    """Return a number of a row."""
-    return None if value is None else float(value)
 
 
 def labels_of(curve: CurveOutcome) -> Labels:
@@ -168,17 +164,13 @@ def _as_found(curve: CurveRecord) -> list[Series]:
             error=[row["friction_coefficient_sem"] for row in rows],
             told=[
                 "without decisions by hand\n"
-                f"v = {plain_speed(float_of(row['sliding_speed_m_s']))}\n"
-                f"µ = {with_error(float_of(row['friction_coefficient']), _sem(row))}"
+                f"v = {plain_speed(number_of(row, _SPEED))}\n"
+                f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_sem'))}"
                 for row in rows
             ],
             **(labels_of(curve.outcome) | {"open": True}),
         )
     ]
-
-
-def _sem(row: Row) -> float | None:
-    return float_of(row["friction_coefficient_sem"])
 
 
 def _has_stress(model: ModelRow) -> bool:
@@ -238,27 +230,23 @@ def model_figures(known: Friction) -> list[LiveFigure]:
             model = known.models.get(curve.outcome.name)
             if model is not None and model.fit is not None:
                 series += _taken_apart(model, curve, known.missed.get(curve.outcome.name))
-        if series:
-            name = system_name(surface, medium)
-            figures.append(
-                LiveFigure(
-                    id=f"model-{safe(name)}",
-                    section="model",
-                    title=f"{name}: the model taken apart",
-                    note="Above: what the computed friction is made of; its sum stands beside the "
-                    "measured points on the first screen. Below: measured less model, with the "
-                    "standard uncertainty of both: of the point, and of what the model takes as "
-                    "given (viscosity, speed, load, radius, modulus) where it is stated.",
-                    alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
-                    "and the difference between measurement and model.",
-                    panels=(
-                        Panel(SPEED, _PART),
-                        Panel(SPEED, Axis("measured − model")),
-                    ),
-                    series=tuple(series),
-                    one_load=True,
-                )
+        name = system_name(surface, medium)
+        figures.append(
+            LiveFigure(
+                id=f"model-{safe(name)}",
+                section="model",
+                title=f"{name}: the model taken apart",
+                note="Above: what the computed friction is made of; its sum stands beside the "
+                "measured points on the first screen. Below: measured less model, with the "
+                "standard uncertainty of both: of the point, and of what the model takes as "
+                "given (viscosity, speed, load, radius, modulus) where it is stated.",
+                alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
+                "and the difference between measurement and model.",
+                panels=(Panel(SPEED, _PART), Panel(SPEED, Axis("measured − model"))),
+                series=tuple(series),
+                one_load=True,
             )
+        )
     return figures
 
 

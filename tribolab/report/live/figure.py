@@ -147,14 +147,17 @@ class LiveFigure:
     @property
     def surface(self) -> str:
         """Surface that all of it is of; "" where there are several."""
-        names = {curve.surface for curve in self.series}
-        return names.pop() if len(names) == 1 else ""
+        return only({curve.surface for curve in self.series})
 
     @property
     def medium(self) -> str:
         """Medium that all of it is of; "" where there are several."""
-        names = {curve.medium for curve in self.series}
-        return names.pop() if len(names) == 1 else ""
+        return only({curve.medium for curve in self.series})
+
+
+def only(names: set[str]) -> str:
+    """Return the name that there is; "" where there are several."""
+    return min(names) if len(names) == 1 else ""
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:

@@ -20,7 +20,7 @@ from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.record import Band, LiveFigures, LiveTask, Missed, live_task
-from tribolab.report.live.shown import ShownFigure, shown_figure
+from tribolab.report.live.shown import ShownFigure, shown_figures
 from tribolab.report.live.sliding import Judged, record_of_sliding
 from tribolab.report.live.surfaces import record_of_surfaces
 from tribolab.report.slowest import slow_segments
@@ -75,7 +75,7 @@ def begun_live_figures(
         known = Friction(curves, points, by_curve, bands, missed, surfaces)
         figures = [*card_figures(known), *comparisons(known), *model_figures(known)]
         return [
-            *(shown_figure(figure) for figure in figures),
+            *shown_figures(figures),
             *(figure for record in records for figure in record.figures),
         ], findings
 

@@ -12,7 +12,7 @@ from tribolab.records.joint_record import JointRecord
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, safe
 from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown_figure
+from tribolab.report.live.shown import shown_figures
 from tribolab.words import many
 
 
@@ -26,7 +26,7 @@ def record_of_joint_fits(joints: Sequence[JointRecord], folder: Path) -> LiveRec
     folder
         The results folder with their data files.
     """
-    return LiveRecord(tuple(shown_figure(_figure(joint, folder)) for joint in joints), {}, {})
+    return LiveRecord(shown_figures(_figure(joint, folder) for joint in joints))
 
 
 def _figure(joint: JointRecord, folder: Path) -> LiveFigure:

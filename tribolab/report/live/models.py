@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.records.model_words import stress_interval
+from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
@@ -24,7 +25,7 @@ from tribolab.report.live.figure import (
     thinned,
 )
 from tribolab.report.live.record import Band, LiveRecord, Missed
-from tribolab.report.live.shown import shown_figure
+from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, percent
 
@@ -55,8 +56,7 @@ def record_of_models(
     drawn = [shear_stress(models, colours), sensitivity(models, colours)]
     drawn += _profiles(models, folder)
     drawn.append(_factors(models, folder, colours))
-    figures = tuple(shown_figure(figure) for figure in drawn if figure is not None)
-    return LiveRecord(figures, bands, missed)
+    return LiveRecord(shown_figures(drawn), bands, missed)
 
 
 def _of_curves(
@@ -90,7 +90,7 @@ def _labels(row: ModelRow) -> Labels:
     return {"surface": model.surface, "medium": model.medium, "load": model.normal_force}
 
 
-def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure | None:
+def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
     """Return the fitted shear stresses over the load."""
     series = []
     for (surface, medium), rows in _by_system(models).items():
@@ -116,8 +116,6 @@ def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> Live
                 )
             )
     series = [drawn for drawn in series if drawn.x]
-    if not series:
-        return None
     return LiveFigure(
         "model-shear_stress",
         "model",
@@ -148,7 +146,7 @@ def _by_system(models: Sequence[ModelRow]) -> dict[tuple[str, str], list[ModelRo
     return by_system
 
 
-def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure | None:
+def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
     """Return how far each thing that is not known moves the model."""
     series = []
     for row in models:
@@ -166,8 +164,6 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveF
                 **_labels(row),
             )
         )
-    if not series:
-        return None
     return LiveFigure(
         "model-sensitivity",
         "model",
@@ -185,15 +181,11 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveF
 
 
 def _moved(change: Row) -> str:
-    share, speed = (change[key] for key in ("largest_change", "largest_change_speed_m_s"))
+    share, speed = (number_of(change, f"largest_change{end}") for end in ("", "_speed_m_s"))
     lines = [str(change["variation"]), f"{change['low'] or '–'} to {change['high'] or '–'}"]
-    lines.append(f"moves µ by {percent(_number(share))} of the curve's height")
-    lines.append(f"at {plain_speed(_number(speed))}")
+    lines.append(f"moves µ by {percent(share)} of the curve's height")
+    lines.append(f"at {plain_speed(speed)}")
     return "\n".join([*lines, str(change["reason"])])
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
 
 
 _PROFILES = (
@@ -211,8 +203,6 @@ def _profiles(models: Sequence[ModelRow], folder: Path) -> list[LiveFigure]:
         for row in rows:
             if "profiles" in row.model.parts:
                 series += _across(row, _read(row, folder, "profiles"))
-        if not series:
-            continue
         name = system_name(surface, medium)
         x = Axis("across the contact", "mm")
         figures.append(
@@ -254,9 +244,7 @@ _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
 )
 
 
-def _factors(
-    models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int]
-) -> LiveFigure | None:
+def _factors(models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int]) -> LiveFigure:
     series, seen = [], set()
     for row in models:
         surface = row.model.surface
@@ -277,8 +265,6 @@ def _factors(
                     told=(words,),
                 )
             )
-    if not series:
-        return None
     x = Axis("mean separation", "µm", log=True)
     return LiveFigure(
         "model-factors",

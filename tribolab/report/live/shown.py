@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tribolab.records.packed import deflated
@@ -47,8 +48,12 @@ class ShownFigure:
     still: str
 
 
-def shown_figure(figure: LiveFigure) -> ShownFigure:
-    """Return what the page has of a figure."""
+def shown_figures(figures: Iterable[LiveFigure]) -> tuple[ShownFigure, ...]:
+    """Return what the page has of figures; one without anything to show is left out."""
+    return tuple(_shown(figure) for figure in figures if figure.series)
+
+
+def _shown(figure: LiveFigure) -> ShownFigure:
     return ShownFigure(
         figure.id,
         figure.section,

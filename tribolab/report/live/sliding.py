@@ -23,7 +23,7 @@ from tribolab.report.live.figure import (
     thinned,
 )
 from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown_figure
+from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
 from tribolab.words import force_text, number
@@ -71,7 +71,7 @@ def record_of_sliding(
         _events(opened),
         _spectrogram(opened),
     ]
-    return LiveRecord(tuple(shown_figure(figure) for figure in figures if figure is not None))
+    return LiveRecord(shown_figures(figures))
 
 
 def _system(curve: CurveOutcome) -> str:
@@ -83,7 +83,7 @@ def _name(curve: CurveOutcome) -> str:
     return name if curve.normal_force is None else f"{name}, {force_text(curve.normal_force)}"
 
 
-def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
+def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
     """Return which waveform is seen at every speed."""
     series = []
     colours = places(str(row["waveform"]) for contact in judged for row in contact.mode.speeds)
@@ -102,8 +102,6 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure | None:
                     **(labels_of(contact.curve) | {"open": waveform == "smooth sliding"}),
                 )
             )
-    if not series:
-        return None
     return LiveFigure(
         "sliding-waveforms",
         "sliding",
@@ -128,7 +126,7 @@ def _seen(contact: Judged, row: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFigure | None:
+def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFigure:
     series = []
     for contact in judged:
         rows = [row for row in contact.mode.speeds if row["dominant_frequency_Hz"]]
@@ -145,8 +143,6 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFi
                     **labels_of(contact.curve),
                 )
             )
-    if not series:
-        return None
     return LiveFigure(
         "sliding-frequencies",
         "sliding",
@@ -229,7 +225,7 @@ def _trace(
     return distance[kept], sign * values[kept]
 
 
-def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
+def _traces(opened: Sequence[_Open]) -> LiveFigure:
     series = []
     for contact in opened:
         for number_, (speed, distance, values) in enumerate(contact.traces):
@@ -237,8 +233,6 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
             told, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
             line = contact.series(contact.name, distance, values, style, told=told, goes_to=run)
             series.append(line)
-    if not series:
-        return None
     return LiveFigure(
         "sliding-traces",
         "sliding",
@@ -251,7 +245,7 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure | None:
     )
 
 
-def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
+def _spectra(opened: Sequence[_Open]) -> LiveFigure:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("frequency", 0):
@@ -264,8 +258,6 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
         told = f"{contact.name}: limit of noise"
         series.append(contact.series(contact.name, f[kept], power, of))
         series.append(contact.series(contact.name, f[kept], limit, noise, told=told))
-    if not series:
-        return None
     return LiveFigure(
         "sliding-spectra",
         "sliding",
@@ -278,7 +270,7 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure | None:
     )
 
 
-def _events(opened: Sequence[_Open]) -> LiveFigure | None:
+def _events(opened: Sequence[_Open]) -> LiveFigure:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("event", 0):
@@ -289,8 +281,6 @@ def _events(opened: Sequence[_Open]) -> LiveFigure | None:
         share = (np.arange(drops.size) + 1) / max(drops.size, 1)
         name, style = f"{contact.name}: {drops.size} drops", _STYLES[0][contact.labels["open"]]
         series.append(contact.series(name, drops[kept], share[kept], style))
-    if not series:
-        return None
     return LiveFigure(
         "sliding-events",
         "sliding",
@@ -303,7 +293,7 @@ def _events(opened: Sequence[_Open]) -> LiveFigure | None:
     )
 
 
-def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
+def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
     """Return power over that of noise, for every speed and frequency."""
     series = []
     for contact in opened:
@@ -322,8 +312,6 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure | None:
         values = [float(f"{v:.3g}") for v in level[kept]]
         drawn = contact.series(contact.name, speed[kept], f[kept], "heat", high=values)
         series += [drawn] if values else []
-    if not series:
-        return None
     return LiveFigure(
         "sliding-spectrogram",
         "sliding",

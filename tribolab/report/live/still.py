@@ -56,13 +56,13 @@ def _near(share: float) -> float:
 def still(figure: LiveFigure) -> str:
     """Return a figure as SVG: of one load at a time the lowest."""
     width = _WIDTHS[figure.width]
-    series = _first(figure)
+    series, seen = first_view(figure)
     labels = legend(series)
     rows = math.ceil(len(labels) / _columns(width, labels)) if len(labels) > 1 else 0
     top = _TOP + rows * _LINE
     height = (figure.height or _HEIGHTS[len(figure.panels) - 1]) + rows * _LINE
     parts = list(_legend(labels, width)) if rows else []
-    for place, box in enumerate(_boxes(figure, series, width, top, height)):
+    for place, box in enumerate(_boxes(seen, width, top, height)):
         parts += _panel(figure, place, box, series)
     body = "".join(parts)
     return (
@@ -71,17 +71,14 @@ def still(figure: LiveFigure) -> str:
     )
 
 
-def first_view(figure: LiveFigure) -> list[tuple[Scale, Scale]]:
-    """Return what is seen along and up each panel of a figure before anything was chosen."""
-    return _seen(figure, _first(figure))
-
-
-def _seen(figure: LiveFigure, series: Sequence[Series]) -> list[tuple[Scale, Scale]]:
+def first_view(figure: LiveFigure) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
+    """Return the series of a figure before anything was chosen, and what is seen of each panel."""
+    series = _first(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
     if len(seen) > 1:  # panels below each other share what lies along them
         low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
         seen = [(replace(x, low=low, high=high), y) for x, y in seen]
-    return seen
+    return series, seen
 
 
 def _first(figure: LiveFigure) -> list[Series]:
@@ -115,10 +112,9 @@ def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
 
 
 def _boxes(
-    figure: LiveFigure, series: Sequence[Series], width: int, top: float, height: float
+    seen: Sequence[tuple[Scale, Scale]], width: int, top: float, height: float
 ) -> list[_Box]:
     """Return the panels below each other, with room for what stands left of them."""
-    seen = _seen(figure, series)
     names = max((len(name) for _, y in seen for name in y.names), default=0)
     left = min(names * _LETTER + 12, 0.45 * width) if names else 58
     count = len(seen)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
 from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown_figure
+from tribolab.report.live.shown import shown_figures
 from tribolab.untyped import Arguments
 from tribolab.words import is_dry
 
@@ -90,7 +90,7 @@ def record_of_surfaces(
                     one_load=loads,
                 )
             )
-    return LiveRecord(tuple(shown_figure(figure) for figure in figures))
+    return LiveRecord(shown_figures(figures))
 
 
 class _Kind(NamedTuple):
