@@ -136,11 +136,18 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
         """Return why files could not be checked."""
         if isinstance(error, ConfigError):
             raise error  # a wrong instrument is wrong for every file
-        return [Checked((file,), error=explain(error)[0], kind="file") for file in task.files]
+        groups = [task.files] if task.kind == "run" else [(file,) for file in task.files]
+        return [Checked(files, error=_why(error), kind="file") for files in groups]
 
     def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
         """Return what was found."""
         return record
+
+
+def _why(error: BaseException) -> str:
+    """Say why a file cannot be read; of what nobody foresaw also where it happened."""
+    foreseen = isinstance(error, TribolabError | OSError)
+    return told(error, "terminal") if foreseen else explain(error)[0]
 
 
 def _kind_of(path: Path, instrument: str | Path | None) -> str:
@@ -184,13 +191,8 @@ def check_files(
 
 
 def _check_run(task: CheckTask) -> list[Checked]:
-    try:
-        run = read_run(list(task.files) if len(task.files) > 1 else task.files[0], task.instrument)
-        return [Checked.of(task.files, check_run(run))]
-    except ConfigError:
-        raise
-    except (TribolabError, OSError) as error:
-        return [Checked(task.files, error=told(error, "terminal"), kind="file")]
+    run = read_run(list(task.files) if len(task.files) > 1 else task.files[0], task.instrument)
+    return [Checked.of(task.files, check_run(run))]
 
 
 def _check_scans(task: CheckTask) -> list[Checked]:
@@ -208,7 +210,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
         except ConfigError:
             raise
         except (TribolabError, OSError) as error:
-            checked.append(Checked((path,), error=told(error, "terminal"), kind="file"))
+            checked.append(Checked((path,), error=_why(error), kind="file"))
     if scans:
         own = [[r for path, r in results.items() if _belongs(path, file)] for file in scans]
         judged = check_scan_set(list(scans.values()), results=own)
@@ -219,11 +221,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
 def _check_results(task: CheckTask) -> list[Checked]:
     from tribolab.qc.scan.sets import check_results
 
-    try:
-        results = read_tester_results(task.files[0])
-    except (TribolabError, OSError) as error:
-        return [Checked(task.files, error=told(error, "terminal"), kind="file")]
-    return [Checked.of(task.files, check_results(results), "results")]
+    return [Checked.of(task.files, check_results(read_tester_results(task.files[0])), "results")]
 
 
 _WORK = {"run": _check_run, "scan": _check_scans, "results": _check_results}

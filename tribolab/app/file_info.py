@@ -10,7 +10,7 @@ from typing import Any
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import holds_run, read_run
-from tribolab.errors import ReadError, TribolabError, shown
+from tribolab.errors import ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
@@ -73,17 +73,14 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
     @staticmethod
     def work(task: tuple[Path, str | Path | None]) -> Described:
         """Describe one file."""
-        file, instrument = task
-        try:
-            return Described(file, tuple(file_lines(file, instrument)))
-        except ReadError as error:  # the other files want to be seen too
-            return Described(file, error=error.told("terminal"))
+        return Described(task[0], tuple(file_lines(*task)))
 
     def failed(self, task: tuple[Path, str | Path | None], error: BaseException) -> Described:
         """Return why a file could not be described; a wrong instrument is wrong for all."""
-        if isinstance(error, TribolabError):
+        if isinstance(error, TribolabError) and not isinstance(error, ReadError):
             raise error
-        return Described(task[0], error=explain(error)[0])
+        read = isinstance(error, ReadError)  # the other files want to be seen too
+        return Described(task[0], error=told(error, "terminal") if read else explain(error)[0])
 
     def keep(
         self, task: tuple[Path, str | Path | None], place: int, record: Described

@@ -12,8 +12,9 @@ from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.pool import LastingPool
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.files import inputs_of
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.campaign.settings.plan import inputs_of, planned_runs
+from tribolab.campaign.settings.plan import planned_runs
 from tribolab.campaign.store.catalogue import Catalogue
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import Outcome

@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pandas as pd
 
-from tribolab.records.joint_record import (
-    JointRecord,
-    comparison_table_rows,
-    parameter_table_rows,
-)
-from tribolab.records.part_records import CurveRecord, SurfaceRecord
+from tribolab.records.joint_record import JointRecord, comparison_table_rows, parameter_table_rows
+from tribolab.records.part_records import CurveRecord, SurfaceRecord, SurfaceRows
 from tribolab.records.parts import Notice, Row
 from tribolab.records.run_record import RunRecord
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
@@ -27,7 +23,6 @@ from tribolab.report.document.models import (
     sensitivity_table,
     shear_stress_table,
 )
-from tribolab.report.document.surfaces import table
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -104,8 +99,14 @@ def write_tables(
     columns = ["file", "sha256", "bytes"]
     short = {"sources": pd.DataFrame(list(outcome.sources), columns=columns)}
     rows = [surface.rows for surface in surfaces if surface.rows is not None]
-    for name, wanted in (("roughness", ROUGHNESS), ("contact", CONTACT), ("adhesion", ADHESION)):
-        short[name] = table(rows, name, wanted)
+    of_surfaces: dict[str, tuple[Iterable[str], Callable[[SurfaceRows], Iterable[Row]]]] = {
+        "roughness": (ROUGHNESS, lambda surface: [surface.roughness]),
+        "contact": (CONTACT, lambda surface: surface.contact),
+        "adhesion": (ADHESION, lambda surface: surface.adhesion),
+    }
+    for name, (wanted, of) in of_surfaces.items():
+        named = [{"surface": s.name, "quality": s.quality, **row} for s in rows for row in of(s)]
+        short[name] = pd.DataFrame(named, columns=["surface", "quality", *wanted])
     if outcome.models:
         every = list(models.values())
         short["shear_stress"] = shear_stress_table(every)

@@ -11,25 +11,15 @@ from tribolab.campaign.engine.stage import Progress, begun, silent
 from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
-from tribolab.records.joint_record import (
-    JointRecord,
-)
+from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
 from tribolab.records.run_record import RunRecord
 from tribolab.report.campaign_tables import write_findings, write_tables
 from tribolab.report.document.decisions import curve_notices
-from tribolab.report.document.document import (
-    brief_run,
-    report_document,
-    report_head,
-    write_json,
-)
-from tribolab.report.document.models import (
-    ModelRow,
-    model_rows_of,
-)
+from tribolab.report.document.document import brief_run, report_document, report_head, write_json
+from tribolab.report.document.models import ModelRow, model_rows_of
 from tribolab.report.document.parts import (
     reported_curve,
     reported_mode,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.records.model_words import is_described
-from tribolab.report.page.answer import conditions, half_speed
+from tribolab.report.page.in_words import by_speed, conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import force_text, is_dry, many
 
@@ -61,12 +61,7 @@ def _falls(curves: Iterable[Mapping[str, Any]]) -> Iterable[str]:
 
 
 def _fall(curve: Mapping[str, Any]) -> Fall | None:
-    known = [
-        row
-        for row in curve["points"]
-        if row["friction_coefficient"] is not None and row["sliding_speed_m_s"]
-    ]
-    known.sort(key=lambda row: row["sliding_speed_m_s"])
+    known = by_speed(curve["points"])
     if not known:
         return None
     high = max(known, key=lambda row: row["friction_coefficient"])

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup
 
 from tribolab.records.packed import deflated
-from tribolab.records.parts import PageTrace
 from tribolab.records.traces import script_json
 from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.answer import cards, of_nothing
@@ -22,6 +21,9 @@ from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
 from tribolab.untyped import Json
 from tribolab.words import force_text
+
+if TYPE_CHECKING:
+    from tribolab.campaign.store.catalogue import Catalogue
 
 _MOST_ROWS = 100  # of the table of runs; more are packed, and laid out when they are asked for
 Runs = Callable[[], Iterable[Json]]
@@ -39,7 +41,7 @@ def write_page(
     document: Mapping[str, Any],
     folder: Path,
     runs: Runs,
-    store: Traces,
+    store: Catalogue,
     live: Sequence[ShownFigure] = (),
 ) -> Path:
     """Write ``report.html`` into the results folder, with what it shows inside it.
@@ -80,18 +82,11 @@ def prepare_page() -> None:
             jinja.get_template(name)
 
 
-class Traces(Protocol):
-    """What knows the traces of runs."""
-
-    def trace(self, kind: str, name: str) -> PageTrace | None:
-        """Return the trace of a part."""
-
-
 def _context(
     document: Mapping[str, Any],
     folder: Path,
     runs: Runs,
-    store: Traces,
+    store: Catalogue,
     live: Sequence[ShownFigure],
 ) -> Json:
     surfaces = document.get("surfaces", [])

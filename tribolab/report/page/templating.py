@@ -22,8 +22,8 @@ from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.report.live.points import run_error
-from tribolab.report.page.answer import conditions, oscillation_text
 from tribolab.report.page.glossary import GLOSSARY, HEADS, TERMS
+from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 from tribolab.untyped import Json
