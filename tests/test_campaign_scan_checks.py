@@ -12,8 +12,8 @@ from report_pages import figures_of
 from typer.testing import CliRunner
 
 from tribolab import rig
+from tribolab.campaign.settings.files import scan_files
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.campaign.settings.plan import scan_files
 from tribolab.campaign.surfaces.plan import PlannedSurface
 from tribolab.campaign.surfaces.stage import SurfaceTask, process_surface
 from tribolab.cli import app

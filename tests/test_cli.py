@@ -22,7 +22,7 @@ import tribolab
 from tribolab import cli
 from tribolab.app.commands.campaign import show_outcome
 from tribolab.app.progress import progress_bars
-from tribolab.campaign.settings.config import Qc
+from tribolab.campaign.settings.analysed import Qc
 from tribolab.records.parts import ModelOutcome
 
 BARE = ("--figures", "none")  # where they are not looked at

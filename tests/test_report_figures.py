@@ -56,9 +56,8 @@ def the_next(made, folder, **changes):
         for place, entry in enumerate(made.store.all(kind, record)):
             if entry.record.outcome.data_file:
                 store.link_beside(entry.record.outcome.data_file)
-            store.put(kind, entry.name, place, entry.fingerprint, entry.record)
-            store.take_trace(kind, entry.name, entry.name)
-
+            trace = store.before.trace(kind, entry.name)
+            store.put(kind, entry.name, place, entry.fingerprint, entry.record, trace)
     return replace(made, folder=folder, store=store, **changes)
 
 

@@ -18,7 +18,7 @@ from tribolab.across.watched import (
     at_common_speeds,
     observations_of,
 )
-from tribolab.campaign.settings.config import Calibration
+from tribolab.campaign.settings.measured import Calibration
 from tribolab.errors import AnalysisError, ReadError, TribolabError
 from tribolab.metrology.control_charts import (
     DEFAULT_RULES,

@@ -13,7 +13,8 @@ from typing import Any
 import pandas as pd
 
 from tribolab.across.folder import Folder, open_folder
-from tribolab.campaign.settings.config import Campaign, RunEntry
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.measured import RunEntry
 from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.named import is_named
 from tribolab.errors import AnalysisError

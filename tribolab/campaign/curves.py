@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
 from tribolab.campaign.runs.stage import RunCame
-from tribolab.campaign.settings.plan import distinct, safe_name
+from tribolab.campaign.settings.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.errors import TribolabError
@@ -114,10 +114,10 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             tuple(came.outcome.data_file for came in undecided),
         )
 
-    def linked(self, task: CurveTask, record: CurveRecord) -> bool:
-        """Have the data file among the new ones, if the curve is called and labelled the same."""
+    def taken(self, task: CurveTask, record: CurveRecord) -> CurveRecord | None:
+        """Take a curve over that is called and labelled the same."""
         file = task.curve.data_file
-        return record.outcome == task.curve and self._store.link(self.kind, task.name, file, file)
+        return record if record.outcome == task.curve and self.linked(task, file, file) else None
 
     @staticmethod
     def work(task: CurveTask) -> CurveRecord:

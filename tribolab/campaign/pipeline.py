@@ -96,7 +96,7 @@ def process(
         curves=tuple(curve.outcome for curve in curves),
         sources=tuple({source[0]: source for source in sources}.values()),
         surfaces=tuple(surface.outcome for surface in surfaces),
-        models=tuple(models),
+        models=tuple(model.outcome for model in models),
         lost_decisions=lost_decisions(campaign.file, [run.name for run in runs]),
     )
 

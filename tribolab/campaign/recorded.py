@@ -57,17 +57,21 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
 
     def known(self, task: Mine, place: int) -> Record | None:
         """Take over the record of a task that is made of the same, if its files are there."""
-        record: Record | None = self._store.same(
+        earlier: Record | None = self._store.same(
             self.kind, task.name, task.fingerprint, self.record
         )
-        if record is None or not self.linked(task, record):
-            return None
-        self._store.put(self.kind, task.name, place, task.fingerprint, record)
+        record = None if earlier is None else self.taken(task, earlier)
+        if record is not None:
+            self._store.put(self.kind, task.name, place, task.fingerprint, record)
         return record
 
-    def linked(self, task: Mine, record: Record) -> bool:
-        """Have the files of an earlier record among the new ones; False: it is done anew."""
-        return True
+    def taken(self, task: Mine, record: Record) -> Record | None:
+        """Return an earlier record as it is now, its files among the new; None: done anew."""
+        return record
+
+    def linked(self, task: Mine, old: str, new: str) -> bool:
+        """Have the data file of an earlier record among the new ones; False if it is not whole."""
+        return self._store.link(self.kind, task.name, old, new)
 
     def keep(self, task: Mine, place: int, record: Record | Failure) -> Record | Failure:
         """Write a record down; one that says of itself that it failed is done anew next time."""

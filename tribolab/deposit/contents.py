@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.files import inputs_of
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.campaign.settings.plan import inputs_of
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, ReadError
 from tribolab.io.zero_reading import parse_zero

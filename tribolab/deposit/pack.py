@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
 from tribolab.across.folder import open_folder
-from tribolab.campaign.settings.plan import safe_name
+from tribolab.campaign.settings.run_names import safe_name
 from tribolab.deposit.contents import Item, campaign_of, items_of
 from tribolab.deposit.crate import (
     METADATA,

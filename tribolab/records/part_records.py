@@ -162,6 +162,11 @@ class SurfaceRecord:
     rows: SurfaceRows | None = None
     digest: str = ""
 
+    @property
+    def done(self) -> bool:
+        """Whether there are results, and not those of before."""
+        return self.outcome.done and not self.outcome.kept
+
 
 @dataclass(frozen=True)
 class ModelRecord:
@@ -169,6 +174,11 @@ class ModelRecord:
 
     outcome: ModelOutcome
     rows: ModelRows | None = None
+
+    @property
+    def done(self) -> bool:
+        """Whether there are results, and not those of before."""
+        return self.outcome.done and not self.outcome.kept
 
 
 @dataclass(frozen=True)

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.joint.plan import JointParts, JointTask
+from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.store.catalogue import Store
+from tribolab.campaign.settings.run_names import safe_name
+from tribolab.campaign.store.catalogue import Store, fingerprint_of
+from tribolab.provenance import sha256_of
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
+from tribolab.records.parts import number_of
 from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
+
+
+_FEWEST_LOADS = {"always": 1, "two loads": 2}
 
 
 class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
@@ -42,15 +49,107 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         store: Store,
     ) -> None:
         super().__init__(store)
-        self._parts = JointParts(campaign, curves, models, surfaces, store)
+        self._campaign = campaign
+        self._curves = [curve.outcome for curve in curves if curve.outcome.done]
+        self._files = {curve.name: curve.data_file for curve in self._curves}
+        self._spectra = {s.outcome.name: s.outcome.data_file for s in surfaces if s.outcome.done}
+        self._models = [
+            model
+            for model in models
+            if model.outcome.done and model.outcome.normal_force and model.rows is not None
+        ]
 
     def plan(self) -> list[JointTask]:
         """Return a task for each surface and liquid, and for surfaces that belong together."""
-        return self._parts.tasks()
+        settings = self._campaign.joint
+        if settings.compute == "never":
+            return []
+        groups: dict[tuple[tuple[str, ...], str], list[ModelRecord]] = {}
+        for model in self._models:
+            of = model.outcome
+            groups.setdefault(((of.surface,), of.medium), []).append(model)
+        for medium in dict.fromkeys(model.outcome.medium for model in self._models):
+            members = [
+                model for name in settings.together for model in groups.get(((name,), medium), [])
+            ]
+            names = tuple(dict.fromkeys(model.outcome.surface for model in members))
+            if len(names) > 1:
+                groups[names, medium] = members
+        fewest = _FEWEST_LOADS[settings.compute]
+        return [
+            self._task(surfaces, medium, members)
+            for (surfaces, medium), members in groups.items()
+            if len({model.outcome.normal_force for model in members}) >= fewest
+        ]
 
-    def linked(self, task: JointTask, record: JointRecord) -> bool:
-        """Have the data file among the new ones."""
-        return self._store.link(self.kind, task.name, record.file, record.file)
+    def _task(
+        self, surfaces: tuple[str, ...], medium: str, members: Sequence[ModelRecord]
+    ) -> JointTask:
+        ordered = sorted(
+            members,
+            key=lambda model: (
+                surfaces.index(model.outcome.surface),
+                model.outcome.normal_force or 0.0,
+            ),
+        )
+        outcomes = tuple(replace(model.outcome, seconds=0.0) for model in ordered)
+        liquid = self._campaign.viscosity_of(medium)
+        assert liquid is not None  # else there were no models
+        task = JointTask(
+            name=f"joint_{safe_name('_'.join(filter(None, (*surfaces, medium))))}",
+            surfaces=surfaces,
+            medium=medium,
+            models=outcomes,
+            measured=tuple(self._files[outcome.curve] for outcome in outcomes),
+            enhancement=tuple(_enhancement(model) for model in ordered),
+            dry=self._dry(surfaces, medium),
+            contact=self._campaign.contact.line(),
+            area=self._campaign.contact.area,
+            adhesion=self._campaign.model.adhesion,
+            viscosity=liquid.value,
+            viscosity_range=liquid.bounds,
+            folder=self._store.folder,
+        )
+        files = [*task.measured, *(outcome.data_file for outcome in outcomes)]
+        for dry in task.dry:
+            files += [dry.surface_file, *dry.measured]
+        shaping = [
+            [task.name, task.enhancement, task.contact, task.viscosity, task.viscosity_range],
+            [task.area, task.adhesion, [asdict(dry) for dry in task.dry]],
+            [self._store.identity(file) for file in files],
+        ]
+        return replace(task, fingerprint=fingerprint_of(sha256_of(shaping)))
+
+    def _dry(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
+        """Return the friction without liquid of each surface, where it is to be used."""
+        name = self._campaign.joint.dry
+        without, within = self._work(name), self._work(medium)
+        if name is None or without is None or within is None:
+            return ()
+        dry = []
+        for surface in surfaces:
+            curves = [
+                (curve.normal_force, curve.data_file)
+                for curve in self._curves
+                if (curve.surface, curve.medium) == (surface, name) and curve.normal_force
+            ]
+            if curves and surface in self._spectra:
+                forces, files = zip(*sorted(curves), strict=True)
+                dry.append(
+                    JointDry(surface, self._spectra[surface], forces, files, without, within)
+                )
+        return tuple(dry)
+
+    def _work(self, medium: str | None) -> Work | None:
+        table = self._campaign.medium.get(medium or "")
+        if table is None or table.work_of_adhesion is None:
+            return None
+        value = table.work_of_adhesion
+        return Work(value, *(table.work_of_adhesion_range or (value, value)))
+
+    def taken(self, task: JointTask, record: JointRecord) -> JointRecord | None:
+        """Take over a fit whose data file is there."""
+        return record if self.linked(task, record.file, record.file) else None
 
     @staticmethod
     def work(task: JointTask) -> JointRecord:
@@ -64,3 +163,8 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         names = tuple(model.curve for model in task.models)
         reason = explain(error)[0]
         return JointRecord(task.name, task.surface, task.medium, names, "failed", reason)
+
+
+def _enhancement(model: ModelRecord) -> float | None:
+    fit = model.rows.fit if model.rows is not None else None
+    return None if fit is None else number_of(fit, "area_enhancement")

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.models.kept import kept_model
 from tribolab.campaign.models.plan import PlannedModel, plan_models
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import optional_data, write_data
 from tribolab.errors import OutputError
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.settings.config import Campaign
 
-KIND = "model"
-
 
 @dataclass(frozen=True)
 class ModelTask:
@@ -35,8 +33,18 @@ class ModelTask:
     model: PlannedModel
     folder: Path
 
+    @property
+    def name(self) -> str:
+        """Of the model."""
+        return self.model.name
 
-class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
+    @property
+    def fingerprint(self) -> str:
+        """Of data, settings and version."""
+        return fingerprint_of(self.model.config_sha256)
+
+
+class Models(Recorded[ModelTask, ModelRecord, ModelRecord]):
     """The stage of the models.
 
     Parameters
@@ -49,7 +57,9 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = "models"
+    kind = "model"
+    record = ModelRecord
 
     def __init__(
         self,
@@ -58,23 +68,15 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
         surfaces: Sequence[SurfaceRecord],
         store: Store,
     ) -> None:
-        self._planned = plan_models(campaign, curves, surfaces)
-        self._store = store
+        planned = plan_models(campaign, curves, surfaces)
+        super().__init__(store, [ModelTask(model, store.folder) for model in planned])
 
-    def plan(self) -> list[ModelTask]:
-        """Return a task for each measured curve in a fluid."""
-        return [ModelTask(model, self._store.folder) for model in self._planned]
-
-    def known(self, task: ModelTask, place: int) -> ModelOutcome | None:
-        """Take over a model whose data, settings and version are the same."""
-        model = task.model
-        mark = fingerprint_of(model.config_sha256)
-        record = self._store.same(KIND, model.name, mark, ModelRecord)
-        if model.missing or record is None or not record.outcome.done or record.outcome.kept:
+    def taken(self, task: ModelTask, record: ModelRecord) -> ModelRecord | None:
+        """Take over a model that was computed, and still can be."""
+        file = task.model.data_file
+        if task.model.missing or not record.done or not self.linked(task, file, file):
             return None
-        record = replace(record, outcome=replace(record.outcome, reused=True))
-        taken = self._store.take(KIND, model.name, place, mark, record, model.data_file)
-        return record.outcome if taken else None
+        return replace(record, outcome=replace(record.outcome, reused=True))
 
     def order(self, tasks: Sequence[tuple[int, ModelTask]]) -> list[tuple[int, ModelTask]]:
         """Return what takes longest first."""
@@ -89,14 +91,9 @@ class Models(Stage[ModelTask, ModelRecord, ModelOutcome]):
         """Return the record of a model whose worker died."""
         return ModelRecord(failed_model(task.model, *explain(error)))
 
-    def keep(self, task: ModelTask, place: int, record: ModelRecord) -> ModelOutcome:
+    def keep(self, task: ModelTask, place: int, record: ModelRecord) -> ModelRecord:
         """Write down what came of a model, or the earlier one where it could not be computed."""
-        model = task.model
-        record = kept_model(self._store, record)
-        stands = record.outcome.done and not record.outcome.kept
-        mark = fingerprint_of(model.config_sha256) if stands else ""
-        self._store.put(KIND, model.name, place, mark, record)
-        return record.outcome
+        return super().keep(task, place, kept_model(self._store, record))
 
 
 def process_model(task: ModelTask) -> ModelRecord:

@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.runs.stage import RunCame, keep_earlier
 from tribolab.campaign.settings.named import is_named
-from tribolab.campaign.settings.plan import safe_name
 from tribolab.campaign.settings.review import review_beside
+from tribolab.campaign.settings.run_names import safe_name
 from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
 from tribolab.friction.decisions.decision import REJECT, Decision
 from tribolab.records.parts import RunOutcome
 from tribolab.records.run_record import DecisionRow, RunRecord
 
 if TYPE_CHECKING:
-    from tribolab.campaign.settings.config import Campaign, RunEntry
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.measured import RunEntry
     from tribolab.campaign.store.catalogue import Entry, Store
 
 REJECTED = "rejected"  # quality of a run, by a person

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.plan import label_of
+from tribolab.campaign.settings.files import label_of
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

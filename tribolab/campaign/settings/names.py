@@ -7,13 +7,14 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.plan import instrument_of
+from tribolab.campaign.settings.files import instrument_of
 from tribolab.campaign.settings.problems import Problem
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.lubrication.viscosity import LIQUIDS, knows_liquid
 
 if TYPE_CHECKING:
-    from tribolab.campaign.settings.config import Campaign, Medium
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.measured import Medium
 
 
 def of_names(campaign: Campaign) -> list[Problem]:

@@ -23,7 +23,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from tribolab.campaign.store.data_files import link
 from tribolab.provenance import sha256_of, sha256_of_file
-from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import PageTrace, Source
 from tribolab.records.run_record import RunRecord
 
@@ -40,7 +39,6 @@ CREATE TABLE file (path BLOB PRIMARY KEY, size INTEGER, modified INTEGER, inode 
 CREATE TABLE fact (name TEXT PRIMARY KEY, value TEXT);
 """
 Kept = TypeVar("Kept")
-Made = RunRecord | CurveRecord | SurfaceRecord | ModelRecord  # what has a data file
 
 
 def fingerprint_of(config_sha256: str) -> str:
@@ -200,16 +198,16 @@ class Store(Catalogue):
         return entry.record if entry and entry.fingerprint == fingerprint else None
 
     def take(
-        self, kind: str, earlier: str, place: int, fingerprint: str, record: Made, data_file: str
+        self, kind: str, earlier: str, place: int, fingerprint: str, record: RunRecord, file: str
     ) -> bool:
-        """Take over an earlier part with its data file and its trace.
+        """Take over an earlier run with its data file and its trace.
 
         Parameters
         ----------
-        kind, earlier, data_file
+        kind, earlier, file
             Where it stood.
         place, fingerprint, record
-            How it is written down now; the record says how part and data file are called.
+            How it is written down now; the record says how run and data file are called.
 
         Returns
         -------
@@ -217,18 +215,11 @@ class Store(Catalogue):
             False if the data file is not as it was written: then nothing is taken over.
         """
         outcome = record.outcome
-        if not self.link(kind, earlier, data_file, outcome.data_file):
+        if not self.link(kind, earlier, file, outcome.data_file):
             return False
-        self.put(kind, outcome.name, place, fingerprint, record)
-        self.take_trace(kind, earlier, outcome.name)
-        return True
-
-    def take_trace(self, kind: str, earlier: str, name: str) -> None:
-        """Give a part the trace that an earlier one has."""
         trace = self.before.trace(kind, earlier)
-        if trace is not None:
-            query = "UPDATE part SET coarse=?, fine=? WHERE kind=? AND name=?"
-            self._new.execute(query, (trace.coarse, trace.fine, kind, name))
+        self.put(kind, outcome.name, place, fingerprint, record, trace)
+        return True
 
     def link(self, kind: str, name: str, old: str, new: str) -> bool:
         """Have the data file of an earlier part among the new ones.

@@ -8,13 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tribolab.campaign.settings.plan import (
-    PlannedRun,
-    instrument_of,
-    label_of,
-    scans_of,
-    sha256_of_dialect,
-)
+from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
 from tribolab.campaign.store.catalogue import Catalogue, Identity
 from tribolab.campaign.store.ledger import Ledger

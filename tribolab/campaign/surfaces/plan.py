@@ -7,14 +7,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.plan import (
-    distinct,
-    instrument_of,
-    label_of,
-    safe_name,
-    scans_of,
-    sha256_of_dialect,
-)
+from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.settings.run_names import distinct, safe_name
 from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.untyped import Arguments
 
@@ -135,7 +129,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "media": media,
             "rubber": campaign.rubber.model_dump(),
             "rubber_work": campaign.medium[sticky].work_of_adhesion if sticky else None,
-            "quality": campaign.scan_quality_options(),
+            "quality": campaign.qc.scan_options(),
         }
         shaping = facts | {
             "media": [asdict(medium) for medium in media],

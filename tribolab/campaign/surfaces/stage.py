@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.engine.stage import Stage
+from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.sources import source_of
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import digest, write_data
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.surfaces.scans import CheckedScans
 
-KIND = "surface"
 SCANS = "scans"  # group of the scans as they were read, with their quality flags
 
 
@@ -38,8 +37,18 @@ class SurfaceTask:
     surface: PlannedSurface
     folder: Path
 
+    @property
+    def name(self) -> str:
+        """Of the surface."""
+        return self.surface.name
 
-class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
+    @property
+    def fingerprint(self) -> str:
+        """Of settings and version; the scans are compared by themselves."""
+        return fingerprint_of(self.surface.config_sha256)
+
+
+class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
     """The stage of the surfaces.
 
     Parameters
@@ -52,12 +61,13 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = "surfaces"
+    kind = "surface"
+    record = SurfaceRecord
 
     def __init__(self, campaign: Campaign, runs: Iterable[RunOutcome], store: Store) -> None:
-        self._campaign = campaign
-        self._runs = runs
-        self._store = store
+        super().__init__(store)
+        self._campaign, self._runs = campaign, runs
         self._began = time.time_ns()
 
     def plan(self) -> list[SurfaceTask]:
@@ -65,21 +75,14 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         planned = plan_surfaces(self._campaign, self._runs)
         return [SurfaceTask(surface, self._store.folder) for surface in planned]
 
-    def known(self, task: SurfaceTask, place: int) -> SurfaceRecord | None:
-        """Take over a surface whose settings, version and files (by checksums) are the same."""
-        surface = task.surface
-        mark = fingerprint_of(surface.config_sha256)
-        known = self._store.same(KIND, surface.name, mark, SurfaceRecord)
-        if known is None or not surface.files:
-            return None
-        before = known.outcome
-        sources = self._store.sources(_files(surface))
-        if not before.done or before.kept or sources != known.sources:
+    def taken(self, task: SurfaceTask, record: SurfaceRecord) -> SurfaceRecord | None:
+        """Take over a surface whose files are the same by their checksums, too."""
+        surface, before = task.surface, record.outcome
+        same = record.done and self._store.sources(_files(surface)) == record.sources
+        if not same or not self.linked(task, before.data_file, surface.data_file):
             return None
         outcome = replace(before, files=surface.labels, data_file=surface.data_file, reused=True)
-        record = replace(known, outcome=outcome)
-        taken = self._store.take(KIND, surface.name, place, mark, record, before.data_file)
-        return record if taken else None
+        return replace(record, outcome=outcome)
 
     @staticmethod
     def work(task: SurfaceTask) -> SurfaceRecord:
@@ -92,11 +95,9 @@ class Surfaces(Stage[SurfaceTask, SurfaceRecord, SurfaceRecord]):
 
     def keep(self, task: SurfaceTask, place: int, record: SurfaceRecord) -> SurfaceRecord:
         """Write down what came of a surface; earlier results stay where scans cannot be read."""
-        surface = task.surface
-        mark = fingerprint_of(surface.config_sha256)
-        record = kept_surface(self._campaign, surface, self._store, record)
-        self._store.put(KIND, surface.name, place, "" if record.outcome.kept else mark, record)
-        files = [path for path, _ in _files(surface)]
+        record = kept_surface(self._campaign, task.surface, self._store, record)
+        super().keep(task, place, record)
+        files = [path for path, _ in _files(task.surface)]
         self._store.note_sources(zip(files, record.sources, strict=False), self._began)
         return record
 

@@ -79,13 +79,12 @@ class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
     kind = "figure"
     record = FigureRecord
 
-    def linked(self, task: FigureTask, record: FigureRecord) -> bool:
-        """Have the picture, its numbers, and its PDF if that is wanted, among the new files."""
-        if not self._store.link(self.kind, task.name, record.file, record.file):
-            return False
+    def taken(self, task: FigureTask, record: FigureRecord) -> FigureRecord | None:
+        """Take over the picture, its numbers, and its PDF if that is wanted."""
         beside = [record.data] if record.data else []
         beside += [str(Path(record.file).with_suffix(".pdf"))] if task.pdf else []
-        return all(self._store.link_beside(file) for file in beside)
+        there = self.linked(task, record.file, record.file)
+        return record if there and all(map(self._store.link_beside, beside)) else None
 
     @staticmethod
     def work(task: FigureTask) -> FigureRecord | None:

@@ -1,0 +1,128 @@
+"""Files that a campaign file names: patterns resolved, and what they are called in reports."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.settings.problems import Problem
+from tribolab.campaign.settings.review import REVIEW_FILE
+from tribolab.errors import nearest, shown
+from tribolab.provenance import as_text, sha256_of_file
+
+if TYPE_CHECKING:
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.measured import Surface
+
+
+def scan_files(campaign: Campaign) -> list[Path]:
+    """Return the topography scans of all surfaces."""
+    return [path for surface in campaign.surface for path in scans_of(campaign, surface)]
+
+
+def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
+    """Return the topography scans of one surface, each once."""
+    named = (
+        path for pattern in surface.scans or () for path in matching_files(campaign.raw, pattern)
+    )
+    return list(dict.fromkeys(named))
+
+
+def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
+    """Return every file that a campaign reads, and what it is in words."""
+    inputs = [(campaign.file, "the campaign file")]
+    inputs.append((campaign.file.parent / REVIEW_FILE, "the review file"))
+    for entry in campaign.run:
+        inputs += [(f, "a raw file") for p in entry.files for f in matching_files(campaign.raw, p)]
+    inputs += [(file, "a scan") for file in scan_files(campaign)]
+    if (name := campaign.contact.modulus_file) is not None:
+        inputs.append((campaign.raw / name, "the modulus file"))
+    instruments = [entry.instrument for entry in campaign.run]
+    instruments += [surface.instrument for surface in campaign.surface]
+    for instrument in instruments:
+        if instrument and instrument.endswith(".toml"):
+            inputs.append((Path(instrument_of(campaign, instrument)), "a dialect"))
+    return inputs
+
+
+def instrument_of(campaign: Campaign, name: str) -> str:
+    """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
+    return str(campaign.file.parent / name) if name.endswith(".toml") else name
+
+
+def resolve_patterns(
+    raw: Path, patterns: Iterable[str], where: tuple[str | int, ...], problems: list[Problem]
+) -> list[Path]:
+    """Return the files of patterns, each once; adds to the problems where nothing matches."""
+    files: dict[Path, None] = {}
+    for pattern in patterns:
+        matching = matching_files(raw, pattern)
+        if not matching:
+            problems.append(
+                Problem(where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}")
+            )
+        files.update(dict.fromkeys(matching))
+    return list(files)
+
+
+def matching_files(raw: Path, pattern: str) -> list[Path]:
+    """Return the files below the raw folder that a pattern means, in their natural order."""
+    exact = raw / pattern
+    try:
+        if exact.is_file():  # brackets in a real name are no wildcards
+            return [exact]
+        files = [path for path in raw.glob(pattern) if path.is_file()]
+    except (OSError, ValueError, NotImplementedError):  # absolute, empty, or too long a name
+        return []
+    return sorted(files, key=lambda path: _natural(str(path)))
+
+
+def _natural(text: str) -> list[tuple[bool, int, str]]:
+    """Key under which cycle 2 comes before cycle 10."""
+    return [
+        (part.isdigit(), int(part) if part.isdigit() else 0, part)
+        for part in re.split(r"(\d+)", text)
+    ]
+
+
+def _there(raw: Path, pattern: str) -> str:
+    """Say what is in the folder where the pattern stops to match, or that it names that folder."""
+    parts = Path(pattern).parts
+    if len(parts) > 1 and parts[0] == raw.name and not _is_folder(raw / parts[0]):
+        return f"; patterns are relative to {raw.name}/: leave '{raw.name}/' out"
+    folder = raw
+    for part in Path(pattern).parts[:-1]:
+        if not _is_folder(folder / part):
+            break
+        folder /= part
+    names = sorted(f"{p.name}/" if p.is_dir() else p.name for p in folder.iterdir())
+    if not names:
+        return f"; {folder} is empty"
+    hint = nearest(Path(pattern).name, names)
+    listed = ", ".join(map(shown, names[:5])) + (
+        f", ... ({len(names)} in all)" if len(names) > 5 else ""
+    )
+    in_folder = "" if folder == raw else f" in {folder.relative_to(raw)}/"
+    return f"; there is{in_folder} {listed}" + (hint if "did you mean" in hint else "")
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):  # no name that a folder could have
+        return False
+
+
+def sha256_of_dialect(instrument: str) -> str:
+    """Return the checksum of what describes an instrument."""
+    from tribolab.io.dialects.find import known_dialects
+
+    return sha256_of_file(known_dialects().get(instrument, instrument))
+
+
+def label_of(campaign: Campaign, file: Path) -> str:
+    """Return a file relative to the campaign file, as reports show it."""
+    return as_text(Path(os.path.relpath(file, campaign.file.parent)).as_posix())
