@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,9 +134,14 @@ def test_heights_without_positions_are_read_once_their_pitch_is_said(tmp_path, m
     file = tmp_path / "line.txt"
     heights = np.sin(np.arange(200) / 9)
     file.write_text("Z\n" + "".join(f"{z:.4f}\n" for z in heights))
-    refused = command("dialect", file.name, "--no-ask")
-    assert refused.exit_code == 3 and "how far they lie apart" in refused.output
-    done = command("dialect", file.name, "--ask", typed="2 s\n0.25 um\nnm\n")
+    unasked = command("dialect", file.name, "--no-ask")  # and without a terminal
+    assert unasked.exit_code == 0 and "the distance of neighbouring heights" in unasked.output
+    with pytest.raises(ReadError, match=r"pitch = \"0\.25 um\" in its first lines"):
+        tl.read_scans(file, instrument="line.toml")
+    toml = Path("line.toml")
+    toml.write_text(toml.read_text().replace('# pitch = "? um"', 'pitch = "0.5 um"'))
+    assert tl.read_scans(file, instrument="line.toml").attrs["pitch_m"] == pytest.approx(5e-7)
+    done = command("dialect", file.name, "--ask", "--force", typed="2 s\n0.25 um\nnm\n")
     assert done.exit_code == 0, done.output
     scan = tl.read_scans(file, instrument="line.toml")
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)

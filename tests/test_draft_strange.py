@@ -187,12 +187,15 @@ def test_the_track_above_the_table_makes_the_speed_of_turns(said, tmp_path):
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 20e-3, rtol=1e-6)
 
 
-@pytest.mark.parametrize("said", ["Ball radius: 3 mm", "Disc diameter: 60 mm"])
-def test_the_size_of_a_ball_or_a_disc_is_no_track(said, tmp_path):
-    head = f"{said}\nTime [s],Friction [mN],Load [mN],Speed [rpm]"
-    assert "sliding_velocity" not in tl.read(
-        written(tmp_path / "a.csv", head, T, FRICTION, LOAD, 60)
-    )
+def test_the_size_of_a_ball_is_no_track_and_that_of_a_disc_is_asked_about(tmp_path):
+    head = "{}\nTime [s],Friction [mN],Load [mN],Speed [rpm]"
+    columns = (T, FRICTION, LOAD, 60)
+    ball = written(tmp_path / "a.csv", head.format("Ball radius: 3 mm"), *columns)
+    assert "sliding_velocity" not in tl.read(ball)
+    for said in ("Disc diameter: 60 mm", "disc dia. 60 mm", "Geometry: pin, R = 30 mm"):
+        assert "radius of the track" in asked(
+            written(tmp_path / "b.csv", head.format(said), *columns)
+        )
 
 
 @pytest.mark.parametrize(

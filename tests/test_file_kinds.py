@@ -157,7 +157,8 @@ def test_a_diameter_of_the_track_and_the_turns_of_a_crank_are_understood(tmp_pat
     path.write_text(text.replace("Track radius: 25 mm", "Wear track diameter (mm): 50"))
     assert float(tl.read(path)["sliding_velocity"].max()) == pytest.approx(0.2, rel=1e-3)
     path.write_text(text.replace("Track radius: 25 mm", "Disc diameter (mm): 50"))
-    assert "sliding_velocity" not in tl.read(path)
+    with pytest.raises(ReadError, match="is twice the radius of the track"):
+        tl.read(path)
     path = write_kind("stroke_settings", tmp_path).path
     turns = path.read_text().replace("Frequency: 1 Hz", "Crank speed: 60 rpm")
     path.write_text(turns)

@@ -47,7 +47,7 @@ def test_what_would_be_guessed_is_told_instead(tmp_path):
         read_scans(path)
     with pytest.raises(ReadError, match="x is in mm"):
         read_scans(written(tmp_path, f"X,Z\n{ROWS}\n"))
-    with pytest.raises(ReadError, match=r"how far they lie apart; .*pitch = \"\(a length\)\""):
+    with pytest.raises(ReadError, match=r"how far they lie apart: .*pitch = \"\(a length\)\""):
         read_scans(written(tmp_path, f"Z [um]\n{COLUMN}\n"))
 
 

@@ -8,11 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
-from tribolab.draft.columns.follows import SAYS_SPEED
+from tribolab.draft.columns.follows import lacking, number_of, what_follows
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
-from tribolab.draft.dialect.draft import Draft, holds_heights
+from tribolab.draft.dialect.draft import Draft, as_profile, holds_heights
 from tribolab.draft.file.header import converts, is_unit
-from tribolab.draft.model import DraftColumn, other_units
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn, Understood, other_units
 from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
 from tribolab.units import positive
@@ -65,8 +66,6 @@ def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
 
 def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     """Ask for what the speed follows from, if that is all that is missing."""
-    from tribolab.draft.columns.follows import what_follows
-
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -74,12 +73,27 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft
     if speed is not None and speed.guess:
         crank = f"does a crank drive it ({NONE}: its speed is constant both ways)?"
         drive = "constant speed" if ask(crank, "yes").strip() == NONE else "crank"
-        return written(draft, layout, understood._replace(drive=drive))
-    names = {column.quantity for column in understood.columns if column.used}
-    if speed is not None or "rotation_speed" not in names or names & SAYS_SPEED:
-        return draft
-    radius = _ask_length("what is the radius of the track, with its unit?", "radius", ask, say)
-    return written(draft, layout, understood._replace(radius=radius)) if radius else draft
+        understood = understood._replace(drive=drive)
+    return _ask_for_lengths(draft, layout, understood, ask, say)
+
+
+def _ask_for_lengths(
+    draft: Draft, layout: Layout, understood: Understood, ask: Ask, say: Callable[[str], None]
+) -> Draft:
+    """Ask for the radius of the track, and for the load, where the file does not say them."""
+    follows = what_follows(layout, understood)
+    lacks = " ".join(lacking(understood, follows))
+    guessed = [value for value in follows.values if value.guess]
+    if guessed or "the radius of the track" in lacks:
+        guess = f"{number_of(guessed[0]):.6g} {guessed[0].unit}" if guessed else NONE
+        question = "what is the radius of the track, with its unit?"
+        radius = _ask_amount(question, "radius", "m", guess, ask, say)
+        understood = understood._replace(radius=radius)
+    if "the load" in " ".join(lacking(understood, what_follows(layout, understood))):
+        question = "what is the load, with its unit, if it is one for all of the run?"
+        load = _ask_amount(question, "load", "N", NONE, ask, say)
+        understood = understood._replace(load=load)
+    return written(draft, layout, understood)
 
 
 def _ask_for_pitch(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
@@ -88,23 +102,22 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     if layout is None or understood is None:
         return draft
     question = "how far do neighbouring heights lie apart, with its unit?"
-    pitch = _ask_length(question, "pitch", ask, say)
+    pitch = _ask_amount(question, "pitch", "m", NONE, ask, say)
     if not pitch:
         return draft
-    heights = understood.columns[0]._replace(quantity="height", used=True, guessed=(), note="")
-    heights = heights._replace(unit=_ask_unit(heights, "height", ask), fill_in="", options=())
-    understood = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
-    return written(draft, layout, understood)._replace(answer="")
+    return as_profile(draft, pitch, _ask_unit(understood.columns[0], "height", ask))
 
 
-def _ask_length(question: str, name: str, ask: Ask, say: Callable[[str], None]) -> str:
-    """Ask for a length until it is one; "" if it is not known."""
+def _ask_amount(
+    question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Callable[[str], None]
+) -> str:
+    """Ask for a number with a unit until it is one; "" if it is not known."""
     while True:
-        typed = ask(f"{question} ({NONE}: not known)", NONE).strip()
+        typed = ask(f"{question} ({NONE}: not known)", guess).strip()
         if typed == NONE:
             return ""
         try:
-            positive(typed, "m", f"the {name}")
+            positive(typed, si_unit, f"the {name}")
         except TribolabError as error:
             say(str(error.what))
             continue

@@ -16,6 +16,7 @@ from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
 from tribolab.io.kinds import kind_of
+from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_run as known_run
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
@@ -41,10 +42,9 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     drafted = kind == "unknown" and holds_run(path)
     if drafted or kind == "run":
         run = read_run(path, instrument, pair=False)
-        lines = run_lines(file_facts(run, path, instrument))
-        if not drafted:
-            lines += companion_lines(describe_companion(path, instrument, run))
-        return lines
+        facts = file_facts(run, path, instrument)
+        told = [] if drafted else companion_lines(describe_companion(path, instrument, run))
+        return run_lines(facts) + (told or missing_lines(facts))
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
 
 
@@ -194,6 +194,22 @@ def run_lines(facts: FileFacts) -> list[str]:
         lines.append(f"  not used: {', '.join(map(shown, facts['not_used']))}")
     lines += _attribute_lines(facts["metadata"])
     return lines
+
+
+def missing_lines(facts: FileFacts) -> list[str]:
+    """Say what a run that has friction lacks for a friction coefficient over the sliding speed.
+
+    Parameters
+    ----------
+    facts
+        From `tribolab.io.file_facts.file_facts`.
+    """
+    names = set(facts["columns"])
+    if not names & {"friction_force", "friction_coefficient", "shear_stress"}:
+        return []
+    if "set_speed_m_s" in facts["metadata"]:
+        names.add("set_speed")
+    return [f"  missing: {lack}" for lack in missing_of(names)]
 
 
 def companion_lines(told: CompanionFacts) -> list[str]:

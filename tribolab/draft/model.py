@@ -9,6 +9,8 @@ import numpy as np
 UNKNOWN_NAME = "the name is not known"
 NO_NUMBERS = "not a number: "  # what stands in a column of text is told behind it
 
+WHICH_FORCE = "whether '{}' is the friction force or the normal force"
+
 Kind = Literal["run", "scan", "table"]
 
 
@@ -50,10 +52,11 @@ class Understood(NamedTuple):
     """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
 
     With `period` the column of time held intervals; its numbers are their sums by now.
-    `radius` (with its unit) and `drive` are what a person said of a track and of what drives it.
+    `radius` and `load` (with their units) and `drive` are what a person said of a track, of what
+    presses, and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points, or `pitch` is
-    what a person said of it.
+    what is known of it.
     """
 
     kind: Kind
@@ -67,6 +70,7 @@ class Understood(NamedTuple):
     rate_pattern: str = ""
     rate_unit: str = ""
     radius: str = ""
+    load: str = ""
     drive: str = ""
     pitch_pattern: str = ""
     pitch: str = ""

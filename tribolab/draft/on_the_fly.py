@@ -69,15 +69,16 @@ def holds_run(path: Path, *, by_name: bool = True) -> bool:
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     from tribolab.draft.dialect.draft import HEIGHTS
-    from tribolab.draft.dialect.questions import GuessedError, questions
+    from tribolab.draft.dialect.questions import GuessedError, lacks_friction, missing, questions
 
     draft = draft_of(path)
     if draft is not None and draft.answer == HEIGHTS:
         raise ReadError(draft.answer, where=path, cure=error.cure) from error
     if draft is None or draft.kind == "table":
         raise error
-    if asked := questions(draft):
-        raise GuessedError(path, asked) from error
+    asked = questions(draft)
+    if asked or lacks_friction(draft):
+        raise GuessedError(path, asked, lacks=missing(draft)) from error
     if draft.kind == "scan" and draft.layout and draft.layout.held:
         raise error
     if draft.kind == "scan":

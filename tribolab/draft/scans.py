@@ -11,7 +11,7 @@ from typing import Literal, overload
 
 import xarray as xr
 
-from tribolab.draft.dialect.draft import holds_heights
+from tribolab.draft.dialect.draft import HEIGHTS, holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
 from tribolab.draft.on_the_fly import DRAFTED, draft_of
 from tribolab.errors import ReadError
@@ -21,8 +21,6 @@ from tribolab.io.logs import PathLike
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp
-
-_NO_PITCH = "heights without positions stand in the file, which does not say how far they lie apart"
 
 
 @overload
@@ -158,10 +156,14 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     if draft is None or draft.known or is_own_text(file):
         return None
     if draft.kind == "table" and holds_heights(draft):
-        raise ReadError(_NO_PITCH, where=file, cure=cures.PITCH) from error
+        raise ReadError(
+            HEIGHTS, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
+        ) from error
     if draft.kind != "scan":
         return None
-    if not draft.named and not (draft.understood and draft.understood.pitch_pattern):
+    understood = draft.understood
+    pitched = understood is not None and (understood.pitch_pattern or understood.pitch)
+    if not draft.named and not pitched:
         return None
     if asked := questions(draft):
         raise GuessedError(file, asked, cures.SURFACE) from error

@@ -77,12 +77,6 @@ TESTER_RESULTS = Cure(
     terminal="'tribolab check' takes them",
     campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
 )
-PITCH = Cure(
-    notebook='describe it in a dialect with pitch = "(a length)" and name that with instrument=',
-    terminal='describe it in a dialect with pitch = "(a length)" and name that with --instrument',
-    campaign='describe it in a dialect with pitch = "(a length)" and name that with instrument = '
-    f'"..." in its {SURFACE}',
-)
 UNITS = Cure(
     notebook="say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name "
     "the dialect that says them with instrument=",

@@ -155,7 +155,12 @@ def dialect(
     with reported(debug):
         from tribolab.app.dialect import ask_about, try_on
         from tribolab.app.terminal import console
-        from tribolab.draft.dialect.draft import check_target, save_draft
+        from tribolab.draft.dialect.draft import (
+            as_profile,
+            check_target,
+            holds_heights,
+            save_draft,
+        )
         from tribolab.draft.dialect.examples import draft_of_examples
         from tribolab.draft.dialect.show import print_draft, print_next, print_signals
 
@@ -169,6 +174,9 @@ def dialect(
             draft = ask_about(draft, _prompt, say)
             if draft is not before:
                 print_signals(draft, console())
+        if holds_heights(draft) and not draft.toml:
+            check_target(target, force=force)
+            draft = as_profile(draft)
         if not draft.toml:
             fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
         written = save_draft(draft, target, force=force)

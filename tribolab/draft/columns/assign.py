@@ -9,9 +9,11 @@ import numpy as np
 from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
 from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
+from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.words import SURE, Match, is_axis, is_count, squeezed
 from tribolab.draft.file.header import converts
-from tribolab.draft.model import UNKNOWN_NAME, DraftColumn, Kind
+from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
+from tribolab.errors import shown
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 
 SIGNALS = {
@@ -29,6 +31,7 @@ _WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
 _ACROSS = {"fy"}
+_EITHER = ("friction_force", "normal_force")  # what a load cell may measure
 _APART = 0.01  # relative difference of two columns that do not hold the same
 
 
@@ -74,6 +77,7 @@ def assigned(
             rank = (option.score * weight, bool(filled[index]), index)
             proposals.setdefault(option.quantity, []).append(_Proposal(rank, index, option))
     _give_way(proposals, matched)
+    _take_the_other(proposals, matched, torque_of(columns) is not None)
     for name in _DECIDING & set(proposals):
         proposals[name] = _contested(proposals[name], numbers, bare)
     result = list(columns)
@@ -106,8 +110,17 @@ def assigned(
                     kind,
                     several=len(alike) > 1,
                 )
-                result[place] = _with_options(column, rival, rivals, matched[place])
+                column = _with_options(column, rival, rivals, matched[place])
+                result[place] = _asked_which(column, rival, matched[place])
     return result
+
+
+def _asked_which(column: DraftColumn, rival: _Proposal, matched: list[Match]) -> DraftColumn:
+    """Do not use a column of which nothing says which of both forces it holds."""
+    equal = {option.quantity for option in matched if option.score >= rival.option.score - _NEAR}
+    if rival.option.score >= SURE or not set(_EITHER) <= equal or column.fill_in:
+        return column
+    return column._replace(used=False, fill_in=WHICH_FORCE.format(shown(column.label)))
 
 
 def _alike(rivals: list[_Proposal]) -> list[_Proposal]:
@@ -197,6 +210,26 @@ def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]])
             if free and best.option.score >= SURE:
                 rivals.remove(rival)
                 proposals[free[0].quantity] = [rival._replace(option=free[0])]
+
+
+def _take_the_other(
+    proposals: dict[str, list[_Proposal]], matched: list[list[Match]], torque: bool
+) -> None:
+    """Let a name of either force be no guess where the other force is surely named."""
+    for name, other in (_EITHER, _EITHER[::-1]):
+        rivals = proposals.get(name, [])
+        if len(rivals) != 1 or rivals[0].option.score >= SURE:
+            continue
+        meant = {option.quantity for option in matched[rivals[0].place]}
+        if not set(_EITHER) <= meant:
+            continue
+        sure = any(rival.option.score >= SURE for rival in proposals.get(other, []))
+        if name == "friction_force" and torque and not proposals.get(other):
+            proposals[other] = proposals.pop(name)
+            name, sure = other, True
+        if sure:
+            option = rivals[0].option._replace(quantity=name, score=SURE)
+            proposals[name] = [rivals[0]._replace(option=option)]
 
 
 def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:

@@ -8,9 +8,11 @@ import numpy as np
 import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
+from tribolab.draft.columns.either import told_by_load
 from tribolab.draft.columns.fill_in import Bare
+from tribolab.draft.columns.lengths import find_pitch, find_point_density
 from tribolab.draft.columns.ratio import disagreement
-from tribolab.draft.columns.values import find_factors, find_pitch, find_sampling
+from tribolab.draft.columns.values import find_factors, find_sampling
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
@@ -38,19 +40,21 @@ def understand(layout: Layout) -> Understood:
     numbers, text, missing = _numbers(layout)
     columns = _labelled(layout)
     pitch = find_pitch(layout)
+    density = "" if pitch is not None else find_point_density(layout)
     guesses = [
         f"signals are read as they stand, not times '{shown(value.text, 40)}'"
         for value in find_factors(layout)
     ]
     if _say_something(columns):
-        kind, columns = _by_name(columns, numbers, placed=pitch is not None)
-    elif pitch is not None and layout.width == 1:
+        kind, columns = _by_name(columns, numbers, placed=pitch is not None or bool(density))
+    elif (pitch is not None or density) and layout.width == 1:
         kind, columns = "scan", [_heights(columns[0])]
     else:
         from tribolab.draft.columns.behaviour import by_behaviour
 
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
+    columns = told_by_load(layout, columns, numbers) if kind == "run" else columns
     guesses += disagreement(columns, numbers) if kind == "run" else []
     columns = _dated(columns, layout, numbers, text)
     columns = [
@@ -71,7 +75,7 @@ def understand(layout: Layout) -> Understood:
     used = [column.place - 1 for column in columns if column.used]
     words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
     placed = any(c.used and c.quantity == "x" for c in columns)
-    if kind == "scan" and pitch is not None and not placed:
+    if kind == "scan" and (pitch is not None or density) and not placed:
         return Understood(
             kind,
             tuple(columns),
@@ -80,7 +84,8 @@ def understand(layout: Layout) -> Understood:
             "",
             False,
             tuple(guesses),
-            pitch_pattern=pitch.pattern,
+            pitch_pattern=pitch.pattern if pitch is not None else "",
+            pitch=density,
         )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in

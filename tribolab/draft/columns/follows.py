@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.lengths import find_arm, find_radius
+from tribolab.draft.columns.stated_words import LOAD
 from tribolab.draft.columns.strokes import (
     END_TO_END,
     FREQUENCY,
@@ -14,27 +16,26 @@ from tribolab.draft.columns.strokes import (
     is_frequency,
     is_length,
 )
-from tribolab.draft.columns.values import DraftValue, find_radius, find_values, key_of, words_said
-from tribolab.draft.columns.words import split_unit, squeezed
+from tribolab.draft.columns.turning import angle_of, radius_of, torque_of
+from tribolab.draft.columns.values import DraftValue, find_values, words_said
+from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
+from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.missing import missing_of
 
-_TORQUE = re.compile(r"torque|drehmoment|reibmoment|couple|coppia|扭矩|转矩|トルク|^(?:m|mr|tq)$")
 _DRIVE = re.compile(
     r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|movimento|movimiento"
 )
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
-_LOAD = re.compile(
-    r"^(?:normal|applied|dead|sled|schlitten|test|axial|static)?"
-    r"(?:load|force|weight|mass|gewicht|masse|kraft|last)+$|^(?:normalkraft|auflast|normallast)$"
-)
 _WEIGHT = {"g": "gf", "kg": "kgf"}
 SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
-_SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
-_SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
+SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
 
 class Formula(NamedTuple):
@@ -73,30 +74,96 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
 
     Notes
     -----
-    Only what is stated with its unit is used: a torque and the radius of the track; the radius and
-    a rotation; rolling speed and slide-to-roll ratio; stroke and frequency; a load or the mass of
-    a sled, where no column measures the normal force.
+    Only what is stated with its unit is used: a torque and the radius of the track, or its arm; the
+    radius and a rotation or an angle; rolling speed and slide-to-roll ratio; stroke and frequency;
+    a load or the mass of a sled, where no column measures the normal force.
     """
     if understood.kind != "run":
         return Follows()
     # with a unit still to be filled in, a column is there all the same
     names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
     values = find_values(layout)
-    radius = find_radius(values)
+    track = _track(values, understood)
     result = Follows()
     if not names & SAYS_SPEED:
-        result = _with_speed(result, names, values, understood, words_said(layout))
-    if not names & _SAYS_FRICTION and radius is not None:
-        torque = _torque(understood.columns)
-        if torque is not None:
-            formula = Formula("friction_force", f"torque / {radius.name}", "a torque and a radius")
-            result = _and(result, formula, [radius], (("torque", torque),))
+        result = _with_speed(result, names, values, understood, words_said(layout), track)
+    torque = torque_of(understood.columns)
+    if not names & SAYS_FRICTION and torque is not None:
+        arm = track if track.formula else _of_value(find_arm(values))
+        if arm.formula:
+            about = "a torque and a radius"
+            formula = Formula("friction_force", f"torque / {arm.formula}", about)
+            result = _and(result, formula, arm.values, (("torque", torque), *arm.symbols))
             names.add("friction_force")
-    load = _load(values)
-    if load is not None and names & _SAYS_FRICTION and not names & _SAYS_LOAD:
+    if understood.load and names & SAYS_FRICTION and not names & SAYS_LOAD:
+        about = "it was said that the load is so all along"
+        return _and(result, Formula("normal_force", f"'{understood.load}'", about))
+    if "set_normal_force" in names and names & SAYS_FRICTION and not names & SAYS_LOAD:
+        about = "nothing measures it: the load that was set"
+        return _and(result, Formula("normal_force", "set_normal_force", about))
+    load = find_load(values)
+    if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
         result = _and(result, Formula("normal_force", load.name, about), [load])
     return result
+
+
+def lacking(understood: Understood, follows: Follows) -> list[str]:
+    """Say what a friction coefficient over speed needs, and neither columns nor text hold.
+
+    Parameters
+    ----------
+    understood, follows
+        What was found out about the file.
+    """
+    # with a unit still to be filled in, or of two meanings, a column is there all the same
+    names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
+    names |= {formula.quantity for formula in follows.formulas}
+    if any(c.fill_in == WHICH_FORCE.format(shown(c.label)) for c in understood.columns):
+        names |= {"friction_force", "normal_force"}  # it is asked which of both
+    if follows.speed is not None and follows.speed.source != "none":
+        names.add("sliding_velocity")
+    if torque_of(understood.columns) is not None:
+        names.add("torque")
+    elif unknown_of(understood.columns):
+        names.add("friction_force")  # it is asked whether one of them holds it
+    return missing_of(names)
+
+
+def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Return the columns of which nothing is known, but those of what turns.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    turning = (torque_of(columns), angle_of(columns), radius_of(columns))
+    places = {column.place for column in turning if column is not None}
+    unknown = (c for c in columns if c.note and not c.quantity and c.label)
+    return [column for column in unknown if column.place not in places]
+
+
+class _Track(NamedTuple):
+    """A radius as it stands in a formula, and the value or the column that it rests on."""
+
+    formula: str = ""
+    values: tuple[DraftValue, ...] = ()
+    symbols: tuple[tuple[str, DraftColumn], ...] = ()
+
+
+def _of_value(value: DraftValue | None) -> _Track:
+    return _Track() if value is None else _Track(value.name, (value,))
+
+
+def _track(values: Sequence[DraftValue], understood: Understood) -> _Track:
+    """Return the radius of the track: what a person said, a column, or what the text states."""
+    if understood.radius:
+        return _Track(f"'{understood.radius}'")
+    column = radius_of(understood.columns)
+    if column is not None:
+        return _Track("radius", symbols=(("radius", column),))
+    return _of_value(find_radius(values))
 
 
 def _and(
@@ -107,7 +174,7 @@ def _and(
 ) -> Follows:
     return before._replace(
         formulas=(*before.formulas, formula),
-        symbols=(*before.symbols, *symbols),
+        symbols=tuple(dict.fromkeys((*before.symbols, *symbols))),
         values=tuple(dict.fromkeys((*before.values, *values))),
     )
 
@@ -118,13 +185,22 @@ def _with_speed(
     values: Sequence[DraftValue],
     understood: Understood,
     words: Sequence[tuple[str, str]],
+    track: _Track,
 ) -> Follows:
-    radius = find_radius(values)
-    if "rotation_speed" in names and understood.radius:
+    turning = "rotation_speed" in names
+    if turning and understood.radius:
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
-    if "rotation_speed" in names and radius is not None:
-        speed = SpeedBy("rotation", (("radius_value", radius.name),))
-        return before._replace(speed=speed, values=(*before.values, radius))
+    if turning and track.values:
+        speed = SpeedBy("rotation", (("radius_value", track.formula),))
+        return before._replace(speed=speed, values=(*before.values, *track.values))
+    if turning and track.symbols:
+        formula = Formula("sliding_velocity", "rotation_speed * radius", "turns and a radius")
+        return _and(before, formula, (), track.symbols)._replace(speed=SpeedBy("none"))
+    angle = None if turning or not track.formula else angle_of(understood.columns)
+    if angle is not None:
+        formula = Formula("position", f"angle * {track.formula}", "an angle and a radius")
+        symbols = (("angle", angle), *track.symbols)
+        return _and(before, formula, track.values, symbols)._replace(speed=SpeedBy("position"))
     if {"rolling_speed", "slide_roll_ratio"} <= names:
         about = "the slide-to-roll ratio is the sliding speed over the mean speed of both surfaces"
         formula = Formula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
@@ -197,16 +273,22 @@ def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> Draf
     fitting = [
         value
         for value in values
-        if value.unit and converts(value.unit, unit) and key.search(squeezed(key_of(value)))
+        if value.unit and converts(value.unit, unit) and key.search(value.key)
     ]
     return fitting[0]._replace(to=unit) if len(fitting) == 1 else None
 
 
-def _load(values: Sequence[DraftValue]) -> DraftValue | None:
-    """Return the load that the text before the table states, as a force."""
+def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the load that the text before the table states, as a force; None if none, or several.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.columns.values.find_values`.
+    """
     fitting = []
     for value in values:
-        if value.source != "preamble" or not _LOAD.search(squeezed(key_of(value))):
+        if value.source != "preamble" or not LOAD.search(value.key):
             continue
         unit = _WEIGHT.get(value.own_unit or "", value.own_unit or "")
         if converts(unit, "N"):
@@ -214,15 +296,13 @@ def _load(values: Sequence[DraftValue]) -> DraftValue | None:
     return fitting[0] if len(fitting) == 1 else None
 
 
-def _torque(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds a torque."""
-    fitting = []
-    for column in columns:
-        name, unit = split_name(column.label)
-        if unit is None and column.file_unit is None:
-            name, unit = split_unit(name)
-        unit = column.file_unit or unit or ""
-        if _TORQUE.search(squeezed(name)) and converts(unit, "N m"):
-            own = None if column.file_unit and column.name is not None else unit
-            fitting.append(column._replace(unit=own))
-    return fitting[0] if len(fitting) == 1 else None
+def number_of(value: DraftValue) -> float:
+    """Return the number that a value's text states, in the value's unit.
+
+    Parameters
+    ----------
+    value
+        From `tribolab.draft.columns.values.find_values`.
+    """
+    stated = guarded(value.pattern).first(value.text) or "nan"
+    return value.scale * float(stated.rstrip(".,").replace(",", "."))

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.sentences import Phrase, phrases
+from tribolab.draft.columns.stated_words import (
+    ARM,
+    DIAMETER,
+    FACTOR,
+    INTERVAL,
+    LOAD,
+    PITCH,
+    RADIUS,
+    RATE,
+    TURNING,
+)
+from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
 from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
@@ -22,42 +34,14 @@ _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dea
 _WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
-# a sample rate by its name; "Frequency" alone may be that of the strokes
-_RATE = re.compile(
-    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
-    r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
-)
-# what passes from one sample to the next
-_INTERVAL = re.compile(
-    r"^(?:dt|deltat|timestep|timeinterval|zeitschritt|tsample|ts)$"
-    r"|^(?:sampl|scan|log|mess|abtast|record|acquisition|data|zeit)\w*"
-    r"(?:interval|period|time|intervall|periode|schritt|spacing)$"
-    r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
-)
-# the distance of a profile's points by its name
-_PITCH = re.compile(
-    r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|interval|xscale|schritt\w*|pas|paso|passo)$"
-    r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon)\w*"
-    r"(?:pitch|spacing|increment|step|interval|distance|abstand|schritt\w*|intervall)"
-    r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
-)
-_RADIUS = re.compile("radius|rayon|radio|raggio")
-_FACTOR = re.compile(
-    r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
-    r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
-    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
-)
-_OTHER_RADIUS = re.compile("ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera")
-# of the track, not of a ball or a disc
-_DIAMETER = re.compile(
-    r"(?:track|wear|spur|laufbahn|reib|friction|path|piste|traccia).*"
-    r"(?:dia|durchmesser)|dia(?:m\w*)?.*(?:track|piste|traccia)"
-)
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
 class DraftValue(NamedTuple):
-    """One value as a dialect's [[value]] would say it; `own_unit` is as the file writes it."""
+    """One value as a dialect's [[value]] would say it; `own_unit` is as the file writes it.
+
+    `key` is what the file calls it, squeezed; `guess` what of it is one.
+    """
 
     name: str
     pattern: str
@@ -67,6 +51,8 @@ class DraftValue(NamedTuple):
     source: str = "preamble"
     own_unit: str | None = None
     scale: float = 1.0
+    key: str = ""
+    guess: str = ""
 
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
@@ -102,9 +88,23 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         if len(values) >= _MOST:
             break
         if said and not said["key"][-1].isdigit():
-            value = _value(said)
-            values.setdefault(value.name, value)
+            _keep(values, _value(said))
+        else:
+            for phrase in phrases(line):
+                if stated := _of_phrase(phrase):
+                    _keep(values, stated)
     return list(values.values())
+
+
+def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
+    """Keep a value, under a name of its own: letters of the east make none."""
+    if value.name in values and value.key == values[value.name].key:
+        return
+    name, number = value.name, 1
+    while name in values and not value.name.startswith("set_"):
+        number += 1
+        name = f"{value.name}_{number}"
+    values.setdefault(name, value._replace(name=name))
 
 
 class Sampling(NamedTuple):
@@ -127,12 +127,11 @@ def find_sampling(layout: Layout) -> Sampling | None:
         From `tribolab.draft.file.layout.find_layout`.
     """
     for value in find_values(layout):
-        said = _said(value.text)
-        if said is None or value.source != "preamble":
+        if value.source != "preamble":
             continue
-        key, unit = squeezed(_BRACKETS.sub("", said["key"])), value.unit or value.own_unit
-        interval = _INTERVAL.search(key) is not None
-        if not interval and not _RATE.search(key):
+        key, unit = value.key, value.unit or value.own_unit
+        interval = INTERVAL.search(key) is not None
+        if not interval and not RATE.search(key):
             continue
         if unit and any(converts(unit, si_unit) for si_unit in ("Hz", "s")):
             return Sampling(value, unit)
@@ -153,7 +152,7 @@ def find_factors(layout: Layout) -> list[DraftValue]:
     factors = []
     for value in find_values(layout):
         said = _said(value.text)
-        if said and value.unit is None and _FACTOR.search(squeezed(said["key"])):
+        if said and value.unit is None and FACTOR.search(value.key):
             number = float(said["number"].replace(",", "."))
             factors += [value] if number != 1 else []
     return factors
@@ -172,50 +171,6 @@ def words_said(layout: Layout) -> list[tuple[str, str]]:
     return [(match["key"], match["text"]) for match in said if match]
 
 
-def key_of(value: DraftValue) -> str:
-    """Return what a file calls a value, without its unit.
-
-    Parameters
-    ----------
-    value
-        From `find_values`.
-    """
-    said = _said(value.text)
-    return _BRACKETS.sub("", said["key"]).strip() if said else ""
-
-
-def find_pitch(layout: Layout) -> DraftValue | None:
-    """Return the distance of a profile's points that the text before the heights states, or None.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.draft.file.layout.find_layout`.
-    """
-    for value in find_values(layout, bare=True):
-        key = _said(value.text)
-        named = key is not None and _PITCH.search(squeezed(_BRACKETS.sub("", key["key"])))
-        if named and value.source == "preamble" and value.unit and converts(value.unit, "m"):
-            return value._replace(name="pitch", to="m")
-    return None
-
-
-def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
-    """Return the radius of the track, if just one of a file's values is one, or its diameter.
-
-    Parameters
-    ----------
-    values
-        From `find_values`.
-    """
-    radii = [v for v in values if v.to == "m" and _RADIUS.search(v.name)]
-    tracks = [v for v in radii if not _OTHER_RADIUS.search(v.name)]
-    if not tracks:
-        across = [v for v in values if v.to == "m" and _DIAMETER.search(squeezed(v.name))]
-        tracks = [v._replace(name="track_radius", scale=0.5) for v in across]
-    return tracks[0] if len(tracks) == 1 else None
-
-
 def _said(line: str) -> re.Match[str] | None:
     return _SAYS.match(line) or _IN_CELLS.match(line)
 
@@ -228,16 +183,46 @@ def _value(said: re.Match[str]) -> DraftValue:
     digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*({digits})"
     line = said.string.strip()
+    plain = squeezed(_BRACKETS.sub("", key))
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:
-        return DraftValue(_name(key), pattern, None, None, line, own_unit=unit)
+        return DraftValue(_name(key), pattern, None, None, line, own_unit=unit, key=plain)
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
         if quantity.startswith("set_"):
             read_as = options[0].unit or unit
-            return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit)
-    return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit)
+            return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit, key=plain)
+    return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)
+
+
+def _of_phrase(phrase: Phrase) -> DraftValue | None:
+    """Return what a sentence states, if it is one of the things that a run or profile needs."""
+    dimension = next((d for d in DIMENSIONS if converts(phrase.unit, d)), None)
+    weight = phrase.unit in ("g", "kg")
+    wanted = _WANTED.get("N" if weight else dimension or "", ())
+    if not any(words.search(phrase.key) for words in wanted):
+        return None
+    name = _name(phrase.key)
+    return DraftValue(
+        name,
+        phrase.pattern,
+        None if weight else phrase.unit,
+        None if weight else dimension,
+        phrase.line,
+        own_unit=phrase.unit,
+        key=phrase.key,
+    )
+
+
+_R = re.compile(r"^(?:r|d|ø|⌀)$")
+_WANTED = {
+    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING),
+    "s": (INTERVAL,),
+    "1/s": (RATE, FREQUENCY),
+    "Hz": (RATE, FREQUENCY),
+    "N": (LOAD,),
+}
 
 
 def _name(key: str) -> str:

@@ -35,7 +35,8 @@ _UNIT_WORDS = {
 }
 COUNTS = "counts"
 _COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc increments".split())
-_AS_SET = {"sliding_velocity": "set_speed"}  # a speed that was set is not how fast it slid
+# a speed that was set is not how fast it slid
+_AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
 
 
 class Match(NamedTuple):

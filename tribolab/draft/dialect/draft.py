@@ -23,8 +23,8 @@ from tribolab.io.dialects.signature import File, is_results, is_surftest_results
 
 PathLike = str | Path
 HEIGHTS = (
-    "heights without positions, of which the file does not say how far they lie apart: pitch = "
-    '"(a length)" in a dialect does'
+    "heights without positions, of which the file does not say how far they lie apart: that is to "
+    'be filled in, pitch = "(a length)"'
 )
 
 
@@ -188,6 +188,33 @@ def holds_heights(draft: Drafted) -> bool:
     name, unit = split_name(columns[0].label)
     options = matches(name, columns[0].file_unit or unit, scan=True)
     return bool(options) and options[0].quantity == "height"
+
+
+def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
+    """Return the draft of heights alone as a profile, whose pitch is known or to be filled in.
+
+    Parameters
+    ----------
+    draft
+        One of which `holds_heights`.
+    pitch
+        The distance of neighbouring heights, with its unit.
+    unit
+        What the heights are written in; None if the file says it.
+    """
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    heights = understood.columns[0]._replace(quantity="height", used=True, note="", options=())
+    said = unit or heights.read_unit
+    heights = heights._replace(
+        unit=heights.unit if said and said == heights.file_unit else said or "um",
+        guessed=() if said else ("height is in um",),
+        fill_in="",
+    )
+    whole = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
+    toml = dialect_toml(draft.name, layout, whole)
+    return draft._replace(kind="scan", understood=whole, toml=toml, answer="")
 
 
 def _answer(file: File, understood: Understood) -> str:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.columns.follows import what_follows
 from tribolab.draft.dialect.tables import FILL_IN
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import Kind, Understood
@@ -73,11 +74,15 @@ class Drafted(NamedTuple):
             for column in self.understood.columns
             for guess in column.guessed
         ]
+        follows = what_follows(self.layout, self.understood)
+        speed = [follows.speed.guess] if follows.speed is not None and follows.speed.guess else []
         return (
             *self.layout.notes,
             *self.layout.guesses,
             *self.understood.guesses,
             *columns,
+            *speed,
+            *(value.guess for value in follows.values if value.guess),
         )
 
     @property

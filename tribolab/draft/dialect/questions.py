@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.columns.follows import Follows, what_follows
+from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_follows
+from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.errors import ReadError, shown
@@ -18,6 +19,7 @@ _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
 _TOLD = 12  # questions of one file that are told
+_RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
 
@@ -83,10 +85,12 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
     asked = []
     if follows.speed is not None and follows.speed.guess:
         asked.append(Question("speed", follows.speed.guess, follows.speed.options))
+    asked += [Question("radius", v.guess, _RADII) for v in follows.values if v.guess]
     names = {column.quantity for column in understood.columns}
     names |= {formula.quantity for formula in follows.formulas}
-    unknown = [c for c in understood.columns if c.note and not c.quantity and c.label]
-    if understood.kind == "run" and unknown and not names & _OF_FRICTION:
+    unknown = unknown_of(understood.columns)
+    torque = torque_of(understood.columns) is not None
+    if understood.kind == "run" and unknown and not torque and not names & _OF_FRICTION:
         options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
         asked.append(Question("friction", "no column is known to hold it", options))
     return asked
@@ -95,11 +99,35 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
 def _of_column(column: DraftColumn) -> Question:
     about = f"column {column.place}" + (f" '{shown(column.label, 30)}'" if column.label else "")
     guess = "; ".join(column.guessed)
-    if column.fill_in:
+    if column.fill_in and (column.counted or column.read_unit is None):
         asks = "what is one count?" if column.counted else "in which unit?"
         unsaid = f"{column.quantity}, {asks}"
         guess = f"{guess}; {unsaid}" if guess else unsaid
     return Question(about, guess, tuple(dict.fromkeys(column.options)))
+
+
+def lacks_friction(draft: Drafted) -> bool:
+    """Whether a run holds a torque of which no radius is known, and no friction else.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    """
+    return any(", for the friction" in lack for lack in missing(draft))
+
+
+def missing(draft: Drafted) -> list[str]:
+    """Return what a run's file does not say and a friction coefficient over speed needs.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    """
+    if draft.layout is None or draft.understood is None or draft.kind != "run":
+        return []
+    return lacking(draft.understood, what_follows(draft.layout, draft.understood))
 
 
 class GuessedError(ReadError):
@@ -108,11 +136,18 @@ class GuessedError(ReadError):
     In a campaign they stand in one line, else in a table.
     """
 
-    def __init__(self, path: Path, asked: Sequence[Question], table: str = cures.RUN) -> None:
+    def __init__(
+        self,
+        path: Path,
+        asked: Sequence[Question],
+        table: str = cures.RUN,
+        lacks: Sequence[str] = (),
+    ) -> None:
         what = "no known instrument writes such a file, and it does not say all itself"
         super().__init__(what, where=path, cure=cures.unknown_instrument(path, table))
-        self.args = (path, tuple(asked), table)
+        self.args = (path, tuple(asked), table, tuple(lacks))
         self.asked = tuple(asked)
+        self.lacks = tuple(lacks)
 
     def told(self, audience: str) -> str:
         """Return the message for an audience."""
@@ -121,9 +156,12 @@ class GuessedError(ReadError):
             listed.append(f"and {len(self.asked) - _TOLD} more")
         cure = self.cure if isinstance(self.cure, str) else self.cure.told(audience)
         if audience == "campaign":
-            return f"{self.where}: {self.what}; guessed: {'; '.join(listed)}; {cure}"
-        rows = _aligned(self.asked[:_TOLD]) + listed[_TOLD:]
-        return "\n".join([f"{self.where}: {self.what}. Guesses:", *rows, cure])
+            lacks = f"; missing: {'; '.join(self.lacks)}" if self.lacks else ""
+            guessed = f"; guessed: {'; '.join(listed)}" if listed else ""
+            return f"{self.where}: {self.what}{guessed}{lacks}; {cure}"
+        rows = ["Guesses:", *_aligned(self.asked[:_TOLD]), *listed[_TOLD:]] if listed else []
+        rows += [f"Missing: {lack}" for lack in self.lacks]
+        return "\n".join([f"{self.where}: {self.what}. {rows[0]}", *rows[1:], cure])
 
 
 def _aligned(asked: Sequence[Question]) -> list[str]:

@@ -88,7 +88,10 @@ def formula_table(formula: Formula) -> str:
 
 def value_tables(values: list[DraftValue], used: Sequence[DraftValue]) -> str:
     """Return the single values that are used, and proposals for others as comments."""
-    kept = ["\n".join([f"# {comment(v.text)}", *_value(v)]) + "\n" for v in used]
+    kept = []
+    for value in used:
+        about = f"guessed: {value.guess}" if value.guess else value.text
+        kept.append("\n".join([f"# {comment(about)}", *_value(value)]) + "\n")
     patterns = {value.pattern for value in used}
     values = [value for value in values if value.pattern not in patterns]
     if not values:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tribolab.draft.columns.follows import Follows, what_follows
-from tribolab.draft.columns.values import find_pitch, find_values
+from tribolab.draft.columns.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
+from tribolab.draft.columns.lengths import find_pitch
+from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.columns.values import find_values
 from tribolab.draft.dialect.tables import (
     FILL_IN,
     column_table,
@@ -20,6 +22,8 @@ from tribolab.draft.dialect.tables import (
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.dates import has_day
+
+_REMOVE = "then remove the '#' below"
 
 
 def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
@@ -49,6 +53,8 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     wanted = [column for column in columns if column.fill_in]
     parts += [column_table(column, numbers[:, column.place - 1]) for column in wanted]
     taken = {column.place for _, column in follows.symbols}
+    if understood.kind == "run" and (torque := torque_of(columns)) is not None:
+        taken.add(torque.place)  # it stands below, to be filled in
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(unused_columns(rest, numbers))
     values, taken_over = find_values(layout), follows.values
@@ -57,8 +63,35 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
         taken_over = (*taken_over, pitch)
     parts.append(value_tables(values, taken_over))
     parts += [formula_table(formula) for formula in follows.formulas]
+    if understood.kind == "run":
+        parts += _wanted_tables(understood, follows)
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
+
+
+def _wanted_tables(understood: Understood, follows: Follows) -> list[str]:
+    """Return, as comments to be filled in, what a friction coefficient still needs."""
+    known = {column.quantity for column in understood.columns if column.used or column.fill_in}
+    known |= {formula.quantity for formula in follows.formulas}
+    waiting = any(column.fill_in for column in understood.columns)
+    torque = torque_of(understood.columns)
+    parts = []
+    if torque is not None and not known & SAYS_FRICTION:
+        column = symbol_table("torque", torque).splitlines()
+        about = "the radius at which the torque's friction acts, " + _REMOVE
+        rule = ["", "[[derived]]", 'quantity = "friction_force"', "formula = \"torque / '? mm'\""]
+        parts.append(_commented(about, [*column, *rule]))
+        known.add("friction_force")
+    if known & SAYS_FRICTION and not known & SAYS_LOAD and not waiting:
+        about = "the load, if it is one for all of the run, " + _REMOVE
+        rule = ["[[derived]]", 'quantity = "normal_force"', "formula = \"'? N'\""]
+        parts.append(_commented(about, rule))
+    return parts
+
+
+def _commented(about: str, lines: Sequence[str]) -> str:
+    told = (f"# {line}".rstrip() for line in lines)
+    return "\n".join([f"# {FILL_IN}: {about}", *told]) + "\n"
 
 
 def _head(name: str, layout: Layout, understood: Understood) -> str:
@@ -76,6 +109,10 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
     ]
     if understood.pitch:
         lines.append(f"pitch = {quoted(understood.pitch)}")
+    elif understood.kind == "scan" and not understood.pitch_pattern:
+        if not any(column.quantity == "x" for column in understood.columns):
+            lines.append(f"# {FILL_IN}: the distance of neighbouring heights, {_REMOVE}")
+            lines.append('# pitch = "? um"')
     if understood.pitch_pattern:
         lines.append('pitch_value = "pitch"    # its heights have no positions')
     if layout.others:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from tribolab.errors import ReadError, shown
@@ -11,6 +13,9 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.value_rule import Value
 from tribolab.units import conversion
+
+# 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
+_OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
 
 
 def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
@@ -60,6 +65,13 @@ def step_values(
     return variables, attrs
 
 
+def _number(text: str, decimal: str) -> float:
+    """Return a number in the table's spelling, or with a decimal comma of its own."""
+    if decimal == "." and _OWN_COMMA.fullmatch(text):
+        decimal = ","
+    return float(text.replace(decimal, "."))
+
+
 def _first_match(pattern: str, text: str) -> str | None:
     return guarded(pattern).first(text)
 
@@ -68,7 +80,7 @@ def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> s
     if value.unit is None:
         return text
     try:
-        number = float(text.replace(dialect.text.decimal, "."))
+        number = _number(text.rstrip(".,"), dialect.text.decimal)
     except ValueError as error:
         raise ReadError(
             f"{content.path}: '{shown(text)}' ({value.name}) is not a number; see the value's "

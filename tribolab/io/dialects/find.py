@@ -138,8 +138,7 @@ def is_scan(dialect: Dialect) -> bool:
     (True, False)
     """
     keys = {column.key for column in dialect.column}
-    placed = "x" in keys or dialect.pitch is not None or dialect.pitch_value is not None
-    return placed and "height" in keys
+    return "height" in keys and "time" not in keys
 
 
 def scan_dialects() -> list[Dialect]:

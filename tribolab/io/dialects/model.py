@@ -75,9 +75,12 @@ class Dialect(Strict):
                     "optional = true for all: the first that is filled is taken"
                 )
         _check_formulas(self.derived, names, [v.name for v in self.value if v.unit is not None])
-        if ("time" in names) != (self.time.source in ("column", "period")):
+        profile = "height" in names and self.time == Time()  # heights have no time
+        timed = self.time.source in ("column", "period")
+        if ("time" in names) != timed and not (profile and "time" not in names):
             raise ValueError(
-                "a column for 'time' and time.source = 'column' or 'period' belong together"
+                "a column for 'time' and time.source = 'column' or 'period' belong together; "
+                "without such a column say under [time] source = 'rate' and rate = '100 Hz'"
             )
         if self.moving_mass is not None:
             positive(self.moving_mass, "kg", "moving_mass")

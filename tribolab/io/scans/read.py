@@ -196,6 +196,11 @@ def _stated_pitch(path: Path, dialect: Dialect, attrs: Mapping[str, str | float]
     """Distance of neighbouring points [m] that the dialect, or the file's header, says."""
     if dialect.pitch is not None:
         return positive(dialect.pitch, "m", "pitch")
+    if dialect.pitch_value is None:
+        raise ReadError(
+            f"{path}: heights without positions: put the distance of neighbouring heights into the "
+            f"dialect '{dialect.name}', pitch = \"0.25 um\" in its first lines"
+        )
     [value] = [value for value in dialect.value if value.name == dialect.pitch_value]
     said = attrs.get(value.attribute)
     if said is None or not float(said) > 0:

@@ -1,0 +1,96 @@
+"""Lengths that the text of a file states: of the track, of an arm, between a profile's points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tribolab.draft.columns.sentences import points_per_length
+from tribolab.draft.columns.stated_words import (
+    ACROSS,
+    ARM,
+    DIAMETER,
+    ON_TRACK,
+    OTHER_RADIUS,
+    PITCH,
+    RADIUS,
+    TURNING,
+)
+from tribolab.draft.columns.values import DraftValue, find_values
+from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
+
+
+def find_pitch(layout: Layout) -> DraftValue | None:
+    """Return the distance of a profile's points that the text before the heights states, or None.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    for value in find_values(layout, bare=True):
+        if value.source == "preamble" and PITCH.search(value.key) and _is_length(value):
+            return value._replace(name="pitch", to="m")
+    return None
+
+
+def find_point_density(layout: Layout) -> str:
+    """Return the distance of a profile's points where the text says how many a length has, or "".
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    stop = layout.heading.names if layout.heading else layout.blocks[0].start
+    stated = (points_per_length(line) for line in layout.lines[:stop])
+    number, unit = next((density for density in stated if density), (0.0, ""))
+    return f"{1 / number:.12g} {unit}" if number else ""
+
+
+def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the radius of the track, if just one of a file's values is one, or its diameter.
+
+    Parameters
+    ----------
+    values
+        From `find_values`.
+
+    Returns
+    -------
+    DraftValue or None
+        With a `guess` where it is only a radius "R", or the size of what turns.
+    """
+    lengths = [v._replace(to="m") for v in values if _is_length(v)]
+    lengths = [v for v in lengths if not OTHER_RADIUS.search(v.key)]
+    across = [v._replace(name="track_radius", scale=0.5) for v in lengths if ACROSS.search(v.key)]
+    radii = [v for v in lengths if RADIUS.search(v.key)]
+    sure = [v for v in radii if ON_TRACK.search(v.key)]
+    sure = sure or [v for v in radii if not TURNING.search(v.key)]
+    sure = sure or [v for v in across if DIAMETER.search(v.key)]
+    if sure:
+        return sure[0] if len(sure) == 1 else None
+    whole = [v for v in lengths if v in radii or v.key == "r"]
+    perhaps = [v._replace(guess=f"'{v.text}' is the radius of the track") for v in whole]
+    perhaps = perhaps or [
+        v._replace(guess=f"'{v.text}' is twice the radius of the track")
+        for v in across
+        if TURNING.search(v.key) or v.key == "d"
+    ]
+    return perhaps[0] if len(perhaps) == 1 else None
+
+
+def find_arm(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the arm of a torque, if just one of a file's values is one.
+
+    Parameters
+    ----------
+    values
+        From `find_values`.
+    """
+    arms = [v for v in values if _is_length(v) and ARM.search(v.key)]
+    return arms[0]._replace(to="m") if len(arms) == 1 else None
+
+
+def _is_length(value: DraftValue) -> bool:
+    return bool(value.unit and converts(value.unit, "m"))

@@ -1,0 +1,106 @@
+"""Numbers with a unit inside sentences of a header: "ring on disc, mean track radius 21.5 mm"."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tribolab.draft.columns.words import squeezed
+from tribolab.draft.file.header import escaped, is_unit
+
+_LONGEST = 300  # characters of a line that are looked at
+_MOST = 8  # numbers of a line
+_NUMBER = re.compile(
+    r"(?<![\d.,A-Za-z_])(?P<number>[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)\s{0,3}"
+    r"(?P<unit>[^\W\d_][^\s;,:()\[\]]*|%|°[A-Za-z]?)"
+)
+_CUTS = re.compile(r"[;:,=|()\[\]：；，（）、。]|\b(?:at|on|and|with|bei|und|mit|et|con|avec)\b")
+_ENDS = " \t:=~≈＝：-–"
+_LITTLE = frozenset(
+    "a an the of is was are be in to about approx ca von ist war der die das de du des la le les "
+    "el di del della il est era es under unter bajo sous sotto nominal constant konstante".split()
+)
+_PER_LENGTH = re.compile(
+    r"(?<![\d.,A-Za-z_])(?P<number>\d[\d.,]*)\s{0,3}(?:points?|pts?|samples?|Punkte|pixels?|px)?"
+    r"\s?(?:/|per|pro)\s?(?P<unit>um|µm|μm|mm|nm)\b",
+    re.IGNORECASE,
+)
+
+
+class Phrase(NamedTuple):
+    """A number that a line of text states: what it calls it, its unit, a pattern that finds it.
+
+    `key` is squeezed; it holds the words before the number, back to where another clause ends.
+    """
+
+    key: str
+    number: str
+    unit: str
+    pattern: str
+    line: str
+
+
+def phrases(line: str) -> list[Phrase]:
+    """Return the numbers with a unit that stand inside a line of text.
+
+    Parameters
+    ----------
+    line
+        One line above the table.
+
+    Returns
+    -------
+    list of Phrase
+        In the order of the line.
+
+    Examples
+    --------
+    >>> [(said.key, said.number, said.unit) for said in phrases("mean radius 2 cm on a 50 mm disc")]
+    [('meanradius', '2', 'cm'), ('', '50', 'mm')]
+    >>> phrases("Comment: step 0 = head lifted")
+    []
+    """
+    said: list[Phrase] = []
+    done = 0
+    line = line[:_LONGEST].strip()
+    for match in _NUMBER.finditer(line):
+        unit = match["unit"].rstrip(".!?")
+        if len(said) == _MOST or not is_unit(unit):
+            continue
+        before = line[done : match.start()].rstrip(_ENDS)
+        clauses = [clause for clause in _CUTS.split(before) if clause.strip()]
+        words = clauses[-1] if clauses else ""
+        key = "".join(squeezed(w) for w in words.split() if squeezed(w) not in _LITTLE)
+        number = match["number"].rstrip(".,")
+        said.append(Phrase(key, number, unit, _pattern(line[: match.start()]), line))
+        done = match.end()
+    return said
+
+
+def points_per_length(line: str) -> tuple[float, str] | None:
+    """Return how many points of a profile a length has, and the length's unit, if a line says so.
+
+    Parameters
+    ----------
+    line
+        One line above the table.
+
+    Examples
+    --------
+    >>> points_per_length("sampling 4 points/um")
+    (4.0, 'um')
+    """
+    match = _PER_LENGTH.search(line[:_LONGEST])
+    if match is None:
+        return None
+    try:
+        number = float(match["number"].rstrip(".,").replace(",", "."))
+    except ValueError:
+        return None
+    return (number, match["unit"]) if number > 0 else None
+
+
+def _pattern(before: str) -> str:
+    """Return a pattern of a line's beginning, in which other numbers may be others."""
+    parts = re.split(r"\d[\d.,]*", before.strip())
+    return r"^\s*" + r"[\d.,]+".join(map(escaped, parts)) + r"\s*([-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)"

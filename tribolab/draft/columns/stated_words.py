@@ -1,0 +1,65 @@
+"""Words for what the text of a file states: radius, arm, pitch, load, sample rate."""
+
+from __future__ import annotations
+
+import re
+
+# a sample rate by its name; "Frequency" alone may be that of the strokes
+RATE = re.compile(
+    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
+    r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
+    r"|^(?:sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
+)
+# what passes from one sample to the next
+INTERVAL = re.compile(
+    r"^(?:dt|deltat|timestep|timeinterval|zeitschritt|tsample|ts)$"
+    r"|^(?:sampl|scan|log|mess|abtast|record|acquisition|data|zeit)\w*"
+    r"(?:interval|period|time|intervall|periode|schritt|spacing)$"
+    r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
+)
+FACTOR = re.compile(
+    r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
+    r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
+    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
+)
+LOAD = re.compile(
+    r"^(?:normal|applied|dead|sled|schlitten|test|axial|static|set)?"
+    r"(?:load(?:ed|set)?|force|weight|mass|gewicht|masse|kraft|last)+$"
+    r"|^(?:normalkraft|auflast|normallast|belastet|belastung|chargenormale|charge|forcenormale"
+    r"|effortnormal|carganormal|carga|fuerzanormal|carico|caricato|forzanormale|peso|poids"
+    r"|法向载荷|载荷|负载|荷重|垂直荷重|載荷)$"
+)
+# the distance of a profile's points by its name
+PITCH = re.compile(
+    r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
+    r"|^(?:schritt\w*|pas|paso|passo|stap\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
+    r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
+    r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon)\w*"
+    r"(?:pitch|spacing|increment|step|interval|distance|abstand|schritt\w*|intervall)"
+    r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
+)
+RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|straal|半径")
+ARM = re.compile(
+    r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"
+)
+OTHER_RADIUS = re.compile(
+    "ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera|球|针|探|curvature|fillet|nose"
+)
+_TRACK = "track|wear|spur|laufbahn|reib|friction|path|piste|traccia|pista|sliding|gleit|磨|轨|摩擦"
+# of the track, not of a ball or a disc
+DIAMETER = re.compile(
+    rf"(?:{_TRACK}).*(?:dia|durchmesser|直径)|(?:dia(?:m\w*)?|durchmesser).*(?:{_TRACK})"
+)
+ACROSS = re.compile(r"dia|durchmesser|直径|^(?:ø|oe|⌀)$|^d$")
+ON_TRACK = re.compile(_TRACK)
+# what turns may be wider than the track on it
+TURNING = re.compile(r"dis[ck]|scheibe|ring|plate|platte|disque|disco|specimen|sample|盘|円板")
+
+
+def is_radius(name: str) -> bool:
+    """Whether a column's name, squeezed, is that of the radius of a track.
+
+    >>> is_radius("trackradius"), is_radius("ballradius")
+    (True, False)
+    """
+    return bool(RADIUS.search(name) and not OTHER_RADIUS.search(name))

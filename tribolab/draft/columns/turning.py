@@ -1,0 +1,70 @@
+"""Columns of what turns, which are no quantity of a run: a torque, an angle, a radius."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+from tribolab.draft.columns.stated_words import is_radius
+from tribolab.draft.columns.words import split_unit, squeezed
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.cells import split_name
+
+_TORQUE = re.compile(
+    r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|koppel|扭矩|转矩|力矩|トルク"
+    r"|^(?:m|mr|mf|md|tq)$"
+)
+_ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
+
+
+def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds a torque, with its unit.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    return _only_column(columns, _TORQUE.search, "N m")
+
+
+def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds an angle of rotation, with its unit.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    return _only_column(columns, _ANGLE.search, "rad")
+
+
+def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds the radius of a track, with its unit.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    return _only_column(columns, is_radius, "m")
+
+
+def _only_column(
+    columns: Sequence[DraftColumn], is_named: Callable[[str], object], si_unit: str
+) -> DraftColumn | None:
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        if not column.used and is_named(squeezed(name)) and converts(unit, si_unit):
+            own = None if column.file_unit and column.name is not None else unit
+            fitting.append(column._replace(unit=own))
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def _name_and_unit(column: DraftColumn) -> tuple[str, str]:
+    name, unit = split_name(column.label)
+    if unit is None and column.file_unit is None:
+        name, unit = split_unit(name)
+    return name, column.file_unit or unit or ""
