@@ -215,7 +215,14 @@ def made_outcome(
         groups.setdefault((surface, medium, load), []).append((run_name, mu, slip))
     for run_name, reason in failed:
         outcome = RunOutcome(
-            run_name, ("raw/bad.csv",), "", "", None, "failed", reason, "ReadError"
+            name=run_name,
+            files=("raw/bad.csv",),
+            surface="",
+            medium="",
+            normal_force=None,
+            status="failed",
+            reason=reason,
+            error="ReadError",
         )
         store.put("run", run_name, len(outcomes), "", RunRecord(outcome, (("raw/bad.csv", "", 0),)))
         outcomes.append(outcome)

@@ -161,7 +161,8 @@ def test_a_model_that_cannot_be_computed_now_is_kept(tmp_path):
     for name in ("old", "new"):
         (tmp_path / name / "data").mkdir(parents=True)
     (tmp_path / "old/data/model_a.nc").write_bytes(b"")
-    done = ModelOutcome("model_a", "a", "s", "m", 31.0, "done", data_file="data/model_a.nc")
+    of = {"curve": "a", "surface": "s", "medium": "m", "normal_force": 31.0}
+    done = ModelOutcome(name="model_a", **of, status="done", data_file="data/model_a.nc")
     earlier = Store(tmp_path / "old")
     earlier.put("model", "model_a", 0, "made so", ModelRecord(done, ROWS))
     earlier.close()

@@ -32,8 +32,14 @@ from tribolab.records.parts import (
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, RunRecord, Waveform
 
 ROW = {"segment": 1, "sliding_speed_m_s": 1 / 3, "steady": "yes", "pair": None, "fine": True}
+SYSTEM = {"surface": "S", "medium": "wet"}
 RUN = RunRecord(
-    RunOutcome("ä", ("raw/ä.csv",), "S", "dry", None, "done", data_file="data/a.nc", segments=2),
+    RunOutcome(
+        **{"name": "ä", "files": ("raw/ä.csv",), **SYSTEM, "normal_force": None},
+        status="done",
+        data_file="data/a.nc",
+        segments=2,
+    ),
     (("raw/ä.csv", "ab" * 32, 9),),
     RunZero("slider", 0.1, None),
     RunFacts(
@@ -54,13 +60,20 @@ PARTS = [
     RUN,
     CurveRecord(CurveOutcome("c", "S", "dry", 31.0, "", ("ä",), "failed", "none"), (ROW,), (0.9,)),
     SurfaceRecord(
-        SurfaceOutcome("S", ("s.csv",), "done", findings=(Finding("note", "x", "tip"),)),
+        SurfaceOutcome(
+            name="S", files=("s.csv",), status="done", findings=(Finding("note", "x", "tip"),)
+        ),
         (("s.csv", "", 0),),
         SurfaceRows("S", ROW, (ROW,), (), "stand-in", "pass"),
     ),
-    ModelRecord(ModelOutcome("m", "c", "S", "wet", None, "skipped"), ModelRows(None, (ROW,))),
     ModelRecord(
-        ModelOutcome("m", "c", "S", "wet", 31.0, "done", parts=("curve",)),
+        ModelOutcome(name="m", curve="c", **SYSTEM, normal_force=None, status="skipped"),
+        ModelRows(None, (ROW,)),
+    ),
+    ModelRecord(
+        ModelOutcome(
+            name="m", curve="c", **SYSTEM, normal_force=31.0, status="done", parts=("curve",)
+        ),
         ModelRows(ROW, (), (ROW,), "T", (-0.1, 0.2)),
     ),
     FigureRecord("figures/a.svg", "", "A.", "µ from 0.1", "curve"),

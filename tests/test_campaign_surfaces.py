@@ -391,7 +391,14 @@ def test_damaged_results_are_not_taken_over(tmp_path, profiles):
 
 def test_loads_come_from_the_runs_and_media_from_their_tables(campaign):
     runs = [
-        RunOutcome(f"run{number}", (), surface, "dry", force, "done")
+        RunOutcome(
+            name=f"run{number}",
+            files=(),
+            surface=surface,
+            medium="dry",
+            normal_force=force,
+            status="done",
+        )
         for number, (surface, force) in enumerate(
             [("Sb-R", 91.0), ("Sb-R", 31.00001), ("Sb-R", 31.0), ("", 5.0), ("Sb-R", None)]
         )

@@ -134,7 +134,8 @@ def test_a_failure_that_may_not_last_is_tried_again_and_one_of_the_files_is_not(
 def test_what_is_kept_crashed_or_not_readable_is_never_taken_for_final(two_runs, tmp_path):
     campaign, planned = load_and_plan(two_runs)
     store = Store(tmp_path)
-    done = RunOutcome("a", ("a.csv",), "", "", None, "done", data_file="data/a.nc")
+    run = {"name": "a", "files": ("a.csv",), "surface": "", "medium": "", "normal_force": None}
+    done = RunOutcome(**run, status="done", data_file="data/a.nc")
     curve = CurveOutcome("c", "", "", None, "data/c.nc", ("a",))
     whole = Outcome(campaign, tmp_path, store, (done,), (curve,), (("a.csv", "ab" * 32, 3),))
     for doubtful in (

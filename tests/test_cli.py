@@ -314,7 +314,7 @@ def test_a_model_that_failed_is_named_and_gives_exit_code_1(
 ):
     made = made_outcome(tmp_path, [("one", "Sb-R", "glycerol", 31.0, 0.8)])
     labels = {"curve": "curve0", "surface": "Sb-R", "medium": "glycerol", "normal_force": 31.0}
-    model = ModelOutcome("model_curve0", status=status, reason="no film was found", **labels)
+    model = ModelOutcome(name="model_curve0", status=status, reason="no film was found", **labels)
     campaign = made.campaign.model_copy(update={"qc": Qc(fail_on=fail_on)})
     assert show_outcome(replace(made, models=(model,), campaign=campaign), debug=False) == code
     said = "tribolab: no model of Sb-R in glycerol at 31 N: no film was found"

@@ -16,7 +16,6 @@ from tribolab.qc.flags import (
     SUSPECT,
     attach,
     combine,
-    severity_of,
 )
 from tribolab.qc.run.checks import check_run
 from tribolab.stamping import stamp
@@ -36,7 +35,6 @@ def test_the_gravest_severity_prevails_in_any_order(rows):
     assert combine(arrays).tolist() == expected
     assert combine(arrays[::-1]).tolist() == expected
     assert combine([combine(arrays), *arrays]).tolist() == expected
-    assert severity_of(combine(arrays)) == max(expected, key=SEVERITIES.index)
 
 
 def test_combining_changes_no_input():
@@ -49,7 +47,6 @@ def test_what_no_check_looked_at_is_not_good():
     data = stamp(xr.Dataset({"position": ("time", [0.0, 1.0])}, {"time": [0.0, 1.0]}))
     flagged = attach(data, "position", {}, {"spikes": 10})
     assert flagged.position_qc.values.tolist() == [NOT_EVALUATED, NOT_EVALUATED]
-    assert severity_of(np.zeros(0, np.int8)) == NOT_EVALUATED
     half = attach(data, "position", {"spikes": np.array([NOT_EVALUATED, GOOD])}, {"spikes": 10})
     assert half.position_qc.values.tolist() == [NOT_EVALUATED, GOOD]
     assert "position_qc" not in data and "ancillary_variables" not in data.position.attrs

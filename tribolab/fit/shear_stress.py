@@ -234,15 +234,6 @@ def fit_shear_stress(
     )
 
 
-def shear_stress_ratio(one: ShearStressFit, other: ShearStressFit) -> tuple[float, float]:
-    """Ratio of two corrected shear stresses [1] and its standard error, the fits independent."""
-    ratio = one.corrected_shear_stress / other.corrected_shear_stress
-    relative, other_relative = (
-        fit.corrected_shear_stress_error / fit.corrected_shear_stress for fit in (one, other)
-    )
-    return ratio, float(abs(ratio) * np.hypot(relative, other_relative))
-
-
 def runs_p_value(residual: np.ndarray) -> float:
     """Probability of so few runs of one sign or fewer, if the signs were in random order.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -11,8 +10,8 @@ from typing import Any
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import Drawn
+from tribolab.report.figures.files import DRAWING, save_figure
 from tribolab.report.figures.files import Drawn as Picture
-from tribolab.report.figures.files import save_figure
 from tribolab.untyped import Json
 
 COMPUTED, SIMULATED = "computed here", "simulated"
@@ -261,7 +260,6 @@ FIGURES = (
     ),
 )  # fmt: skip
 BY_NAME = {figure.name: figure for figure in FIGURES}
-_ALONE = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -275,7 +273,7 @@ class DrawTask:
 def draw_paper_figure(task: DrawTask) -> Json:
     """Draw a figure into the results and return its record."""
     known = BY_NAME[task.name]
-    with _ALONE:
+    with DRAWING:
         figure, said = known.draw(task.data)
         alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
         caption = f"{known.caption} {said}" if known.told else known.caption

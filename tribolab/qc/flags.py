@@ -177,10 +177,3 @@ def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.nd
 
 def _is_bad(flags: np.ndarray) -> np.ndarray:
     return flags >= SUSPECT
-
-
-def severity_of(flags: np.ndarray) -> int:
-    """Worst severity that stands anywhere in an array of flags; not evaluated if it is empty."""
-    if flags.size == 0:
-        return NOT_EVALUATED
-    return int(max(np.unique(flags).tolist(), key=lambda value: _PRECEDENCE[value]))

@@ -162,7 +162,6 @@ def sample_result(
     *,
     fail_share: float = float("inf"),
     value: float = float("nan"),
-    unit: str = "1",
 ) -> Result:
     """Make a result from the flags of single samples: where they lie, how many, how grave.
 
@@ -179,12 +178,12 @@ def sample_result(
         suits the count.
     fail_share
         Share of the samples above which suspect becomes fail.
-    value, unit
-        The number that the check measured, if there is one that says more than the share.
+    value
+        The number [1] that the check measured, if there is one that says more than the share.
     """
     bad = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     if bad.size == 0:
-        return Result("pass", variable, "nothing found", value, unit, flags=flags)
+        return Result("pass", variable, "nothing found", value, "1", flags=flags)
     grave = bool((flags[bad] == FAIL).any()) or bad.size > fail_share * flags.size
     if grave:
         flags = flags.copy()
@@ -197,4 +196,4 @@ def sample_result(
     share = bad.size / flags.size
     number = share if np.isnan(value) else value
     status = "fail" if grave else "suspect"
-    return Result(status, variable, text, number, unit, where, int(bad.size), flags)
+    return Result(status, variable, text, number, "1", where, int(bad.size), flags)

@@ -27,60 +27,70 @@ class HasStatus:
         return self.status == "done"
 
 
-@dataclass(frozen=True)
-class RunOutcome(HasStatus):
-    """One run: done or failed, and where its data are.
+@dataclass(frozen=True, kw_only=True)
+class PartOutcome(HasStatus):
+    """What a part that files are read for came to, and where its data are.
 
     Parameters
     ----------
     name
-        Unique within the campaign; safe as a file name.
-    files
-        Raw files, relative to the campaign file.
-    surface, medium
-        As the campaign file calls them; "" where it says nothing.
-    normal_force
-        Set-point [N] of the campaign file, else of the raw file, else None.
+        Unique among parts of its kind.
     status
-        "done" or "failed".
+        "done", "failed", or "skipped" if the campaign file knows too little for it.
     reason
-        Why it failed, in one line; "" for a run that is done.
+        Why it failed, in one line; "" for a part that is done.
     error
-        Class name of the error; "" for a run that is done.
+        Class name of the error; "" for a part that is done.
     data_file
-        Path of the netCDF file relative to the results folder; "" for a failed run.
+        Path of the netCDF file relative to the results folder; "" for a failed part.
     reused
         Whether the data file was taken over from the previous results.
     seconds
-        Time [s] that the run took.
-    segments
-        Number of segments found.
-    quality
-        Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
-        a run that could not be checked; "accepted" or "rejected" where a person decided.
+        Time [s] that the part took.
     kept
-        Since when and why these are earlier results, because the raw file cannot be read now; ""
-        for everything else.
-    segments_rejected
-        Number of segments, among those found, that a person rejected.
-    quality_as_found
-        What `quality` would be without decisions; "" where nobody decided.
+        Since when and why these are earlier results, because a file cannot be read now; "" for
+        everything else.
     """
 
     name: str
-    files: tuple[str, ...]
-    surface: str
-    medium: str
-    normal_force: float | None
     status: str
     reason: str = ""
     error: str = ""
     data_file: str = ""
     reused: bool = False
     seconds: float = 0.0
+    kept: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOutcome(PartOutcome):
+    """One run: done or failed; its name is safe as a file name.
+
+    Parameters
+    ----------
+    files
+        Raw files, relative to the campaign file.
+    surface, medium
+        As the campaign file calls them; "" where it says nothing.
+    normal_force
+        Set-point [N] of the campaign file, else of the raw file, else None.
+    segments
+        Number of segments found.
+    quality
+        Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
+        a run that could not be checked; "accepted" or "rejected" where a person decided.
+    segments_rejected
+        Number of segments, among those found, that a person rejected.
+    quality_as_found
+        What `quality` would be without decisions; "" where nobody decided.
+    """
+
+    files: tuple[str, ...]
+    surface: str
+    medium: str
+    normal_force: float | None
     segments: int = 0
     quality: str = ""
-    kept: str = ""
     segments_rejected: int = 0
     quality_as_found: str = ""
 
@@ -195,14 +205,12 @@ def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
     return [Finding("suspect", f"{', '.join(names)}: {reason}") for reason, names in where.items()]
 
 
-@dataclass(frozen=True)
-class SurfaceOutcome(HasStatus):
+@dataclass(frozen=True, kw_only=True)
+class SurfaceOutcome(PartOutcome):
     """One surface: its spectrum, contact and adhesion, as far as they could be computed.
 
     Parameters
     ----------
-    name
-        As the campaign file calls it.
     files
         Scans, relative to the campaign file; those that could not be used are in the findings.
     parts
@@ -213,23 +221,13 @@ class SurfaceOutcome(HasStatus):
         Gravest finding of the checks on the scans that were used, as for a run.
     checks
         What every check said of every scan: a row each, with the scan's file as "scan".
-    status, reason, error, data_file, reused, seconds, kept
-        As for a run.
     """
 
-    name: str
     files: tuple[str, ...]
-    status: str
-    reason: str = ""
-    error: str = ""
-    data_file: str = ""
-    reused: bool = False
-    seconds: float = 0.0
     parts: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     quality: str = ""
     checks: tuple[Row, ...] = ()
-    kept: str = ""
 
     @property
     def label(self) -> str:
@@ -248,39 +246,28 @@ class SurfaceOutcome(HasStatus):
         return {f.severity for f in self.findings if f.check and f.severity != "note"}
 
 
-@dataclass(frozen=True)
-class ModelOutcome(HasStatus):
+@dataclass(frozen=True, kw_only=True)
+class ModelOutcome(PartOutcome):
     """The model of one measured curve, with the shear stress that was fitted to it.
+
+    Its name is that of the data file: ``model_`` and the curve's name.
 
     Parameters
     ----------
-    name
-        That of the data file: ``model_`` and the curve's name.
     curve, surface, medium, normal_force
         The measured curve that it belongs to, as in its `CurveOutcome`.
     parts
         Names of the groups in the data file.
-    status, reason, error, data_file, reused, seconds, kept
-        As for a run; "skipped" if the campaign file knows too little for a model.
+    findings
+        What went wrong, what was left out, and why.
     """
 
-    name: str
     curve: str
     surface: str
     medium: str
     normal_force: float | None
-    status: str
-    reason: str = ""
-    error: str = ""
-    data_file: str = ""
-    reused: bool = False
-    seconds: float = 0.0
     parts: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
-    kept: str = ""
-
-
-PartOutcome = RunOutcome | SurfaceOutcome | ModelOutcome  # what files are read for
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,9 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
     if not surface.files:
         text = "no scans are named, so its roughness and contact are not computed"
         note = Finding("note", text)
-        return SurfaceRecord(SurfaceOutcome(surface.name, (), "skipped", findings=(note,)))
+        return SurfaceRecord(
+            SurfaceOutcome(name=surface.name, files=(), status="skipped", findings=(note,))
+        )
     from tribolab.campaign.surfaces.scans import usable_scans
 
     sources = sources_of_surface(surface)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
+from tribolab.records.parts import PartOutcome
 from tribolab.report.document.schema import (
     ReportedCurve,
     ReportedMode,
@@ -17,12 +19,11 @@ from tribolab.report.document.schema import (
 if TYPE_CHECKING:
     from tribolab.records.mode_record import ModeRecord
     from tribolab.records.part_records import CurveRecord, SurfaceRows
-    from tribolab.records.parts import ModelOutcome, PartOutcome, SurfaceOutcome
+    from tribolab.records.parts import ModelOutcome, SurfaceOutcome
     from tribolab.records.run_record import RunRecord
     from tribolab.report.document.models import ModelRow
     from tribolab.untyped import Arguments, Json
 
-_PART = ("name", "status", "reason", "error", "data_file", "reused", "kept", "seconds")
 _RUN = TypeAdapter(ReportedRun)
 
 
@@ -104,4 +105,4 @@ def reported_mode(mode: ModeRecord, curve: CurveRecord) -> ReportedMode:
 
 
 def _part(outcome: PartOutcome) -> Arguments:
-    return {name: getattr(outcome, name) for name in _PART}
+    return {field.name: getattr(outcome, field.name) for field in fields(PartOutcome)}

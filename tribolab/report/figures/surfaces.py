@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab import plot
-from tribolab.campaign.store.data_files import read_data
-from tribolab.errors import ReadError
+from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.report.figures.files import Drawn
 from tribolab.words import force_text, many
 
@@ -97,13 +96,9 @@ def _read(task: _Opened, group: str) -> dict[str, xr.Dataset]:
 
 
 def _optional(task: _Opened, group: str) -> dict[str, xr.Dataset]:
-    opened = {}
-    for name, file in task.figure.shown:
-        try:
-            opened[name] = read_data(task.folder / file, group=group)
-        except ReadError:  # the campaign knows too little for it; its findings say so
-            continue
-    return opened
+    """Read a group where it is: of others the campaign knows too little, as its findings say."""
+    opened = {name: optional_data(task.folder / file, group) for name, file in task.figure.shown}
+    return {name: data for name, data in opened.items() if data is not None}
 
 
 def _loads(task: _Opened) -> xr.Dataset | None:
