@@ -23,7 +23,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
-from tribolab.friction.coefficient.repeatability import repeatability
+from tribolab.friction.coefficient.repeatability import pooled_repeatability
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.records.model_words import is_described, judgement, stress_interval
 from tribolab.records.part_records import ModelRecord
@@ -264,10 +264,10 @@ def test_speeds_that_are_not_in_order_are_refused_with_the_line(campaign):
 def test_repeatability_is_pooled_over_conditions():
     rng = np.random.default_rng(1)
     levels = [1 + 0.01 * rng.standard_normal(2) for _ in range(400)]
-    spread, freedom = repeatability([*levels, np.array([1.0])])
+    spread, freedom = pooled_repeatability([*levels, np.array([1.0])])
     assert freedom == 400
     assert spread == pytest.approx(0.01, rel=0.1)
-    assert repeatability([np.array([1.0])]) == (0.0, 0)
+    assert pooled_repeatability([np.array([1.0])]) == (0.0, 0)
 
 
 def curve_of_one_factor(factor):

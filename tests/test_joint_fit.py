@@ -13,7 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.joint.comparison import compared
 from tribolab.fit.joint.load_curve import LoadCurve, points_of
 from tribolab.fit.joint.loads import fit_loads
-from tribolab.fit.joint.model import Curve, JointModel, Points, parameters_of, shared_errors
+from tribolab.fit.joint.model import Curve, JointModel, Points, parameters_of, shared_by_points
 from tribolab.fit.joint.posterior import posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import constant_response, response_of
@@ -122,7 +122,7 @@ def test_of_a_linear_model_posterior_and_evidence_are_the_closed_forms():
     model, design, offset = linear_model(np.random.default_rng(3))
     posterior = posterior_of(model, PRIORS, model.parameters.mean + 0.5)
     where, points = model.parameters, model.points
-    shared = shared_errors(points, points, PRIORS.correlation_length)
+    shared = shared_by_points(points, points, PRIORS.correlation_length)
     prior = np.diag(where.spread**2)
     chances = []
     for k, (tau, kappa) in enumerate(zip(posterior.level, posterior.correlated, strict=True)):
@@ -157,7 +157,7 @@ def test_the_mixture_is_what_a_sampler_finds(curves):
     every = [Curve(part.response, 0, np.log(part.load / REFERENCE)) for part in parts]
     model = JointModel(points, every, parameters_of(1, 1.4, PRIORS), REFERENCE)
     posterior = posterior_of(model, PRIORS, model.parameters.mean)
-    shared = shared_errors(points, points, PRIORS.correlation_length)
+    shared = shared_by_points(points, points, PRIORS.correlation_length)
     where, alone = model.parameters, np.diag(points.error**2)
 
     def log_density(state):

@@ -196,6 +196,6 @@ def test_the_check_and_the_schema_believe_the_same():
 
 def test_a_load_of_the_wrong_sign_is_seen_and_a_short_pull_is_not():
     load = np.concatenate([np.zeros(100), np.full(400, 31.0), [-5.0, -6.0]])
-    assert schema.pulled(load) < 0.01
-    assert schema.pulled(-load) > 0.99
-    assert schema.pulled(np.zeros(10)) == 0
+    assert schema.pulled_share(load) < 0.01
+    assert schema.pulled_share(-load) > 0.99
+    assert schema.pulled_share(np.zeros(10)) == 0

@@ -22,7 +22,7 @@ from tribolab.studies.verdict import (
     Computed,
     Measured,
     Own,
-    judge,
+    verdict_on,
 )
 
 
@@ -191,50 +191,52 @@ def test_a_mended_number_is_reproduced():
 def test_what_merely_differs_is_not_called_a_misprint(value, ratio):
     number = printed(f"{value:.4f}")
     far = Computed(number.si * ratio, 0.01)
-    verdict = judge(number, far).status
+    verdict = verdict_on(number, far).status
     reciprocal = abs(1 / far.value / number.si - 1) < 0.02
     assert verdict == DIFFERS or reciprocal or value < 0.1
 
 
 def test_agreement_that_needs_much_room_is_not_called_reproduced():
     number = printed("0.500")
-    assert judge(number, Computed(0.504, 0.1)).status == REPRODUCED
-    far = judge(number, Computed(0.53, 0.1))
+    assert verdict_on(number, Computed(0.504, 0.1)).status == REPRODUCED
+    far = verdict_on(number, Computed(0.53, 0.1))
     assert far.status == WIDE and "only within 10 %" in far.note
-    assert judge(number, Computed(0.57, 0.1)).status == DIFFERS
-    assert judge(printed("0.042"), Computed(0.04248, 0.001)).status == REPRODUCED  # last digit
-    assert judge(printed("0.2"), Computed(0.24, 0.001)).status == WIDE  # one digit says little
-    assert judge(printed("at most 0.1"), Computed(0.15, 1.0)).status == WIDE
+    assert verdict_on(number, Computed(0.57, 0.1)).status == DIFFERS
+    assert verdict_on(printed("0.042"), Computed(0.04248, 0.001)).status == REPRODUCED  # last digit
+    assert verdict_on(printed("0.2"), Computed(0.24, 0.001)).status == WIDE  # one digit says little
+    assert verdict_on(printed("at most 0.1"), Computed(0.15, 1.0)).status == WIDE
 
 
 def test_what_was_put_in_agrees_by_construction_and_may_still_be_missed():
     number, given = printed("0.500"), "an input was chosen for it"
-    found = judge(number, Computed(0.501, 0.01, given=given))
+    found = verdict_on(number, Computed(0.501, 0.01, given=given))
     assert found.status == BY_CONSTRUCTION and given in found.note
-    assert judge(number, Computed(0.6, 0.01, given=given)).status == DIFFERS
-    contradicted = judge(number, Computed(0.501, 0.01, given=given), Own(0.6, 0.7, "it is not"))
+    assert verdict_on(number, Computed(0.6, 0.01, given=given)).status == DIFFERS
+    contradicted = verdict_on(
+        number, Computed(0.501, 0.01, given=given), Own(0.6, 0.7, "it is not")
+    )
     assert contradicted.status == INCONSISTENT
 
 
 def test_other_numbers_of_the_paper_outweigh_agreement():
     number, computed = printed("0.50"), Computed(0.5, 0.01)
-    assert judge(number, computed).status == REPRODUCED
-    assert judge(number, computed, Own(0.49, 0.60, "fits")).status == REPRODUCED
-    assert judge(number, computed, Own(0.55, 0.60, "it is not")).status == INCONSISTENT
+    assert verdict_on(number, computed).status == REPRODUCED
+    assert verdict_on(number, computed, Own(0.49, 0.60, "fits")).status == REPRODUCED
+    assert verdict_on(number, computed, Own(0.55, 0.60, "it is not")).status == INCONSISTENT
 
 
 def test_ranges_are_judged_as_ranges():
     number = printed("1.75 to 1.95")
     assert number.ends == (1.75, 1.95)
-    assert judge(number, Computed(1.99, 0.0, low=1.9, high=2.1)).status == REPRODUCED
-    assert judge(number, Computed(2.2, 0.0, low=2.1, high=2.3)).status == DIFFERS
-    assert judge(number, Computed(1.8, 0.0), Own(1.94, 2.1, "")).status == REPRODUCED
-    assert judge(number, Computed(1.8, 0.0), Own(2.0, 2.1, "not so")).status == INCONSISTENT
-    assert judge(number, Measured("seen")) == (MEASURED, "seen")
+    assert verdict_on(number, Computed(1.99, 0.0, low=1.9, high=2.1)).status == REPRODUCED
+    assert verdict_on(number, Computed(2.2, 0.0, low=2.1, high=2.3)).status == DIFFERS
+    assert verdict_on(number, Computed(1.8, 0.0), Own(1.94, 2.1, "")).status == REPRODUCED
+    assert verdict_on(number, Computed(1.8, 0.0), Own(2.0, 2.1, "not so")).status == INCONSISTENT
+    assert verdict_on(number, Measured("seen")) == (MEASURED, "seen")
 
 
 def test_bounds_are_judged_as_bounds():
-    assert judge(printed("> 0"), Computed(1e-3, 0.0)).status == REPRODUCED
-    assert judge(printed("> 0"), Computed(0.0, 0.0)).status == DIFFERS
-    assert judge(printed("at most 0.1"), Computed(0.05, 0.0)).status == REPRODUCED
-    assert judge(printed("at most 0.1"), Computed(1.0, 0.0)).status == DIFFERS
+    assert verdict_on(printed("> 0"), Computed(1e-3, 0.0)).status == REPRODUCED
+    assert verdict_on(printed("> 0"), Computed(0.0, 0.0)).status == DIFFERS
+    assert verdict_on(printed("at most 0.1"), Computed(0.05, 0.0)).status == REPRODUCED
+    assert verdict_on(printed("at most 0.1"), Computed(1.0, 0.0)).status == DIFFERS

@@ -79,7 +79,7 @@ def let_go() -> None:
         mapped.madvise(mmap.MADV_DONTNEED)
 
 
-def tidy() -> None:
+def tidy_up() -> None:
     """Free the scratch files of arrays that nobody needs any more, circles of references or not."""
     if _mapped:
         gc.collect()

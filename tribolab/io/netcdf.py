@@ -6,7 +6,7 @@ import contextlib
 import sys
 import tempfile
 import threading
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -231,9 +231,20 @@ def read_groups(
     ReadError
         As `read_netcdf`.
     """
-    path = Path(path)
-    _make_sure(path)
-    return _load(path, list(groups), optional, only or {})
+    path, only = Path(path), only or {}
+    datasets = {}
+    with _whole(path) as file:
+        there = list(file.groups)
+        for name in groups:
+            group = ("run" if "run" in there else None) if name == "run?" else name
+            if group is None or group in there:
+                datasets[name] = _group(file, group, only.get(name or ""))
+            elif not optional:
+                raise ReadError(
+                    f"{path}: there is no group '{shown(group)}'; there are "
+                    f"{', '.join(there) or 'none'}"
+                )
+    return datasets
 
 
 def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
@@ -251,23 +262,19 @@ def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
     ReadError
         As `read_netcdf`.
     """
-    path = Path(path)
-    _make_sure(path)
-    try:
-        with opened(path) as file:
-            short: list[str | None] = [None] if _values(file) <= most else []
-            short += [name for name, group in file.groups.items() if _values(group) <= most]
-            return {name: _group(file, name, None) for name in short}
-    except _DAMAGE as error:
-        raise _damaged(path, error) from error
+    with _whole(Path(path)) as file:
+        short: list[str | None] = [None] if _values(file) <= most else []
+        short += [name for name, group in file.groups.items() if _values(group) <= most]
+        return {name: _group(file, name, None) for name in short}
 
 
 def _values(group: netCDF4.Dataset) -> int:
     return sum(variable.size for variable in group.variables.values())
 
 
-def _make_sure(path: Path) -> None:
-    """Refuse what is not there, and try out what is not known to be whole."""
+@contextlib.contextmanager
+def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
+    """Open a file that is there; one that is not known to be whole is tried out first."""
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file")
     try:
@@ -275,34 +282,12 @@ def _make_sure(path: Path) -> None:
             try_out(path)
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
-
-
-def _damaged(path: Path, error: Exception) -> ReadError:
-    return ReadError(f"{path}: this is not a netCDF file that can be read: {brief(error)}")
-
-
-def _load(
-    path: Path,
-    groups: Sequence[str | None],
-    optional: bool,
-    only: Mapping[str, Collection[str]],
-) -> dict[str | None, xr.Dataset]:
     try:
         with opened(path) as file:
-            there = list(file.groups)
-            datasets = {}
-            for name in groups:
-                group = ("run" if "run" in there else None) if name == "run?" else name
-                if group is None or group in there:
-                    datasets[name] = _group(file, group, only.get(name or ""))
-                elif not optional:
-                    raise ReadError(
-                        f"{path}: there is no group '{shown(group)}'; there are "
-                        f"{', '.join(there) or 'none'}"
-                    )
-        return datasets
+            yield file
     except _DAMAGE as error:
-        raise _damaged(path, error) from error
+        told = f"{path}: this is not a netCDF file that can be read: {brief(error)}"
+        raise ReadError(told) from error
 
 
 def _loaded(data: xr.Dataset) -> xr.Dataset:

@@ -40,7 +40,7 @@ def page_trace(
     fine_size: int,
 ) -> PageTrace:
     """Return what the page draws of a run; parameters as of `trace` and `finer_trace`."""
-    shared = shared_parts(run, friction)
+    shared = shared_by_signals(run, friction)
     return PageTrace(
         script_json(trace(run, segments, friction, points, shared)),
         finer_trace(run, segments, friction, points, fine_size, shared),
@@ -54,7 +54,7 @@ class Shared(NamedTuple):
     main: Signal
 
 
-def shared_parts(run: xr.Dataset, friction: xr.Dataset | None) -> Shared:
+def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> Shared:
     """Return what all traces of a run share.
 
     Raises
@@ -125,7 +125,7 @@ def trace(
         If the run has neither a friction force nor a friction coefficient.
     """
     time = np.asarray(run["time"], float)
-    shared = shared or shared_parts(run, friction)
+    shared = shared or shared_by_signals(run, friction)
     return {
         "length_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
@@ -163,7 +163,7 @@ def finer_trace(
         ``complete`` and ``signals`` as of `trace`, compressed, as JSON that may stand in a script
         element; "" if that trace is complete or no finer one fits.
     """
-    shared = shared or shared_parts(run, friction)
+    shared = shared or shared_by_signals(run, friction)
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
         text = script_json(_signals(run, segments, shared, finer))

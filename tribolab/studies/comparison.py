@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError, nearest
 from tribolab.studies import comparison_contact, comparison_lubrication, xu2026
 from tribolab.studies.published import Published
 from tribolab.studies.theory import Theory
-from tribolab.studies.verdict import BOUNDS, Computed, Measured, Own, judge
+from tribolab.studies.verdict import BOUNDS, Computed, Measured, Own, verdict_on
 
 COLUMNS = [
     "quantity",
@@ -70,7 +70,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
             raise AnalysisError(f"published {row.quantity}: no way to compute it is known{hint}")
         computed = _COMPUTE[row.quantity](row, theory)
         own = _OWN[row.quantity](row) if row.quantity in _OWN else None
-        verdict = judge(row, computed, own)
+        verdict = verdict_on(row, computed, own)
         compared.append(
             {
                 "quantity": row.quantity,

@@ -64,7 +64,7 @@ class Verdict(NamedTuple):
     note: str
 
 
-def judge(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
+def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
     """Judge a published number by the computed one and by other numbers of the same paper.
 
     Parameters
@@ -79,7 +79,7 @@ def judge(row: Published, computed: Computed | Measured, own: Own | None = None)
     Examples
     --------
     >>> width = Published("half_width", "Smooth", "", "37", "mm", "", "", "")
-    >>> judge(width, Computed(3.716e-3, 0.005)).note
+    >>> verdict_on(width, Computed(3.716e-3, 0.005)).note
     'the printed number is 10 times the computed one'
     """
     reasons = []

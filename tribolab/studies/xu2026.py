@@ -237,7 +237,7 @@ def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
     'm4'
     """
     if not isinstance(name, str):
-        return _several([surface(one) for one in name], points)
+        return _several([surface(each) for each in name], points)
     known = surface(name)
     return tabulate(known.spectrum, points).assign_attrs(
         surface=known.name, origin=STAND_IN, references=CITATION
@@ -245,11 +245,11 @@ def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
 
 
 def _several(known: list[Surface], points: int) -> xr.Dataset:
-    spectra = [one.spectrum for one in known]
-    low, high = min(one.low for one in spectra), max(one.high for one in spectra)
-    q = np.union1d(np.geomspace(low, high, points), [one.rolloff for one in spectra])
-    values = np.array([psd_2d(one, q) for one in spectra])
-    names = np.array([one.name for one in known], dtype=object)
+    spectra = [each.spectrum for each in known]
+    low, high = min(each.low for each in spectra), max(each.high for each in spectra)
+    q = np.union1d(np.geomspace(low, high, points), [each.rolloff for each in spectra])
+    values = np.array([psd_2d(each, q) for each in spectra])
+    names = np.array([each.name for each in known], dtype=object)
     data = xr.Dataset(
         {"psd_2d": (("surface", "wavenumber"), values)}, {"surface": names, "wavenumber": q}
     )

@@ -17,7 +17,7 @@ from multiprocessing.forkserver import ForkServer, read_signed
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, environment
+from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, with_environment
 
 # Arrow's allocator has a thread of its own, beside which a process should not be copied.
 _NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
@@ -45,7 +45,7 @@ class Nursery(ForkServer):
     def ensure_running(self) -> None:
         """Start it, unless it runs, with our own search path, and BLAS on one thread."""
         paths = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}
-        with environment(ONE_THREAD | _NO_THREAD | paths):
+        with with_environment(ONE_THREAD | _NO_THREAD | paths):
             super().ensure_running()
 
     def close(self) -> None:

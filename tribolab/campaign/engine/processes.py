@@ -58,12 +58,12 @@ class Fresh(SpawnContext):
 class _FreshProcess(SpawnProcess):
     def start(self) -> None:
         """Start with the environment in which BLAS, loaded there anew, takes one thread."""
-        with environment(ONE_THREAD):
+        with with_environment(ONE_THREAD):
             super().start()
 
 
 @contextlib.contextmanager
-def environment(changed: Mapping[str, str]) -> Iterator[None]:
+def with_environment(changed: Mapping[str, str]) -> Iterator[None]:
     """Have variables of the environment changed for a while, for processes that start in it."""
     before = {name: os.environ.get(name) for name in changed}
     os.environ.update(changed)

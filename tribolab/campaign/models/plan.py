@@ -202,9 +202,9 @@ def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | 
 
 def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
     """Pool the run levels of all curves that were repeated."""
-    from tribolab.friction.coefficient.repeatability import repeatability
+    from tribolab.friction.coefficient.repeatability import pooled_repeatability
 
-    spread, freedom = repeatability([np.array(c.levels, float) for c in curves if c.levels])
+    spread, freedom = pooled_repeatability([np.array(c.levels, float) for c in curves if c.levels])
     return float(f"{spread:.{_DIGITS}g}"), freedom
 
 

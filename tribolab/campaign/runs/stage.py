@@ -21,7 +21,7 @@ from tribolab.provenance import made
 from tribolab.records.parts import Notice, PageTrace, Row, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
-from tribolab.room import tidy
+from tribolab.room import tidy_up
 from tribolab.untyped import Json
 from tribolab.words import explain
 
@@ -151,7 +151,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
     def work(task: RunTask) -> RunAnswer:
         """Process one run."""
         answer = process_run(task)
-        tidy()
+        tidy_up()
         return answer
 
     def failed(self, task: RunTask, error: BaseException) -> RunAnswer:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.fit.joint.load_curve import LoadCurve
-from tribolab.fit.joint.model import JointModel, Points, shared_errors
+from tribolab.fit.joint.model import JointModel, Points, shared_by_points
 from tribolab.fit.joint.posterior import Posterior
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
@@ -119,7 +119,7 @@ def _answer(
     weights = posterior.weight
     tau, kappa = weights @ posterior.level, weights @ posterior.correlated
     points, where = model.points, model.parameters
-    shared = shared_errors(points, points, priors.correlation_length)
+    shared = shared_by_points(points, points, priors.correlation_length)
     whole = np.diag(points.error**2) + tau**2 * shared.level + kappa**2 * shared.near
     _, slopes = model.predicted(posterior.centre)
     free = where.spread > 0

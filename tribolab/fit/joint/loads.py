@@ -17,7 +17,7 @@ from tribolab.fit.joint.model import (
     Parameters,
     Points,
     parameters_of,
-    shared_errors,
+    shared_by_points,
 )
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
@@ -200,7 +200,7 @@ def _points(
 ) -> xr.Dataset:
     """Return the points beside the model, and what of the residuals is shared."""
     points = model.points
-    shared = shared_errors(points, points, priors.correlation_length)
+    shared = shared_by_points(points, points, priors.correlation_length)
     computed, ascribed = np.zeros(points.log_speed.size), np.zeros(points.log_speed.size)
     for weight, tau, kappa, theta in zip(
         posterior.weight, posterior.level, posterior.correlated, posterior.mean, strict=True

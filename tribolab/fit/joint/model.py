@@ -191,7 +191,7 @@ class Shared(NamedTuple):
     near: np.ndarray
 
 
-def shared_errors(one: Points, other: Points, length: float) -> Shared:
+def shared_by_points(one: Points, other: Points, length: float) -> Shared:
     """Return correlations (point, other point) of unit levels and of unit correlated errors."""
     same = one.curve[:, None] == other.curve
     apart = np.abs(one.log_speed[:, None] - other.log_speed)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from tribolab.errors import AnalysisError
-from tribolab.fit.joint.model import JointModel, shared_errors
+from tribolab.fit.joint.model import JointModel, shared_by_points
 from tribolab.fit.joint.modes import modes_of
 from tribolab.fit.joint.priors import JointPriors
 
@@ -109,7 +109,7 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
 
     Notes
     -----
-    Covariance of the points' ln mu ``diag(s^2) + tau^2 B + kappa^2 K``, see `shared_errors`. For
+    Covariance of the points' ln mu ``diag(s^2) + tau^2 B + kappa^2 K``, see `shared_by_points`. For
     each tau and kappa of a grid the most probable parameters by Gauss-Newton, their covariance
     ``(J' V^-1 J + P)^-1`` and the evidence by Laplace's approximation [1]_; the grid's points are
     mixed by evidence times their share of the prior.
@@ -119,7 +119,7 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
     .. [1] H. Rue, S. Martino, N. Chopin, J. R. Stat. Soc. B 71, 319 (2009).
        doi:10.1111/j.1467-9868.2008.00700.x
     """
-    shared = shared_errors(model.points, model.points, priors.correlation_length)
+    shared = shared_by_points(model.points, model.points, priors.correlation_length)
     widths = np.ones(2)
     for _ in range(_WIDENINGS + 1):
         level = widths[0] * priors.level * _LEVELS

@@ -47,7 +47,7 @@ def run_levels(frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1) ->
     return np.array(levels, dtype=float)
 
 
-def repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
+def pooled_repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
     """Relative standard deviation of a run's friction level, pooled over many conditions.
 
     Parameters
@@ -67,7 +67,7 @@ def repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
 
     Examples
     --------
-    >>> s, freedom = repeatability([np.array([0.99, 1.01]), np.array([1.0, 1.0])])
+    >>> s, freedom = pooled_repeatability([np.array([0.99, 1.01]), np.array([1.0, 1.0])])
     >>> round(s, 4), freedom
     (0.01, 2)
     """

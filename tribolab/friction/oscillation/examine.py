@@ -104,18 +104,18 @@ def examine_record(
     if surveyed is None:
         return "too short for a spectrum"
     view = _settled(record, surveyed, noise, limits)
-    found, part, events = view.oscillation, view.record, view.events
-    lag = max(1, int(round(1 / (found.frequency * 16 * part.spacing))))
+    oscillation, part, events = view.oscillation, view.record, view.events
+    lag = max(1, int(round(1 / (oscillation.frequency * 16 * part.spacing))))
     form = describe_waveform(part.values, lag, events, view.regularity.periods)
-    probability = class_probabilities(features(form, found))
+    probability = class_probabilities(features(form, oscillation))
     if events.drop.size:
         excess = _excess(record, view, form, probability)
         events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
     lines = components(surveyed)
     slow = slow_wave(record)
-    seen = period_verdict(probability, found, view.regularity, slow, lines, surveyed.duration)
+    seen = period_verdict(probability, oscillation, view.regularity, slow, lines, surveyed.duration)
     return Examined(
-        found, events, form, view.regularity, probability, seen, lines,
+        oscillation, events, form, view.regularity, probability, seen, lines,
         view.hysteresis, noise, spikes / n, force,
     )  # fmt: skip
 
@@ -215,7 +215,7 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
     """By how much the mean of the drops, as picked from valley to peak, is too large."""
     if probability[0] >= 0.5:
         return 0.0
-    found, events = view.oscillation, view.events
+    oscillation, events = view.oscillation, view.events
     mean = float(np.mean(events.drop))
     # the cycles lie on one another, and none is a pause
     if form.period_scatter < ALIKE and view.regularity.periods.size == events.drop.size - 1:
@@ -228,23 +228,25 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off
-    sine = float(np.clip((0.35 - found.harmonic_content) / 0.2, 0.0, 1.0))
+    sine = float(np.clip((0.35 - oscillation.harmonic_content) / 0.2, 0.0, 1.0))
     if view.regularity.kind == KINDS[2]:  # power is that of the trains and of the quiet between
         sine = 0.0
     excess = 0.0
     if sine < 1:
-        excess = min(noise_excess(view.record, found, events, view.hysteresis), 0.5 * mean)
-    return sine * (mean - found.swing) + (1 - sine) * excess
+        excess = min(noise_excess(view.record, oscillation, events, view.hysteresis), 0.5 * mean)
+    return sine * (mean - oscillation.swing) + (1 - sine) * excess
 
 
-def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis: float) -> float:
+def noise_excess(
+    record: Record, oscillation: Oscillation, events: Events, hysteresis: float
+) -> float:
     """By how much the noise makes the mean drop look larger.
 
     Parameters
     ----------
     record
         In which the events were found.
-    found
+    oscillation
         Oscillation with its background.
     events
         Events of the record.
@@ -268,8 +270,8 @@ def noise_excess(record: Record, found: Oscillation, events: Events, hysteresis:
     events = Events(*(part[:_AGAIN] for part in events))  # so many tell, however long the record
     n = int(np.searchsorted(record.time, events.stop[-1])) + 1
     frequency = np.fft.rfftfreq(n, record.spacing)
-    density = np.interp(frequency, found.bands, found.background)
-    density[frequency < 0.5 * found.frequency] = 0.0
+    density = np.interp(frequency, oscillation.bands, oscillation.background)
+    density[frequency < 0.5 * oscillation.frequency] = 0.0
     height = np.sqrt(density * n / (4 * record.spacing))
     time, cycles, rest = _cycles(record.time, record.values, events)
     inside = np.searchsorted(record.time, time[0])

@@ -48,7 +48,7 @@ class PeriodVerdict(NamedTuple):
     doubt: str = ""
 
 
-def at_odds(found: Oscillation, seen: Regularity) -> bool:
+def at_odds(oscillation: Oscillation, seen: Regularity) -> bool:
     """Whether spectrum and drops tell different periods, beyond their errors."""
     periods = seen.periods
     if not periods.size:
@@ -56,19 +56,20 @@ def at_odds(found: Oscillation, seen: Regularity) -> bool:
     spread = scatter(periods)
     if spread > IRREGULAR or not np.isfinite(spread):
         reach = _LOOSE if periods.size > 2 else _AGREE
-        frequency = found.mean_frequency if periods.size > 2 else found.frequency
+        frequency = oscillation.mean_frequency if periods.size > 2 else oscillation.frequency
         error = 0.0
     else:
-        reach, frequency = _AGREE, found.frequency
+        reach, frequency = _AGREE, oscillation.frequency
         error = np.hypot(
-            spread / np.sqrt(periods.size), found.frequency_error / max(found.frequency, 1e-300)
+            spread / np.sqrt(periods.size),
+            oscillation.frequency_error / max(oscillation.frequency, 1e-300),
         )
     return bool(abs(np.log(frequency * periods.mean())) > max(reach, _ERRORS * error))
 
 
 def period_verdict(
     probability: np.ndarray,
-    found: Oscillation,
+    oscillation: Oscillation,
     seen: Regularity,
     slow: SlowWave | None,
     lines: tuple[Component, ...],
@@ -80,7 +81,7 @@ def period_verdict(
     ----------
     probability
         Of each of `CLASSES`.
-    found, seen
+    oscillation, seen
         What the spectrum says, and the drops.
     slow
         The one slow wave that nearly all of the fluctuation is, if there is one.
@@ -91,15 +92,15 @@ def period_verdict(
     """
     kind = most_probable(probability)
     periods = seen.periods
-    frequency, error = found.frequency, found.frequency_error
+    frequency, error = oscillation.frequency, oscillation.frequency_error
     # drops tell the period better than the spectrum, where periods are alike and the two agree
-    odd, significant = at_odds(found, seen), found.false_alarm < CHANCE
+    odd, significant = at_odds(oscillation, seen), oscillation.false_alarm < CHANCE
     # where two frequencies beat, periods scatter, and yet there are lines
     several = len(lines) > 1 and lines[1].swing > _STRONG * lines[0].swing
     irregular = seen.kind == KINDS[1] and not several
-    sharp = significant and found.share > _SHARP
+    sharp = significant and oscillation.share > _SHARP
     if irregular and not sharp:  # no line in the spectrum to speak of
-        frequency, error = found.mean_frequency, found.mean_frequency_error
+        frequency, error = oscillation.mean_frequency, oscillation.mean_frequency_error
     elif periods.size > 1 and scatter(periods) < ALIKE and not odd:
         frequency = 1 / float(periods.mean())
         error = frequency * scatter(periods) / np.sqrt(periods.size)
@@ -118,7 +119,9 @@ def period_verdict(
     if kind == UNDECIDED:
         likely = CLASSES[int(np.argmax(probability))]
         return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
-    hum = [m.name for m in found.mains if abs(found.frequency / m.frequency - 1) < _MAINS]
+    hum = [
+        m.name for m in oscillation.mains if abs(oscillation.frequency / m.frequency - 1) < _MAINS
+    ]
     if hum:
         return _withheld(f"the strongest line stands where the mains hums ({hum[0]})")
     if odd and not several:

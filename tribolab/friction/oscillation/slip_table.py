@@ -104,22 +104,22 @@ class Row(NamedTuple):
     mains_amplitude: float
 
 
-def class_of(found: Examined | str) -> str:
+def class_of(examined: Examined | str) -> str:
     """Return the class of waveform, "not decided" or "not evaluated"."""
-    return NOT_EVALUATED if isinstance(found, str) else found.verdict.kind
+    return NOT_EVALUATED if isinstance(examined, str) else examined.verdict.kind
 
 
-def ranked(found: Examined) -> list[tuple[str, float]]:
+def ranked(examined: Examined) -> list[tuple[str, float]]:
     """Return the classes with their probabilities, the most probable first, claimed or not."""
-    probability = found.probability
+    probability = examined.probability
     return [(CLASSES[k], float(probability[k])) for k in np.argsort(-probability)]
 
 
-def class_table(found: list[Examined | str]) -> np.ndarray:
+def class_table(examined: list[Examined | str]) -> np.ndarray:
     """Probability of each class (segment, class)."""
     nothing = np.full(len(CLASSES), np.nan)
-    rows = [nothing if isinstance(e, str) else e.probability for e in found]
-    return np.array(rows).reshape(len(found), len(CLASSES))
+    rows = [nothing if isinstance(e, str) else e.probability for e in examined]
+    return np.array(rows).reshape(len(examined), len(CLASSES))
 
 
 def _mean(values: np.ndarray) -> float:
@@ -187,15 +187,15 @@ def _count(seen: Examined | str) -> int:
 
 
 def slip_columns(
-    found: list[Examined | str], speed: np.ndarray, loads: np.ndarray
+    examined: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Columns (segment): numbers, and the class and method as text."""
     nothing = Row(*[np.nan] * len(Row._fields))
     rows = [
         nothing if isinstance(e, str) else _row(e, v, n)
-        for e, v, n in zip(found, speed, loads, strict=True)
+        for e, v, n in zip(examined, speed, loads, strict=True)
     ]
-    kinds = [class_of(e) for e in found]
+    kinds = [class_of(e) for e in examined]
     # where nothing oscillates, the turns of the noise are neither drops nor periods
     rows = [
         nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
@@ -204,25 +204,25 @@ def slip_columns(
         for row, kind in zip(rows, kinds, strict=True)
     ]
     data = {name: np.array([getattr(row, name) for row in rows], float) for name in Row._fields}
-    data["events"] = np.array([_count(e) for e in found], int)
+    data["events"] = np.array([_count(e) for e in examined], int)
     data["waveform"] = np.array(kinds, dtype=object)
-    regular = [e.regularity.kind if oscillates(e) else "" for e in found]
+    regular = [e.regularity.kind if oscillates(e) else "" for e in examined]
     data["regularity"] = np.array(regular, dtype=object)
-    method = ["" if isinstance(e, str) else e.oscillation.method for e in found]
+    method = ["" if isinstance(e, str) else e.oscillation.method for e in examined]
     data["method"] = np.array(method, dtype=object)
     return data
 
 
-def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+def line_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     """All significant oscillations of the segments, on (segment, line), the strongest first.
 
     Parameters
     ----------
-    found, speed
+    examined, speed
         What was seen, and the sliding speed [m/s] (segment).
     """
-    lines = [e.lines if oscillates(e) else () for e in found]
-    columns = {name: np.full((len(found), MOST), np.nan) for name in _LINE}
+    lines = [e.lines if oscillates(e) else () for e in examined]
+    columns = {name: np.full((len(examined), MOST), np.nan) for name in _LINE}
     for k, mine in enumerate(lines):
         for n, line in enumerate(mine):
             columns["line_frequency"][k, n] = line.frequency
@@ -235,10 +235,10 @@ def line_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
 _LINE = ("line_frequency", "line_wavelength", "line_swing", "line_false_alarm_probability")
 
 
-def spectra_table(found: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
+def spectra_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
     """All spectra on one logarithmic grid of frequency, and of inverse wavelength."""
     names = {"psd": "power", "psd_background": "background", "psd_significant": "level"}
-    seen = [None if isinstance(e, str) else e.oscillation for e in found]
+    seen = [None if isinstance(e, str) else e.oscillation for e in examined]
     data = {}
     frequency = _grid([o.bands for o in seen if o is not None])
     for name, field in names.items():
@@ -273,11 +273,11 @@ def _stack(rows: list[np.ndarray | None], size: int) -> np.ndarray:
     return np.array([nothing if row is None else row for row in rows]).reshape(len(rows), size)
 
 
-def event_list(found: list[Examined | str]) -> xr.Dataset:
+def event_list(examined: list[Examined | str]) -> xr.Dataset:
     """All events of a run in the order of time."""
     seen = [
         (number, e.events)
-        for number, e in enumerate(found)
+        for number, e in enumerate(examined)
         if not isinstance(e, str) and oscillates(e)
     ]
     number = [np.full(e.peak.size, k) for k, e in seen]

@@ -21,8 +21,7 @@ from tribolab.errors import ReadError
 from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.sampling import stated_interval
-from tribolab.io.dialects.dates import has_day, has_zone
-from tribolab.io.dialects.dates import moment as date_of
+from tribolab.io.dialects.dates import date_of, has_day, has_zone
 from tribolab.io.dialects.model import Dialect
 from tribolab.pieces import pieces
 from tribolab.room import room

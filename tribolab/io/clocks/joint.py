@@ -99,7 +99,7 @@ def told_by_motion(
     """
     period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
-    answers = joint_fit(force_time, force, basis, shift, span, period)
+    answers = fit_jointly(force_time, force, basis, shift, span, period)
     if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
         return None
     mean, error = mixture(answers)
@@ -121,7 +121,7 @@ def _interval(time: Array, basis: Basis, shift: float) -> float:
     return float(np.median(np.diff(time[at], axis=1)))
 
 
-def joint_fit(
+def fit_jointly(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
     """Ask each model; `finest` is the sampling interval [s] that limits it."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribolab.io.clocks.basis import Basis
-from tribolab.io.clocks.joint import joint_fit, sampling
+from tribolab.io.clocks.joint import fit_jointly, sampling
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> 
 
 def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Candidate:
     finest = sampling(force_time, basis, shift)
-    answers = joint_fit(force_time, force, basis, shift, _SPAN * basis.stroke, finest)
+    answers = fit_jointly(force_time, force, basis, shift, _SPAN * basis.stroke, finest)
     at = basis.time[basis.events] + shift
     changes = int(np.count_nonzero((at > force_time[0]) & (at < force_time[-1])))
     if not answers:

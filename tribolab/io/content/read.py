@@ -14,7 +14,7 @@ from tribolab.io.content.model import LARGEST, Content, Piece
 from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, fits, peek
+from tribolab.io.dialects.signature import File, fits_format, peek
 from tribolab.pieces import anywhere
 from tribolab.provenance import sha256_of_file
 
@@ -46,7 +46,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
         If the file is not what the dialect says.
     """
     file = peek(path, binary=dialect.format == "binary")
-    if not fits(file.format, dialect.format):
+    if not fits_format(file.format, dialect.format):
         raise ReadError(
             f"{path}: this is a {file.format} file, instrument '{dialect.name}' writes "
             f"{dialect.format}"

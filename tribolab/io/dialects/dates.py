@@ -93,7 +93,7 @@ def has_zone(form: str) -> bool:
     return form == ISO_ZONE or "%z" in form
 
 
-def moment(epoch: Epoch, since: float) -> dt.datetime:
+def date_of(epoch: Epoch, since: float) -> dt.datetime:
     """Return the moment so many seconds after the start of a clock, to the microsecond.
 
     Raises
@@ -103,7 +103,7 @@ def moment(epoch: Epoch, since: float) -> dt.datetime:
 
     Examples
     --------
-    >>> moment("excel", 45000.5 * 86400).isoformat(), moment("labview", 0).isoformat()
+    >>> date_of("excel", 45000.5 * 86400).isoformat(), date_of("labview", 0).isoformat()
     ('2023-03-15T12:00:00', '1904-01-01T00:00:00+00:00')
     """
     return EPOCHS[epoch] + dt.timedelta(seconds=since)

@@ -12,7 +12,7 @@ from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.layout import Recognise
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.dialects.signature import File, fits
+from tribolab.io.dialects.signature import File, fits_format
 from tribolab.io.dialects.text_tables import find_tables
 
 _ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
@@ -32,7 +32,7 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         The dialect in question.
     """
     rules = dialect.recognise
-    if not fits(file.format, dialect.format):
+    if not fits_format(file.format, dialect.format):
         return f"it is {file.format}, not {dialect.format}"
     if rules == Recognise():
         return "the dialect has no rules to recognise it by"

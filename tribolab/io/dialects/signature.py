@@ -79,10 +79,10 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
     return File(path, _format(path, head, binary=binary), size, head)
 
 
-def fits(format_of_file: str, format_of_dialect: str) -> bool:
+def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     """Whether a file of a format may be what a dialect describes.
 
-    >>> fits("netcdf", "hdf5"), fits("text", "mat")
+    >>> fits_format("netcdf", "hdf5"), fits_format("text", "mat")
     (True, False)
     """
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME

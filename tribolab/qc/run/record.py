@@ -34,7 +34,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         text += f"{span.reason}; {{where}}"
         results.append(sample_result(name, flags, subject.time, text))
     if "normal_force" in run:
-        share = schema.pulled(run["normal_force"].values)
+        share = schema.pulled_share(run["normal_force"].values)
         if share > limits["pulled"]:
             text = f"the normal force is negative in {share:.0%} of the loaded samples"
             results.append(Result("fail", "normal_force", text, share))
@@ -53,7 +53,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     if not anywhere(lambda part: part == SUSPECT, flags):
         return [sample_result("time", flags, time, "")]
     lost = timing.lost_time(time, flags)
-    longest = float(timing.gaps(time, flags).max())
+    longest = float(timing.lengths_of_gaps(time, flags).max())
     text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
     if lost > limits["lost"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)

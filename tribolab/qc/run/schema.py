@@ -104,7 +104,7 @@ def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
     return missing
 
 
-def pulled(normal_force: np.ndarray) -> float:
+def pulled_share(normal_force: np.ndarray) -> float:
     """Share of the loaded samples whose normal force says that the bodies are pulled apart.
 
     Loaded is where its magnitude is above a tenth of the largest (99th percentile); adhesion may

@@ -105,10 +105,10 @@ def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
     """Share of the record's duration that lies in gaps [1]."""
-    return float(gaps(time, flags).sum() / (time[-1] - time[0]))
+    return float(lengths_of_gaps(time, flags).sum() / (time[-1] - time[0]))
 
 
-def gaps(time: np.ndarray, flags: np.ndarray) -> np.ndarray:
+def lengths_of_gaps(time: np.ndarray, flags: np.ndarray) -> np.ndarray:
     """Return the lengths of the gaps before flagged samples [s]."""
     after = np.flatnonzero(flags[1:] == SUSPECT) + 1
     return time[after] - time[after - 1]

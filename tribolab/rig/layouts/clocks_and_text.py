@@ -21,10 +21,10 @@ from tribolab.rig.layouts.tables import (
     header_of,
     normal_of,
     position_of,
-    rows_of,
     step_clock,
     time_of,
     write_table,
+    written_rows,
 )
 
 _RATE = 50.0  # [Hz]
@@ -66,7 +66,7 @@ def _blocks(record: Record, folder: Path) -> Path:
     for number in np.unique(leg):
         part = [c._replace(values=c.values[leg == number]) for c in columns]
         head = f"Step {number}\n".encode() + header_of(part, CSV).encode()
-        parts.append(head + rows_of(part, CSV))
+        parts.append(head + written_rows(part, CSV))
     path = folder / "steps.csv"
     path.write_bytes(b"\n".join(parts))
     return path
@@ -103,7 +103,7 @@ def _moments(record: Record, form: str) -> list[str]:
 
 def _dated(record: Record, path: Path, name: str, texts: list[str], style: Style) -> Path:
     columns = _signals(record)
-    rows = rows_of(columns, style).decode().splitlines()
+    rows = written_rows(columns, style).decode().splitlines()
     lines = (f"{text}{style.delimiter}{row}" for text, row in zip(texts, rows, strict=True))
     head = f"{name}{style.delimiter}{header_of(columns, style)}"
     path.write_text(head + "\n".join(lines) + "\n", encoding=style.encoding)

@@ -45,7 +45,7 @@ def header_of(columns: Sequence[Cells], style: Style) -> str:
     return style.delimiter.join(named) + "\n"
 
 
-def rows_of(columns: Sequence[Cells], style: Style) -> bytes:
+def written_rows(columns: Sequence[Cells], style: Style) -> bytes:
     """Return the lines of numbers."""
     body = fixed_table([(c.values, c.decimals) for c in columns], style.delimiter)
     return body if style.decimal == "." else body.replace(b".", style.decimal.encode())
@@ -56,7 +56,7 @@ def write_table(
 ) -> Path:
     """Write a table below some lines of text."""
     text = "".join(f"{line}\n" for line in head) + header_of(columns, style)
-    path.write_bytes(text.encode(style.encoding) + rows_of(columns, style))
+    path.write_bytes(text.encode(style.encoding) + written_rows(columns, style))
     return path
 
 
