@@ -167,9 +167,9 @@ def test_what_the_runs_state_of_load_and_radius_reaches_the_models_without_the_c
     curves = [entry.record for entry in catalogue.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in catalogue.all("surface", SurfaceRecord)]
     catalogue.close()
-    assert all(
-        record.model_inputs == {"load": 0.01, "radius": pytest.approx(0.005)} for record in curves
-    )
+    cooled = 0.5 / np.sqrt(3)
+    told = {"load": 0.01, "radius": 0.005, "temperature": cooled}
+    assert all(record.model_inputs == pytest.approx(told) for record in curves)
     text = (results.parent / "campaign.toml").read_text("utf-8").replace(STATED, "")
     text = text.replace('raw = "raw"', f'raw = "{results.parent}/raw"')
     assert "[uncertainty." not in text
@@ -179,6 +179,8 @@ def test_what_the_runs_state_of_load_and_radius_reaches_the_models_without_the_c
         (model,) = plan_models(load_campaign(file), curves, surfaces)
         assert model.input_errors["load"] == pytest.approx(load)
         assert model.input_errors["radius"] == pytest.approx(0.005)
+        liquid = liquid_viscosity("glycerol", "20 °C").uncertainty(cooled)
+        assert model.abscissa_error == pytest.approx(liquid)
     known = [
         replace(record, model_inputs={"speed": 0.02, "youngs_modulus": 0.1}) for record in curves
     ]

@@ -15,6 +15,7 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.lubrication.viscosity import liquid_viscosity
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.report.figures.models import draw_model, plan_model_figures
@@ -24,11 +25,20 @@ from tribolab.rig import Protocol, Rig, simulate_campaign
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 SPEEDS = (1e-5, 1e-4, 4.64e-4, 1e-3, 2.15e-3)
 LOADS = (31.0, 211.0)
+INSTRUMENT = SCHEMA.parent / "instruments/linear_slider.toml"
+STATED = {  # standard uncertainties in the instrument's own file
+    "speed": "2 %",
+    "load": "1 %",
+    "radius": "0.5 %",
+    "youngs_modulus": "4 %",
+    "temperature": "0.5 K",
+    "water_content": "0.5 %",
+}
 
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory):
-    """One surface in glycerol at two loads, one run each."""
+    """One surface in glycerol at two loads, one run each, on an instrument that states errors."""
     file = simulate_campaign(
         tmp_path_factory.mktemp("two loads") / "campaign",
         5,
@@ -43,7 +53,13 @@ def campaign(tmp_path_factory):
     )
     # adhesion would take as long as all the rest
     text = re.sub(r"(?m)^work_of_adhesion.*\n", "", text)
+    text = text.replace('viscosity = "1.4 Pa s"', 'temperature = "20 °C"\nwater_content = "0 %"')
+    text = text.replace('instrument = "linear_slider"', 'instrument = "own.toml"')
     file.write_text(f'{text}\n[model]\nuncertainty = "none"\n', "utf-8")
+    own = INSTRUMENT.read_text("utf-8").replace('name = "linear_slider"', 'name = "own"', 1)
+    for name, value in STATED.items():
+        own += f'\n[uncertainty.{name}]\nvalue = "{value}"\nas = "standard"\n'
+    (file.parent / "own.toml").write_text(own, "utf-8")
     return load_campaign(file)
 
 
@@ -57,6 +73,13 @@ def outcome(campaign, tmp_path_factory):
 def record_of(outcome) -> JointRecord:
     (entry,) = outcome.store.all("joint", JointRecord)
     return entry.record
+
+
+def stage_of(outcome, campaign) -> JointFits:
+    curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
+    models = [entry.record for entry in outcome.store.all("model", ModelRecord)]
+    surfaces = [entry.record for entry in outcome.store.all("surface", SurfaceRecord)]
+    return JointFits(campaign, curves, models, surfaces, outcome.store)
 
 
 @pytest.mark.slow
@@ -75,6 +98,25 @@ def test_both_loads_are_in_one_fit_beside_the_single_ones(outcome):
     stress = next(row for row in record.parameters if row.parameter == "shear_stress")
     single = pd.read_csv(outcome.folder / "tables/shear_stress.csv")["shear_stress_Pa"]
     assert stress.low < single.max() and single.min() < stress.high
+
+
+@pytest.mark.slow
+def test_what_the_instruments_file_states_reaches_models_and_the_joint_fit(outcome, campaign):
+    liquid = liquid_viscosity("glycerol", "20 °C").uncertainty(0.5, 0.005)
+    assert liquid > 0.1
+    for file in (outcome.folder / "data").glob("model_*.nc"):
+        curve = read_netcdf(file, "curve")
+        assert curve.attrs["abscissa_error"] == pytest.approx(np.hypot(liquid, 0.02))
+        assert curve.model_input.values.tolist() == ["load", "radius", "youngs_modulus"]
+        assert (np.abs(curve.model_part).max("sliding_speed") > 0).all()
+    row = next(row for row in record_of(outcome).parameters if row.parameter == "viscosity")
+    assert np.log(row.prior_high / row.prior_low) / (2 * 1.959964) == pytest.approx(liquid)
+    (task,) = stage_of(outcome, campaign).plan()
+    assert task.speed_error == pytest.approx(0.02)
+    # the campaign's own file counts before it
+    stated = campaign.uncertainty.model_validate({"speed": {"value": "3 %", "as": "standard"}})
+    (task,) = stage_of(outcome, campaign.model_copy(update={"uncertainty": stated})).plan()
+    assert task.speed_error == pytest.approx(0.03)
 
 
 @pytest.mark.slow
@@ -122,10 +164,7 @@ def test_a_joint_fit_of_the_same_curves_is_taken_over(outcome, campaign, tmp_pat
 
 @pytest.mark.slow
 def test_a_fit_that_is_not_possible_is_a_note_with_the_reason(outcome, campaign):
-    curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
-    models = [entry.record for entry in outcome.store.all("model", ModelRecord)]
-    surfaces = [entry.record for entry in outcome.store.all("surface", SurfaceRecord)]
-    stage = JointFits(campaign, curves, models, surfaces, outcome.store)
+    stage = stage_of(outcome, campaign)
     (task,) = stage.plan()
     gone = task.__class__(**vars(task) | {"measured": ("data/none.nc", "data/none.nc")})
     with pytest.raises(ReadError) as caught:

@@ -381,6 +381,27 @@ def test_a_gain_that_all_loads_share_moves_all_friction_and_is_in_the_intervals(
     assert np.sqrt(widths[1] ** 2 - widths[0] ** 2) == pytest.approx(shift, rel=0.3)
 
 
+def test_a_speed_that_all_loads_share_moves_the_viscosity_the_other_way(curves):
+    """A clock that runs 3 % fast: eta v is known, and eta only as well as v."""
+    parts = load_curves(curves)
+    faster = [
+        part._replace(measured=part.measured.assign_coords(
+            sliding_speed=1.03 * part.measured.sliding_speed
+        ))
+        for part in parts
+    ]  # fmt: skip
+    usual, wider, moved = (
+        fit_loads(parts, 1.4),
+        fit_loads(parts, 1.4, speed_error=np.log(1.03)),
+        fit_loads(faster, 1.4),
+    )
+    a, b, c = (fit.marginal("viscosity") for fit in (usual, wider, moved))
+    widths = [np.log(m.high / m.low) / (2 * 1.959964) for m in (a, b)]
+    shift = np.log(c.value / a.value)
+    assert -0.03 < shift < -0.02
+    assert np.sqrt(widths[1] ** 2 - widths[0] ** 2) == pytest.approx(-shift, rel=0.1)
+
+
 def test_spectra_err_by_surface_and_the_load_on_all_surfaces_together(curves):
     parts = [part._replace(surface=s) for s in ("fine", "rough") for part in load_curves(curves)]
     one = fit_loads(load_curves(curves), 1.4)

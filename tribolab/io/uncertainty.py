@@ -153,7 +153,8 @@ NAMES: dict[str, tuple[str, Varies]] = {
     "youngs_modulus": ("1", "calibration"),
 }
 
-MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus")  # what a model takes as given
+# what a model takes as given: the last two by the liquid's viscosity
+MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "water_content")
 
 
 class Uncertainty(_Strict):

@@ -75,8 +75,8 @@ class CurveRecord:
     uncertainty_says
         What the uncertainty does not hold; "" where it holds all.
     model_inputs
-        Relative standard uncertainties of what a model takes as given, by name, as its runs'
-        instrument and campaign state them.
+        Standard uncertainties of what a model takes as given, by name, as its runs' instrument
+        and campaign state them: relative, of temperature [K], of water content absolute.
     """
 
     outcome: CurveOutcome

@@ -69,6 +69,8 @@ class JointTask:
         Theory of the contact area, and whether the models' area is that with adhesion.
     viscosity, viscosity_range
         Of the liquid as stated [Pa s].
+    speed_error
+        Relative standard uncertainty of the sliding speed, the same at all loads.
     folder, fingerprint
         Where, and what shapes it.
     """
@@ -85,6 +87,7 @@ class JointTask:
     adhesion: bool
     viscosity: float
     viscosity_range: tuple[float, float] | None
+    speed_error: float
     folder: Path
     fingerprint: str = ""
 

@@ -13,7 +13,7 @@ from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.provenance import sha256_of
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.records.parts import number_of
+from tribolab.records.parts import ModelOutcome, number_of
 from tribolab.words import explain
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         self._campaign = campaign
         self._curves = [curve.outcome for curve in curves if curve.outcome.done]
         self._files = {curve.name: curve.data_file for curve in self._curves}
+        self._stated = {curve.outcome.name: curve.model_inputs for curve in curves}
         self._spectra = {s.outcome.name: s.outcome.data_file for s in surfaces if s.outcome.done}
         self._models = [
             model
@@ -93,7 +94,8 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             ),
         )
         outcomes = tuple(replace(model.outcome, seconds=0.0) for model in ordered)
-        liquid = self._campaign.viscosity_of(medium)
+        stated = self._stated_of(outcomes)
+        liquid = self._campaign.viscosity_of(medium, stated)
         assert liquid is not None  # else there were no models
         task = JointTask(
             name=f"joint_{safe_name('_'.join(filter(None, (*surfaces, medium))))}",
@@ -108,6 +110,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             adhesion=self._campaign.model.adhesion,
             viscosity=liquid.value,
             viscosity_range=liquid.bounds,
+            speed_error=self._campaign.stated_errors(stated).get("speed", 0.0),
             folder=self._store.folder,
         )
         files = [*task.measured, *(outcome.data_file for outcome in outcomes)]
@@ -115,10 +118,16 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             files += [dry.surface_file, *dry.measured]
         shaping = [
             [task.name, task.enhancement, task.contact, task.viscosity, task.viscosity_range],
-            [task.area, task.adhesion, [asdict(dry) for dry in task.dry]],
+            [task.area, task.adhesion, [asdict(dry) for dry in task.dry], task.speed_error],
             [self._store.identity(file) for file in files],
         ]
         return replace(task, fingerprint=fingerprint_of(sha256_of(shaping)))
+
+    def _stated_of(self, models: Sequence[ModelOutcome]) -> dict[str, float]:
+        """Return what the instruments of all curves state of a model's inputs, the largest each."""
+        each = [self._stated[model.curve] for model in models]
+        names = dict.fromkeys(name for stated in each for name in stated)
+        return {name: max(stated.get(name, 0.0) for stated in each) for name in names}
 
     def _dry(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
         """Return the friction without liquid of each surface, where it is to be used."""

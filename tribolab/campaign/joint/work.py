@@ -57,6 +57,7 @@ def fitted(task: JointTask) -> JointRecord:
 
     dry = {of.surface: contacts for of in task.dry if (contacts := _dry_contacts(task, of))}
     given: Arguments = {
+        "speed_error": task.speed_error,
         "spectrum_error": _bands(task),
         "area_ratio_error": {
             surface: max(contact.error for contact in contacts) for surface, contacts in dry.items()

@@ -116,19 +116,19 @@ def plan_models(
     wet = [
         (curve, viscosity)
         for curve in done
-        if (viscosity := campaign.viscosity_of(curve.outcome.medium)) is not None
+        if (viscosity := campaign.viscosity_of(curve.outcome.medium, curve.model_inputs))
+        is not None
     ]
     if not wet:
         return ()
     spread, freedom = _repeatability(done)
-    of_all = {name: entry["standard"] for name, entry in campaign.uncertainty.plain().items()}
     known = {surface.outcome.name: surface for surface in surfaces}
     contact = campaign.contact.line()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
-        stated = {**record.model_inputs, **of_all}  # an instrument's file, and the campaign's first
+        stated = campaign.stated_errors(record.model_inputs)
         modulus_range = _modulus_range(campaign, stated.get("youngs_modulus"))
         missing = _missing(curve, contact, surface.outcome if surface else None)
         work, works = _adhesion(campaign, curve.medium)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from pydantic import PrivateAttr
@@ -79,13 +80,28 @@ class Campaign(Table):
             options["contact_width"] = 2 * float(hertz_half_width(load, contact))
         return options
 
-    def viscosity_of(self, medium: str) -> MediumViscosity | None:
+    def stated_errors(self, of_instruments: Mapping[str, float]) -> dict[str, float]:
+        """Return the standard uncertainties by name: an instrument's file, this one before it.
+
+        Parameters
+        ----------
+        of_instruments
+            As the files of the instruments state them.
+        """
+        own = {name: entry["standard"] for name, entry in self.uncertainty.plain().items()}
+        return {**of_instruments, **own}
+
+    def viscosity_of(
+        self, medium: str, of_instruments: Mapping[str, float] | None = None
+    ) -> MediumViscosity | None:
         """Return the viscosity of a medium, stated or from its temperature; None if not known.
 
         Parameters
         ----------
         medium
             Name of a [medium.*] table.
+        of_instruments
+            Standard uncertainties by name, as the files of the instruments state them.
         """
         table = self.medium.get(medium)
         if table is None:
@@ -96,7 +112,7 @@ class Campaign(Table):
             table.viscosity_range,
             table.temperature,
             table.water_content,
-            self.uncertainty,
+            self.stated_errors(of_instruments or {}),
         )
 
     @property

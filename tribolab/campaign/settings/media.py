@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
-
-from tribolab.io.uncertainty import Known, Uncertainty
 
 _95 = 1.959963984540054
 
@@ -34,7 +33,7 @@ def medium_viscosity(
     bounds: tuple[float, float] | None,
     temperature: float | None,
     water_content: float | None,
-    uncertainty: Uncertainty,
+    stated: Mapping[str, float],
 ) -> MediumViscosity | None:
     """Return the viscosity of a medium; None if neither it nor its temperature is stated.
 
@@ -46,8 +45,9 @@ def medium_viscosity(
         As stated [Pa s].
     temperature, water_content
         [K], mass fraction [1].
-    uncertainty
-        What is stated of temperature and water content.
+    stated
+        Standard uncertainties by name, of which those of temperature [K] and water content [1]
+        count.
 
     Raises
     ------
@@ -65,11 +65,7 @@ def medium_viscosity(
     if bounds is not None:
         error = math.log(bounds[1] / bounds[0]) / (2 * _95)
     elif computed is not None:
-        known = uncertainty.plain()
-        kelvin, water = (
-            Known(**known[name]).standard if name in known else 0.0
-            for name in ("temperature", "water_content")
-        )
+        kelvin, water = (stated.get(name, 0.0) for name in ("temperature", "water_content"))
         if viscosity is not None:  # measured, not by the formula
             computed = computed._replace(formula=0.0)
         error = computed.uncertainty(kelvin, water)

@@ -76,7 +76,11 @@ def model_covariance(
 
 
 def calibration_covariance(
-    model: JointModel, posterior: Posterior, priors: JointPriors, curves: Sequence[LoadCurve]
+    model: JointModel,
+    posterior: Posterior,
+    priors: JointPriors,
+    curves: Sequence[LoadCurve],
+    speed_error: float = 0.0,
 ) -> np.ndarray:
     """Return what the calibration that all curves share adds to the covariance of the parameters.
 
@@ -87,11 +91,14 @@ def calibration_covariance(
     curves
         Of each measured curve ``uncertainty_part`` counts, from `with_curve_uncertainty`; parts of
         one name are one error of all curves.
+    speed_error
+        Relative standard error [1] of all sliding speeds together.
 
     Returns
     -------
     numpy.ndarray
-        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``.
+        Covariance (parameter, parameter): of each part c of ln mu, ``Sigma J' V^-1 c``. That of
+        the speed is d ln mu/d ln v, which is d ln mu/d ln eta and the exponent's of the stress.
     """
     points = model.points
     rows: dict[str, np.ndarray] = {}
@@ -107,9 +114,18 @@ def calibration_covariance(
             if known.any():
                 row = rows.setdefault(name, np.zeros(points.log_speed.size))
                 row[mine] = np.interp(points.log_speed[mine], place[known], relative[known])
-    _, answer = _answer(model, posterior, priors)
+    slopes, answer = _answer(model, posterior, priors)
+    if speed_error > 0:
+        rows["speed"] = speed_error * _over_speed(model, posterior.centre, slopes)
     moved = np.array(list(rows.values())).reshape(-1, points.log_speed.size) @ answer.T
     return moved.T @ moved
+
+
+def _over_speed(model: JointModel, theta: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Return d ln mu/d ln v of the points; a dry curve does not hang on the viscosity."""
+    where = model.parameters
+    solid = slopes[:, where.stress] @ theta[where.speed]
+    return np.asarray(slopes[:, where.viscosity] + solid)
 
 
 def _answer(

@@ -33,6 +33,7 @@ def fit_shear_stress_jointly(
     priors: JointPriors | None = None,
     speed_range: tuple[str | float, str | float] | None = None,
     common_error: float = 0.0,
+    speed_error: float = 0.0,
     area_enhancement: float | xr.DataArray = 1.0,
     dry: DryFriction | None = None,
     curves: xr.Dataset | None = None,
@@ -59,6 +60,8 @@ def fit_shear_stress_jointly(
     common_error
         Relative standard error [1] of the shear stress that all loads share, such as that of the
         spectrum.
+    speed_error
+        Relative standard error [1] of the sliding speeds that all points share.
     area_enhancement
         Real contact area with adhesion over that without [1]; over the loads or surfaces. With it
         the shear stress is that in the adhesive area.
@@ -131,6 +134,7 @@ def fit_shear_stress_jointly(
         eta,
         priors,
         common_error=float(common_error),
+        speed_error=float(speed_error),
         area_ratio_error=0.0 if dry is None else dry.area_ratio_error,
         speed_range=(ends[0], ends[1]),
     )

@@ -37,6 +37,7 @@ def fit_loads(
     priors: JointPriors | None = None,
     *,
     common_error: float = 0.0,
+    speed_error: float = 0.0,
     spectrum_error: Mapping[str, xr.Dataset] | None = None,
     area_ratio_error: float | Mapping[str, float] = 0.0,
     speed_range: tuple[float, float] = (0.0, np.inf),
@@ -53,6 +54,8 @@ def fit_loads(
         By default those of `JointPriors`.
     common_error
         Relative standard error [1] of the shear stress that all loads share.
+    speed_error
+        Relative standard error [1] of the sliding speeds that all points share.
     spectrum_error
         By surface, from `model_uncertainty` at one of the loads: what is not known of its spectrum,
         and of load, radius and modulus, where it varies them.
@@ -105,7 +108,7 @@ def fit_loads(
     alone = _left_out(model, priors, posterior, curves)
     shared = parameters.stress
     posterior.covariance[:, shared, shared] += common_error**2
-    added = calibration_covariance(model, posterior, priors, curves)
+    added = calibration_covariance(model, posterior, priors, curves, speed_error)
     posterior = posterior._replace(covariance=posterior.covariance + added)
     if spectrum_error:
         bands = {surfaces.index(surface): band for surface, band in spectrum_error.items()}
