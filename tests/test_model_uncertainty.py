@@ -163,8 +163,10 @@ def test_all_that_is_held_fixed_is_named(spread):
     rough = ("shear stress in the contact", "contact area", "roughness", "form of the flow factors")
     named = [one.split(": ")[0] for one in spread.attrs["not_varied"].split("; ")]
     assert named == [*fixed, *rough]  # nothing else: all ranges were given
+    assert "load: length and Poisson's ratio are taken as stated" in spread.attrs["not_varied"]
     bare = model_uncertainty(CONTACT, None, **GIVEN | {"speed": [1e-2]})
     text = bare.attrs["not_varied"]
+    assert "radius, length, Poisson's ratio and normal force are taken as stated" in text
     for name in (*fixed, "viscosity: no viscosity_range was given", "Young's modulus: no youngs_"):
         assert name in text
     assert "contact area" not in text

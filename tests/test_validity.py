@@ -120,6 +120,15 @@ def test_a_wide_contact_is_said_and_one_wider_than_its_cylinder_refused():
             compute(1000.0, SOFT)
 
 
+def test_hard_bodies_are_said_to_thicken_a_liquid():
+    """Steel in oil at 0.9 GPa would get a film of soft lubrication, and not a word."""
+    for modulus, load, hard in ((20e6, 3e3, False), (210e9, 1e5, True)):
+        body = LineContact("10 mm", "10 mm", modulus, 0.3)
+        said = line_limits("curve", body, load, speed=[1e-3], film=[1e-6])
+        assert ("an oil's viscosity" in said["validity_reasons"]) is hard
+        assert line_limits("dry", body, load)["validity"] == "pass"
+
+
 def test_a_thick_film_is_said_with_the_speed_from_which_on():
     narrow = replace(CONTACT, radius=1e-3)
     curve = stribeck_curve(narrow, None, 1.4, 100.0, 0.0, [1e-3, 0.1, 0.5], cells=100)

@@ -60,6 +60,14 @@ LIMITS = {
         "the bodies are taken as a parabola on a half-space",
         "take a smaller load, a larger radius or a stiffer body, or compute with finite elements",
     ),
+    "thickening": ValidityLimit(
+        "rise of an oil's viscosity at the highest pressure, in its logarithm",
+        0.1,  # so much more drag in the middle of the contact; the film follows later
+        np.inf,  # a warning: which liquid it is is not asked for, and water does not thicken
+        "the viscosity is taken to be the same at every pressure, as between soft bodies",
+        "take a smaller load or a softer body, or a theory of elastohydrodynamics between hard "
+        "ones",
+    ),
     "slope": ValidityLimit(
         "rms slope of the surface",
         1.0,

@@ -19,7 +19,6 @@ _CUTOFFS = 0.3e-9, 3e-9
 _GAMMA = 0.5
 # What no variation reaches, between any surfaces and between rough ones.
 FIXED = (
-    ("geometry and load", "radius, length, Poisson's ratio and normal force are taken as stated"),
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at the pressure outside"),
     ("elasticity", "linear and without loss, of a half-space"),
@@ -155,10 +154,23 @@ def variations(base: Base) -> list[Variation | Skipped]:
 
 def held_fixed(base: Base) -> list[Skipped]:
     """Return what no variation reaches."""
-    fixed = dict(FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH)
+    fixed = {"geometry and load": _as_stated(base)}
+    fixed |= dict(FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
         fixed["contact area"] = WITH_ADHESION
     return [Skipped(name, reason) for name, reason in fixed.items()]
+
+
+def _as_stated(base: Base) -> str:
+    """Say what of geometry and load has no range to be varied in."""
+    stated = {
+        "radius": base.radius_range is None,
+        "length": True,
+        "Poisson's ratio": True,
+        "normal force": base.load_range is None,
+    }
+    *before, last = [name for name, taken in stated.items() if taken]
+    return f"{', '.join(before)} and {last} are taken as stated"
 
 
 def _factors(base: Base, **changed: float) -> Changed:
