@@ -242,6 +242,14 @@ def test_stribeck_draws_any_number_of_points(points):
     assert low < 1e-6 and high > np.logspace(-6, -2, points)[-1]
 
 
+def test_a_curve_is_drawn_once_however_many_runs_it_is_the_mean_of():
+    curve = made_curve()
+    curve["run_friction_coefficient"] = curve.friction_coefficient.expand_dims(run=["a", "b", "c"])
+    assert len(plot.figure_data(plot.stribeck(curve))) == curve.sizes["sliding_speed"]
+    apart = curve[["friction_coefficient"]] * xr.DataArray([1.0, 2.0], dims="run")
+    assert len(plot.figure_data(plot.stribeck(apart))) == 2 * curve.sizes["sliding_speed"]
+
+
 def test_a_flat_curve_is_not_cut_by_the_axis():
     names = ("friction_coefficient", "friction_coefficient_std", "friction_coefficient_sem")
     values = ([0.6074, 0.6080], [0.0, 0.0], [0.0001, 0.0002])

@@ -131,7 +131,8 @@ def _listed(curves: Curves) -> list[xr.Dataset]:
 
 def _each(curves: xr.Dataset) -> list[xr.Dataset]:
     """Return the curves of a dataset that holds several, named after their coordinates."""
-    along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in curves.dims]
+    varying = {dim for name in _DRAWN if name in curves for dim in curves[name].dims}
+    along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in varying]
     if not along:
         return [curves]
     parts = []
