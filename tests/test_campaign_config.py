@@ -390,3 +390,11 @@ def test_a_medium_is_known_by_name_at_its_temperature(folder):
 def test_what_is_wrong_with_media_and_uncertainties_is_said(folder, change, words):
     with pytest.raises(ConfigError, match=words):
         load(folder, MEDIUM.replace(*change))
+
+
+def test_true_is_no_number(folder):
+    """Python takes it for 1: the middle of each stroke became all of it."""
+    text = WHOLE.replace("trim = 0.15", "trim = 0.15\nstroke_middle = true")
+    (folder / "campaign.toml").write_text(text)
+    with pytest.raises(ConfigError, match="stroke_middle: true stands where a number or a text"):
+        load_campaign(folder / "campaign.toml")

@@ -128,3 +128,74 @@ def test_the_distance_of_heights_is_told_in_many_words(said, tmp_path):
     scan = tl.read_scans(path)
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
     np.testing.assert_allclose(scan.height[0], 1e-9 * heights, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "guess"),
+    [
+        ("disc_R21.5mm_b.txt", "Rig", "'R21.5mm' of the file's name is the radius of the track"),
+        ("a.txt", "Geometry: ring; R = 21.5 mm", "'Geometry: ring; R = 21.5 mm' is the radius"),
+        ("a.txt", "disc dia. 43 mm", "'disc dia. 43 mm' is twice the radius of the track"),
+    ],
+)
+def test_what_may_be_the_radius_is_asked_about_and_the_draft_takes_it(name, said, guess, tmp_path):
+    head = f"{said}\nTime [s]\tRotation [rpm]\tFriction [N]\tLoad [N]"
+    path = table(tmp_path / name, head, T, 60.0, FORCE, LOAD)
+    assert guess in refusal(path)
+    run = tl.read(path, tl.draft_dialect(path).dialect)
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * RADIUS, rtol=1e-6)
+
+
+def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
+    said = "Reciprocating: stroke 5 mm at 0.5 Hz, load of 12 N\nMotion: sine"
+    force = FORCE * np.sign(np.cos(np.pi * T) + 1e-9)
+    run = tl.read(table(tmp_path / "a.txt", f"{said}\nTime [s]\tFriction [N]", T, force))
+    assert run.attrs["stroke_m"] == pytest.approx(5e-3)
+    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 5e-3 / 2, rel=0.01)
+    np.testing.assert_allclose(run.normal_force, 12.0)
+    head = "Belt rig, speed 0,3 m/min\ntime/s\tdrag/cN\tload/N"
+    path = table(tmp_path / "b.txt", head, T, 100 * FORCE, LOAD)
+    assert "'Belt rig, speed 0,3 m/min' is the sliding speed all along" in refusal(path)
+    run = tl.read(path, tl.draft_dialect(path).dialect)
+    assert run.attrs["set_speed_m_s"] == pytest.approx(5e-3)
+
+
+def test_rows_that_stand_twice_are_taken_once_and_a_factor_of_a_unit_is_read(tmp_path):
+    head = "Time [s]\tFriction (1e-4 N)\tLoad [N]\tSpeed [mm/s]"
+    columns = (np.repeat(x, 2) for x in (T, 1e4 * FORCE, LOAD))
+    run = tl.read(table(tmp_path / "a.txt", head, *columns, 5.0))
+    assert run.attrs["rows_repeated"] == "each row stands twice, and is taken once"
+    np.testing.assert_allclose(run.friction_force, FORCE, rtol=1e-4)
+    told = tl.check(run).table.query("check == 'rows_left_out'")
+    assert set(told.status) == {"pass"}
+
+
+def test_forces_whose_ratio_can_be_no_friction_are_asked_about(tmp_path):
+    head = "Time [s]\tFriction force [N]\tNormal force [N]\tSpeed [mm/s]"
+    path = table(tmp_path / "a.txt", head, T, 1e3 * LOAD, FORCE, 5.0)
+    assert "are the two swapped, or a unit wrong?" in refusal(path)
+    command("dialect", path, "--no-ask", "--output", tmp_path / "a.toml")
+    told = command("info", path, "--instrument", tmp_path / "a.toml")
+    assert "doubtful: the friction force is 6.0" in told and "a unit wrong?" in told
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('quantity = "friction_torque"', "formula as \"torque / '20 mm'\""),
+        ('quantity = "laps"', "formula as \"2 * pi * turns * '20 mm'\""),
+        ('quantity = "angle"', 'quantity = "position"'),
+        ('quantity = "strain"', 'quantity = "friction_force"'),
+        ('quantity = "counts"', "counts * '0.5 mN'"),
+        ('quantity = "stress"', '"shear_stress" or "normal_stress"'),
+        ('quantity = "normal_force"\nscale = true', "true stands where a number or a text belongs"),
+    ],
+)
+def test_a_dialect_by_hand_is_told_how_a_column_of_another_kind_is_used(line, said, tmp_path):
+    toml = tmp_path / "x.toml"
+    columns = '[[column]]\nquantity = "time"\nname = "t"\nunit = "s"\n'
+    toml.write_text(f'name = "x"\ntitle = "x"\n[header]\nline = 1\n{columns}[[column]]\n{line}\n'
+                    'name = "T"\n')  # fmt: skip
+    with pytest.raises(tl.TribolabError) as caught:
+        tl.read(table(tmp_path / "a.txt", "t\tT", T, FORCE), toml)
+    assert said in str(caught.value)

@@ -85,15 +85,19 @@ def registry() -> pint.UnitRegistry[float]:
 
 # exponents and signs of multiplication as typesetters write them
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
+_TIMES = re.compile(r"^[x×*·]\s*(?=\d)")  # "x 1e-4 N": a factor of the unit
+_RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
 
 
 def as_pint_writes(unit: str) -> str:
     """Return a unit, typeset or from netCDF, in the spelling that pint reads."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
+    unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
-    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"**\1", unit)  # netCDF writes m2 and s-1
+    # netCDF writes m2 and s-1; the e of 1e-4 is no name
+    unit = re.sub(r"(?<=[A-Za-z])(?<!\d[eE])(-?\d)", r"**\1", unit)
     return unit.replace("^", "**")
 
 

@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from tribolab.draft.columns.follows import lacking, number_of, what_follows
+from tribolab.draft.columns.follows import lacking, what_follows
+from tribolab.draft.columns.stated_load import number_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_heights
 from tribolab.draft.file.header import converts, is_unit
@@ -70,7 +71,7 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft
     if layout is None or understood is None:
         return draft
     speed = what_follows(layout, understood).speed
-    if speed is not None and speed.guess:
+    if speed is not None and speed.guess and speed.source == "stroke":
         crank = f"does a crank drive it ({NONE}: its speed is constant both ways)?"
         drive = "constant speed" if ask(crank, "yes").strip() == NONE else "crank"
         understood = understood._replace(drive=drive)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
@@ -15,6 +15,7 @@ from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
+from tribolab.io.force_ratio import doubt_about
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_run as known_run
@@ -22,6 +23,9 @@ from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
 from tribolab.words import Count, explain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _LONGEST = 300  # letters of what a file says of itself
@@ -44,7 +48,7 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         run = read_run(path, instrument, pair=False)
         facts = file_facts(run, path, instrument)
         told = [] if drafted else companion_lines(describe_companion(path, instrument, run))
-        return run_lines(facts) + (told or missing_lines(facts))
+        return run_lines(facts) + (told or missing_lines(facts)) + _doubts(run)
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
 
 
@@ -210,6 +214,14 @@ def missing_lines(facts: FileFacts) -> list[str]:
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     return [f"  missing: {lack}" for lack in missing_of(names)]
+
+
+def _doubts(run: xr.Dataset) -> list[str]:
+    """Say what cannot be: forces whose ratio is no friction coefficient."""
+    if not {"friction_force", "normal_force"} <= set(run.data_vars):
+        return []
+    doubt = doubt_about(run["friction_force"].to_numpy(), run["normal_force"].to_numpy())
+    return [f"  doubtful: {doubt}"] if doubt else []
 
 
 def companion_lines(told: CompanionFacts) -> list[str]:

@@ -15,6 +15,7 @@ from tribolab.io.clocks.clock import join_clocks, mended_time, recorded_at, set_
 from tribolab.io.content.model import Content
 from tribolab.io.content.newest_first import oldest_first
 from tribolab.io.content.read import read_content
+from tribolab.io.content.twice import each_row_once
 from tribolab.io.content.values import single_values, step_values
 from tribolab.io.derived import add_derived
 from tribolab.io.dialects.column_rule import FRICTION
@@ -40,7 +41,7 @@ def assemble(logs: Logs, zero: str | None = None) -> xr.Dataset:
     contents = [read_content(path, dialect, size) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
-    contents = [oldest_first(content) for content in contents]
+    contents = [each_row_once(oldest_first(content)) for content in contents]
     starts = [content.pieces[0].started for content in contents]
     dated = [(start, content) for start, content in zip(starts, contents, strict=True) if start]
     if len(dated) == len(contents):

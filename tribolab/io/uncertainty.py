@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable
 from typing import Annotated, Literal, NamedTuple, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from tribolab.errors import TribolabError, UnitError, shown
+from tribolab.io.switches import NoSwitches
 from tribolab.units import conversion, to_si
 from tribolab.untyped import Json
 
@@ -43,7 +44,7 @@ class Known(NamedTuple):
     source: str
 
 
-class _Strict(BaseModel):
+class _Strict(NoSwitches):
     model_config = ConfigDict(
         frozen=True, extra="forbid", use_attribute_docstrings=True, populate_by_name=True
     )

@@ -14,13 +14,14 @@ from tribolab.campaign.settings.problems import Problem, message
 from tribolab.campaign.settings.toml_file import Opened, open_settings, settings_path
 from tribolab.errors import TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
+from tribolab.io.switches import NoSwitches
 from tribolab.untyped import Json
 
 REVIEW_FILE = "review.toml"
 SCHEMA_FILE = "review.schema.json"
 
 
-class DecisionEntry(BaseModel):
+class DecisionEntry(NoSwitches):
     """One decision on a run, or on the segment in an interval of its time."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

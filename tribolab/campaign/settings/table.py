@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
+
+from tribolab.io.switches import NoSwitches
 
 
-class Table(BaseModel):
+class Table(NoSwitches):
     """A table of the campaign file: keys that are not known are errors, nothing can be changed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

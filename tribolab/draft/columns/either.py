@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.follows import find_load, number_of
+from tribolab.draft.columns.stated_load import find_load, number_of
 from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn

@@ -60,7 +60,8 @@ def filled_in(
     fill_in = ""
     if role_of(bare[0]) == "extreme" and option.quantity in FORCES:
         guessed.append("by its name it is not the signal but its extremes or scatter")
-    if factor := _FACTOR.search(column.label):
+    factor = _FACTOR.search(column.label)
+    if factor and factor[0].lstrip("x×*· ") not in (unit or ""):  # the unit's own is read
         guessed.append(f"'{factor[0]}' in its name changes no number")
     if unit is not None and is_count(unit):
         fill_in = f"what one count of '{shown(column.label)}' ({option.quantity}) is, e.g. "

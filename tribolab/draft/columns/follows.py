@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.lengths import find_arm, find_radius
-from tribolab.draft.columns.stated_words import LOAD
+from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.strokes import (
     END_TO_END,
     FREQUENCY,
@@ -24,7 +24,6 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
-from tribolab.io.dialects.patterns import guarded
 from tribolab.io.missing import missing_of
 
 _DRIVE = re.compile(
@@ -32,7 +31,6 @@ _DRIVE = re.compile(
 )
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
-_WEIGHT = {"g": "gf", "kg": "kgf"}
 SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
@@ -208,7 +206,7 @@ def _with_speed(
     by_values = _of_values(values)
     of_strokes = by_values or _of_columns(understood)
     if of_strokes is None or (by_values is None and "rotation_speed" in names):
-        return before
+        return before if turning else _with_set_speed(before, values)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     drive, guess = understood.drive or "crank", ""
@@ -224,6 +222,18 @@ def _with_speed(
         speed=speed,
         values=(*before.values, *of_strokes.values),
         symbols=(*before.symbols, *of_strokes.symbols),
+    )
+
+
+def _with_set_speed(before: Follows, values: Sequence[DraftValue]) -> Follows:
+    """Let the speed that the text states be that of the run, which is asked about."""
+    stated = [value for value in values if value.name == "set_speed"]
+    if len(stated) != 1:
+        return before
+    guess = f"'{stated[0].text}' is the sliding speed all along"
+    return before._replace(
+        speed=SpeedBy("set speed", guess=guess, options=("not known",)),
+        values=(*before.values, stated[0]),
     )
 
 
@@ -276,33 +286,3 @@ def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> Draf
         if value.unit and converts(value.unit, unit) and key.search(value.key)
     ]
     return fitting[0]._replace(to=unit) if len(fitting) == 1 else None
-
-
-def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
-    """Return the load that the text before the table states, as a force; None if none, or several.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.draft.columns.values.find_values`.
-    """
-    fitting = []
-    for value in values:
-        if value.source != "preamble" or not LOAD.search(value.key):
-            continue
-        unit = _WEIGHT.get(value.own_unit or "", value.own_unit or "")
-        if converts(unit, "N"):
-            fitting.append(value._replace(name="set_normal_force", unit=unit, to=None))
-    return fitting[0] if len(fitting) == 1 else None
-
-
-def number_of(value: DraftValue) -> float:
-    """Return the number that a value's text states, in the value's unit.
-
-    Parameters
-    ----------
-    value
-        From `tribolab.draft.columns.values.find_values`.
-    """
-    stated = guarded(value.pattern).first(value.text) or "nan"
-    return value.scale * float(stated.rstrip(".,").replace(",", "."))

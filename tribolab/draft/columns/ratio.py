@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.model import DraftColumn
+from tribolab.io.force_ratio import doubt_about
 from tribolab.quantities import unit_conversion
 
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
@@ -15,7 +16,7 @@ _LOADED = 0.5  # of the largest load
 
 
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
-    """Say so where the ratio of the forces is not the coefficient that stands beside them.
+    """Say so where the forces' ratio is not the coefficient beside them, or can be none at all.
 
     Parameters
     ----------
@@ -31,6 +32,9 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
     """
     held = {column.quantity: column for column in columns if column.used and column.quantity}
     names = ("friction_coefficient", "friction_force", "normal_force")
+    if "friction_coefficient" not in held and all(name in held for name in names[1:]):
+        doubt = doubt_about(*(_si(held[name], numbers) for name in names[1:]))
+        return [f"{doubt} they are read as named"] if doubt else []
     if any(name not in held for name in names):
         return []
     stated, friction, load = (_si(held[name], numbers) for name in names)

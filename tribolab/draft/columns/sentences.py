@@ -12,7 +12,7 @@ _LONGEST = 300  # characters of a line that are looked at
 _MOST = 8  # numbers of a line
 _NUMBER = re.compile(
     r"(?<![\d.,A-Za-z_])(?P<number>[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)\s{0,3}"
-    r"(?P<unit>[^\W\d_][^\s;,:()\[\]]*|%|°[A-Za-z]?)"
+    r"(?P<unit>[^\W\d_][^\s;,:()\[\]，；：（）、。]*|%|°[A-Za-z]?)"
 )
 _CUTS = re.compile(r"[;:,=|()\[\]：；，（）、。]|\b(?:at|on|and|with|bei|und|mit|et|con|avec)\b")
 _ENDS = " \t:=~≈＝：-–"

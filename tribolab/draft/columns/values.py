@@ -34,6 +34,10 @@ _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dea
 _WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
+_RADIUS_IN_NAME = re.compile(
+    r"(?:^|[_\- ])(?P<key>(?:R|r|[Rr]adius|[Tt]rack)[_=-]?)(?P<number>\d+(?:\.\d+)?)"
+    r"(?P<unit>mm|cm)(?=[_\- .])"
+)
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
@@ -71,6 +75,8 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         A dozen at most.
     """
     values: dict[str, DraftValue] = {}
+    if radius := _radius_in_name(layout.file.path.name):
+        values[radius.name] = radius
     in_name = _IN_NAME.search(layout.file.path.stem)
     if in_name:
         pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
@@ -90,10 +96,34 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         if said and not said["key"][-1].isdigit():
             _keep(values, _value(said))
         else:
+            strokes = False
             for phrase in phrases(line):
+                if strokes and not phrase.key:  # "stroke 5 mm at 2 Hz"
+                    phrase = phrase._replace(key="frequency")
                 if stated := _of_phrase(phrase):
                     _keep(values, stated)
+                strokes = STROKE.search(phrase.key) is not None
     return list(values.values())
+
+
+def _radius_in_name(name: str) -> DraftValue | None:
+    """Return the radius that a file's name states: disc_R21.5mm.txt."""
+    match = _RADIUS_IN_NAME.search(name)
+    if match is None:
+        return None
+    pattern = rf"{match['key']}(\d+(?:\.\d+)?){match['unit']}"
+    said = match[0].strip("_- ")
+    return DraftValue(
+        "track_radius",
+        pattern,
+        match["unit"],
+        "m",
+        name,
+        source="file name",
+        own_unit=match["unit"],
+        key="trackradius",
+        guess=f"'{said}' of the file's name is the radius of the track",
+    )
 
 
 def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
@@ -203,12 +233,12 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
     wanted = _WANTED.get("N" if weight else dimension or "", ())
     if not any(words.search(phrase.key) for words in wanted):
         return None
-    name = _name(phrase.key)
+    speed = dimension == "m/s"
     return DraftValue(
-        name,
+        "set_speed" if speed else _name(phrase.key),
         phrase.pattern,
         None if weight else phrase.unit,
-        None if weight else dimension,
+        None if weight or speed else dimension,
         phrase.line,
         own_unit=phrase.unit,
         key=phrase.key,
@@ -216,9 +246,14 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
 
 
 _R = re.compile(r"^(?:r|d|ø|⌀)$")
+_SPEED = re.compile(
+    r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
+    r"|^velocita|速度$|snelheid$"
+)
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING),
     "s": (INTERVAL,),
+    "m/s": (_SPEED,),
     "1/s": (RATE, FREQUENCY),
     "Hz": (RATE, FREQUENCY),
     "N": (LOAD,),

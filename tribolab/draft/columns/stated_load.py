@@ -1,0 +1,42 @@
+"""The load that the text before a table states, and the number of what any text states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tribolab.draft.columns.stated_words import LOAD
+from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.file.header import converts
+from tribolab.io.dialects.patterns import guarded
+
+_WEIGHT = {"g": "gf", "kg": "kgf"}
+
+
+def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the load that the text before the table states, as a force; None if none, or several.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.columns.values.find_values`.
+    """
+    fitting = []
+    for value in values:
+        if value.source != "preamble" or not LOAD.search(value.key):
+            continue
+        unit = _WEIGHT.get(value.own_unit or "", value.own_unit or "")
+        if converts(unit, "N"):
+            fitting.append(value._replace(name="set_normal_force", unit=unit, to=None))
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def number_of(value: DraftValue) -> float:
+    """Return the number that a value's text states, in the value's unit.
+
+    Parameters
+    ----------
+    value
+        From `tribolab.draft.columns.values.find_values`.
+    """
+    stated = guarded(value.pattern).first(value.text) or "nan"
+    return value.scale * float(stated.rstrip(".,").replace(",", "."))
