@@ -85,7 +85,7 @@ def registry() -> pint.UnitRegistry[float]:
 
 # exponents and signs of multiplication as typesetters write them
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
-_TIMES = re.compile(r"^[x×*·]\s*(?=\d)")  # "x 1e-4 N": a factor of the unit
+_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", not the x1000 of a name
 _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
 
