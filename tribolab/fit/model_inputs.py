@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, nearest, shown
-from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive
 
@@ -85,6 +85,7 @@ def model_inputs(
     speeds = np.atleast_1d(labelled(speed, "sliding_speed"))
     model = {**model, "cells": min(model.get("cells", _CELLS), _CELLS)}
     rows = []
+    near: SolvedCurve | None = None  # the curve before: it differs by a few percent
     for name, error in errors.items():
         ends = []
         for factor in (np.exp(_STEP), np.exp(-_STEP)):
@@ -93,7 +94,8 @@ def model_inputs(
                 at = factor * force
             else:
                 body = replace(contact, **{name: factor * getattr(contact, name)})
-            ends.append(stribeck_curve(body, psd, viscosity, at, 0.0, speeds, **model))
+            near = solve_curve(body, psd, viscosity, at, 0.0, speeds, **model, near=near)
+            ends.append(near.curve)
         rows.append([error * (above - below) / (2 * _STEP) for above, below in _columns(*ends)])
     moved = np.reshape(rows, (len(errors), 3, speeds.size))
     dims = ("model_input", "sliding_speed")

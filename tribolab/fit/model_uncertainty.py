@@ -16,7 +16,7 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
-from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.lubrication.system import CELLS
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive, to_si
@@ -178,11 +178,12 @@ def model_uncertainty(
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
     with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
-        curve = stribeck_curve(contact, psd, **given, cells=cells)
-        reference = stribeck_curve(contact, psd, **coarse) if cells > _CELLS else curve
+        whole = solve_curve(contact, psd, **given, cells=cells)
+        start = solve_curve(contact, psd, **coarse) if cells > _CELLS else whole
+        curve, reference = whole.curve, start.curve
         unknowns = variations(base)
         varied = [unknown for unknown in unknowns if isinstance(unknown, Variation)]
-        mu, fitted, limits = _all_ends(contact, psd, coarse, varied, reference, refit)
+        mu, fitted, limits = _all_ends(contact, psd, coarse, varied, start, refit)
     left = [unknown for unknown in unknowns if isinstance(unknown, Skipped)]
     height = reference["friction_coefficient"].values
     if error is None:
@@ -229,13 +230,14 @@ def _all_ends(
     psd: xr.Dataset | None,
     coarse: Arguments,
     varied: list[Variation],
-    reference: xr.Dataset,
+    start: SolvedCurve,
     refit: bool,
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
     """Friction (variation, end, speed), relative change of the refitted sigma_f, and validity.
 
     The numbers are NaN where a variation has no such end.
     """
+    reference = start.curve
     stress, aim = coarse["shear_stress"], reference["friction_coefficient"].values
     mu, limits = np.full((len(varied), 2, aim.size), np.nan), []
     beyond = {reason.split(" is ")[0] for reason in reasons_of(reference.attrs)}
@@ -247,7 +249,8 @@ def _all_ends(
             try:
                 changed = _of_the_same_films(reference, end)
                 if changed is None:
-                    changed = stribeck_curve(**{"contact": contact, "psd": psd, **coarse, **end})
+                    asked = {"contact": contact, "psd": psd, **coarse, **end}
+                    changed = solve_curve(**asked, near=start).curve
             except AnalysisError as error:
                 where = f"varied {variation.name} ({variation.texts[j]})"
                 raise AnalysisError(error, where=where) from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Sequence
 from itertools import groupby
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ from tribolab.lubrication.sweep import (
     is_thick,
     lifted_state,
     sweep,
+    sweep_beside,
     wet_state,
 )
 
@@ -66,11 +68,21 @@ class Point(NamedTuple):
     solution: Solution
 
 
-def solve_speeds(system: System, force: float, speeds: np.ndarray) -> list[Point]:
+def solve_speeds(
+    system: System, force: float, speeds: np.ndarray, near: Sequence[Point] = ()
+) -> list[Point]:
     """Solve at each speed [m/s], not negative, in rising order and with none twice.
 
     Speeds whose films are alike share a mesh, and which one that is depends on the speed alone: so
     does the solution. From one mesh to the next the last state is carried over.
+
+    Parameters
+    ----------
+    system, force, speeds
+        What is to be solved.
+    near
+        What was solved of a like system: where speed and mesh are the same it is started from.
+        The solution is the same within what it is converged to, in fewer steps.
 
     Raises
     ------
@@ -78,11 +90,18 @@ def solve_speeds(system: System, force: float, speeds: np.ndarray) -> list[Point
         If a speed cannot be solved; the message says what to change.
     """
     points: list[Point] = []
+    like = {(point.speed, id(point.problem.mesh)): point.solution.state for point in near}
     posed = ((float(v), system.problem(force, float(v))) for v in speeds)
     for _, group in groupby(posed, key=lambda pair: id(pair[1].mesh)):
         some = list(group)
         problem, wanted = some[0][1], [v for v, _ in some]
-        solutions = _carried_on(system, force, problem, wanted, points[-1]) if points else None
+        states = [like.get((v, id(problem.mesh))) for v in wanted]
+        beside = [state for state in states if state is not None]
+        solutions = None
+        if wanted[0] > 0 and len(beside) == len(wanted):
+            solutions = sweep_beside(problem, system.viscosity, wanted, beside)
+        if solutions is None and points:
+            solutions = _carried_on(system, force, problem, wanted, points[-1])
         if solutions is None:
             solutions = _afresh(system, force, problem, np.array(wanted))
         points += [Point(v, problem, s) for v, s in zip(wanted, solutions, strict=True)]

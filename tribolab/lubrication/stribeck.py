@@ -6,32 +6,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.area import AreaTheory, other_area
+from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
-from tribolab.contact.hertz import hertz_half_width
-from tribolab.contact.limits import line_limits
-from tribolab.errors import AnalysisError
-from tribolab.lubrication.factors import (
-    FlowFactors,
-    RoughBody,
-)
-from tribolab.lubrication.friction import fluid_friction
-from tribolab.lubrication.parabolas import lowest, value_at
-from tribolab.lubrication.speeds import Point, System, solve_speeds
-from tribolab.lubrication.system import (
-    CELLS,
-    PROOF,
-    checked_loads,
-    checked_speeds,
-    one_thread,
-    real_area,
-    system_attributes,
-    system_of,
-    with_adhesion,
-)
-from tribolab.several import one, over_dims
+from tribolab.lubrication.factors import FlowFactors, RoughBody
+from tribolab.lubrication.solved_curve import solve_curve
+from tribolab.lubrication.system import CELLS
+from tribolab.several import over_dims
 from tribolab.stamping import stamp
-from tribolab.units import to_si
 
 
 @over_dims(psd=("wavenumber",), viscosity=(), shear_stress=())
@@ -139,55 +120,24 @@ def stribeck_curve(
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    with one_thread():
-        system = system_of(
-            contact,
-            psd,
-            one(viscosity),
-            rough_body,
-            factors,
-            gamma,
-            cells,
-            domain,
-            inlet_length,
-            area,
-        )
-    stress = to_si(one(shear_stress), "Pa", name="shear_stress")
-    if not 0 <= stress < np.inf:
-        raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
-    loads, speeds = checked_loads(load), checked_speeds(speed, psd)
-    system = with_adhesion(system, float(np.max(loads.values)), work_of_adhesion)
-    curves = []
-    with one_thread():
-        for force in np.atleast_1d(loads.values):
-            curves.append(_curve(system, float(force), speeds.values, friction_factors))
-    stacked = {name: np.stack([curve[name] for curve in curves], axis=1) for name in curves[0]}
-    stacked["friction_coefficient"] = (
-        stacked["friction_coefficient_couette"] + stacked["friction_coefficient_pressure"]
+    solved = solve_curve(
+        contact,
+        psd,
+        viscosity,
+        load,
+        shear_stress,
+        speed,
+        friction_factors,
+        rough_body,
+        factors,
+        gamma,
+        cells,
+        domain,
+        inlet_length,
+        area,
+        work_of_adhesion,
     )
-    solid = stress * stacked["friction_per_shear_stress"]
-    for name in ("friction_coefficient", "friction_without_factors"):
-        stacked[name] = stacked[name] + solid
-    stacked["friction_coefficient_solid"] = solid
-    parts = {name: (("sliding_speed", "load"), values) for name, values in stacked.items()}
-    data = xr.Dataset(parts, {"sliding_speed": speeds.values, "load": np.atleast_1d(loads.values)})
-    if loads.ndim == 0:
-        data = data.isel(load=0)
-    return stamp(
-        data,
-        **system_attributes(system),
-        shear_stress_Pa=stress,
-        **line_limits(
-            "stribeck_curve",
-            contact,
-            loads.values,
-            psd,
-            system.separation,
-            speeds.values,
-            data.minimum_separation.values,
-        ),
-        friction_factors="yes" if friction_factors else "no",
-    )
+    return solved.curve
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
@@ -224,52 +174,3 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> 
     if isinstance(shear_stress, xr.DataArray) and shear_stress.dims:
         return stamp(curve.assign(shear_stress=shear_stress))
     return stamp(curve, shear_stress_Pa=float(shear_stress))
-
-
-def _curve(
-    system: System, force: float, speeds: np.ndarray, friction_factors: bool
-) -> dict[str, np.ndarray]:
-    magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
-    points = solve_speeds(system, force, magnitudes)
-    # all in one: the pressures of all meshes have one unit
-    solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
-    whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
-    hertz = hertz_half_width(force, system.contact)
-    areas = np.stack(
-        [
-            real_area(system, solid, whole, theory)
-            for theory in (system.area, other_area(system.area))
-        ],
-        axis=1,
-    )
-    rows = [
-        _row(point, force, float(hertz), area, friction_factors)
-        for point, area in zip(points, areas, strict=True)
-    ]
-    return {name: np.array([row[name] for row in rows])[back] for name in rows[0]}
-
-
-def _row(
-    point: Point, force: float, hertz: float, area: np.ndarray, friction_factors: bool
-) -> dict[str, float]:
-    """All that a curve has of one speed, the relative contact area in its cells being known.
-
-    That is of the theory asked for, and of the other one (2, cells).
-    """
-    _, problem, solution = point
-    mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
-    real_length, otherwise = area @ mesh.weight * problem.half_width
-    rough, plain = fluid_friction(problem, solution)
-    couette, pressure = rough if friction_factors else plain
-    return {
-        "friction_coefficient_couette": couette,
-        "friction_coefficient_pressure": pressure,
-        "friction_without_factors": sum(plain),
-        "friction_per_shear_stress": real_length / force,
-        "friction_per_shear_stress_other": otherwise / force,
-        "contact_area_ratio": real_length / (2 * hertz),
-        "minimum_separation": lowest(mesh.x, film) * problem.gap,
-        "central_separation": value_at(mesh.x, film, 0.0) * problem.gap,
-        "solid_load_share": solid @ mesh.weight / problem.load,
-        **{name: getattr(solution, name) for name in PROOF},
-    }

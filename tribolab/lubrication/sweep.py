@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -193,6 +193,36 @@ def sweep(
     return solved
 
 
+def sweep_beside(
+    problem: Problem, viscosity: float, speeds: list[float], near: Sequence[State]
+) -> list[Solution] | None:
+    """Solve at rising speeds, each from the state of a like contact; None if that leads nowhere.
+
+    Parameters
+    ----------
+    problem, viscosity, speeds
+        As for `sweep`.
+    near
+        The like contact's states at these speeds, on the same mesh.
+
+    Notes
+    -----
+    By how much the films differ, ln u - ln u_near, goes on in ln v as ln u does in `sweep`. It is
+    small and smooth, so that a step of Newton's method or two are saved at every speed.
+    """
+    solved: list[Solution] = []
+    for speed, state in zip(speeds, near, strict=True):
+        last = slice(max(len(solved) - 3, 0), len(solved))
+        pairs = [(a.state, b) for a, b in zip(solved[last], near[last], strict=True)]
+        weights = _extrapolation(list(np.log(speeds[last])), np.log(speed)) if pairs else []
+        start = _moved_alike(problem.mesh, state, pairs[len(pairs) - len(weights) :], weights)
+        try:
+            solved.append(solve_speed(problem, couette_number(problem, viscosity, speed), start))
+        except NotConvergedError:  # no loss: it is solved as if there were no such contact
+            return None
+    return solved
+
+
 def _march(
     problem: Problem, viscosity: float, speeds: list[float], start: State
 ) -> tuple[list[Solution], NotConvergedError | None]:
@@ -231,16 +261,21 @@ def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: 
         return start
     last = known[-1][1]
     weights = _extrapolation([at for at, _ in known], aim)
-    used = [state for _, state in known[len(known) - len(weights) :]]
-    log_growth = sum(
-        weight * np.log(state.film / last.film) for weight, state in zip(weights, used, strict=True)
-    )
-    constant = sum(
-        weight * (state.constant - last.constant)
-        for weight, state in zip(weights, used, strict=True)
-    )
+    used = [(state, last) for _, state in known[len(known) - len(weights) :]]
+    return _moved_alike(mesh, last, used, weights)
+
+
+def _moved_alike(
+    mesh: Mesh, state: State, pairs: Sequence[tuple[State, State]], weights: Sequence[float]
+) -> State:
+    """Move a state as, by these weights, the first of each pair lies away from the second."""
+    if not pairs:
+        return state
+    weighted = list(zip(weights, pairs, strict=True))
+    log_growth = sum(w * np.log(to.film / by.film) for w, (to, by) in weighted)
+    constant = sum(w * (to.constant - by.constant) for w, (to, by) in weighted)
     growth = np.exp(np.clip(log_growth, -_GROWTH, _GROWTH))
-    return last.moved(mesh, last.film * (growth - 1), constant)
+    return state.moved(mesh, state.film * (growth - 1), constant)
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
