@@ -155,6 +155,8 @@ def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
     np.testing.assert_allclose(run.normal_force, 12.0)
     head = "Belt rig, speed 0,3 m/min\ntime/s\tdrag/cN\tload/N"
     path = table(tmp_path / "b.txt", head, T, 100 * FORCE, LOAD)
+    told = command("dialect", path, "--no-ask", "--output", tmp_path / "b.toml")
+    assert "friction coefficient 0.167 (standard error at most 0.0" in told
     assert "'Belt rig, speed 0,3 m/min' is the sliding speed all along" in refusal(path)
     run = tl.read(path, tl.draft_dialect(path).dialect)
     assert run.attrs["set_speed_m_s"] == pytest.approx(5e-3)

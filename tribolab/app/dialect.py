@@ -225,11 +225,14 @@ def _run_said(file: Path, dialect: Path) -> str:
     if "friction_coefficient" not in friction:
         return f"{said}, a friction force without a load: no friction coefficient"
     mu = np.atleast_1d(friction["friction_coefficient"].values)
+    sem = np.atleast_1d(friction["friction_coefficient_sem"].values)[np.isfinite(mu)]
     mu = mu[np.isfinite(mu)]
     if not mu.size:
         return said
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
-    return f"{said}, friction coefficient {span}"
+    known = sem[np.isfinite(sem)]
+    width = f"at most {known.max():.2g}" if known.size else "not known"
+    return f"{said}, friction coefficient {span} (standard error {width}, statistical only)"
 
 
 def _scan_said(file: Path, dialect: Path) -> str:
