@@ -5,8 +5,10 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.surface.binning import log_bins
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.gaps import bridged, gaps_in, without_ends
+from tribolab.surface.parts import Transform, long_gaps, parts_spectrum
 from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.self_affine import SelfAffine
@@ -88,6 +90,39 @@ def test_spectra_of_profiles_with_gaps_hold_that_of_the_whole():
         inside.append((np.abs(away) < 1.96).values[part.trusted.values == 1])
     assert np.mean(np.concatenate(inside)) > 0.88
     assert psd_2d(part).psd_2d.notnull().all()
+
+
+@pytest.mark.parametrize("share", [0.125, 0.25, 0.5])
+def test_a_single_profile_with_one_long_hole_shows_the_surface_with_a_wider_band(share):
+    single, inside = LINES.isel(scan=[0]), []
+    whole = psd_1d(single)
+    for at in (300, 1200, 1900):
+        present = (np.arange(4096) < at) | (np.arange(4096) >= at + share * 4096)
+        part = psd_1d(single.assign(height=single.height.where(xr.DataArray(present, dims="x"))))
+        known = part.trusted.values == 1
+        assert known.sum() > whole.trusted.sum() - 4  # as far as without the hole
+        away = np.log(part.psd_1d / whole.psd_1d) / part.gap_error
+        inside.append((np.abs(away) < 1.96).values[known])
+        wider = (part.psd_1d_high / part.psd_1d_low) / (whole.psd_1d_high / whole.psd_1d_low)
+        assert (wider.values[known] > 1.0).all()
+    assert np.mean(np.concatenate(inside)) > 0.85
+    surface, same = psd_2d(part), psd_2d(whole)
+    assert surface.psd_2d.notnull().all()
+    assert surface.wavenumber.values[-1] == pytest.approx(same.wavenumber.values[-1], rel=0.3)
+
+
+def test_the_parts_beside_a_hole_see_nothing_of_its_bridge():
+    height = LINES.height.values[:1]
+    missing = np.zeros(height.shape, dtype=bool)
+    missing[:, 1500:2400] = True
+    missing[:, 100:103] = True  # short: bridged, and parts nothing
+    how = Transform(log_bins(2048, 3, 12), 4096, order=1, flanks=0.5)
+    long = long_gaps(missing)
+    assert not long[:, :1500].any() and long[:, 1500:2400].all()
+    low, high = (parts_spectrum(np.where(long, z, height), missing, how) for z in (0.0, 1.0))
+    np.testing.assert_allclose(low.power, high.power, rtol=1e-12)
+    assert low.first == np.searchsorted(how.bins.starts, 3 * 4096 / 1500)
+    assert parts_spectrum(height, missing & ~long, how) is None
 
 
 def test_missing_ends_are_cut_off_and_are_no_gaps():

@@ -27,11 +27,12 @@ class GapEffect(NamedTuple):
     """What gaps did to a result: its mean shift, and the standard error that is left.
 
     The result less the shift is what the whole scan would have shown, within 1.96 errors in 95 %
-    of cases.
+    of cases. What of the shift comes from bridges hides the surface, if it is large.
     """
 
     shift: np.ndarray
     error: np.ndarray
+    bridges: np.ndarray
 
 
 def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
@@ -189,7 +190,8 @@ def gap_effect(
     # gaps that hit the one highest peak make tails longer than the normal distribution's
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
-    return GapEffect(shift, np.hypot(np.sqrt(1.0 + 1.0 / TRIALS) * scatter, _DOUBT * shift))
+    error = np.hypot(np.sqrt(1.0 + 1.0 / TRIALS) * scatter, _DOUBT * shift)
+    return GapEffect(shift, error, shift)
 
 
 def logarithm(power: np.ndarray) -> np.ndarray:
@@ -200,7 +202,7 @@ def logarithm(power: np.ndarray) -> np.ndarray:
 def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
     """Return how many independent values have the error of these and that of the gaps together.
 
-    >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]))
+    >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]), bridges=np.zeros(1))
     >>> round(float(still_worth(np.array([100.0]), effect)[0]), 9)
     50.0
     """
@@ -208,8 +210,13 @@ def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
 
 
 def lost_from(wavenumber: np.ndarray, effect: GapEffect) -> float:
-    """Wavenumber [1/m] from which on the gaps took, or added, half of the power; else infinite."""
-    lost = np.abs(effect.shift) > _LOST
+    """Wavenumber [1/m] from which on bridges took, or added, half of all power; else infinite.
+
+    >>> effect = GapEffect(np.zeros(4), np.ones(4), bridges=np.array([0.9, 0.1, 0.8, 0.9]))
+    >>> lost_from(np.array([1.0, 2.0, 3.0, 4.0]), effect)
+    3.0
+    """
+    lost = np.logical_and.accumulate(np.abs(effect.bridges[::-1]) > _LOST)[::-1]
     return float(wavenumber[np.argmax(lost)]) if lost.any() else float("inf")
 
 

@@ -17,14 +17,13 @@ from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.fourier import binned_power, fast_length
 from tribolab.surface.gaps import (
     bridged,
-    gap_effect,
     gaps_in,
-    logarithm,
     lost_from,
     still_worth,
     without_ends,
 )
 from tribolab.surface.level import level_rows, refuse_level
+from tribolab.surface.parts import Transform, profile_gap_effect
 from tribolab.surface.reliability import trusted_band
 from tribolab.surface.smooth_law import fitted_law
 
@@ -46,7 +45,7 @@ def psd_1d(
     ----------
     scans
         ``height`` [m] (scan, x) or (x), evenly spaced. Missing heights (NaN) are bridged, and the
-        spectrum is corrected for them; missing ends are cut off.
+        spectrum is corrected for them; missing ends are cut off, and long gaps part a profile.
     form
         What to take away first, see `remove_form`; ``"auto"`` takes a circle from scans whose
         form was not removed before, ``"none"`` only the mean.
@@ -117,11 +116,9 @@ def psd_1d(
     ratio, independent = shape(bins, np.clip(slope, -6, 1), points / length, flanks)
     worth, effect = number * independent, None
     if missing is not None:
-
-        def powers(rows: np.ndarray) -> np.ndarray:
-            return logarithm(binned_power(rows, taper, bins, length, workers).bins)
-
-        effect = gap_effect(heights.values, missing, powers, is_map=False, joint=True)
+        effect = profile_gap_effect(
+            heights.values, missing, Transform(bins, length, taken, flanks, workers)
+        )
         mean, worth = mean * np.exp(-effect.shift), still_worth(worth, effect)
     value = mean / ratio
     low, high = confidence_band(value, worth)
