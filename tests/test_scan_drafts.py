@@ -1,5 +1,7 @@
 """Heights without positions, and scans of unknown instruments: read by what their headers say."""
 
+import gzip
+
 import numpy as np
 import pytest
 
@@ -104,6 +106,24 @@ def dialect(tmp_path, *lines, value=""):
 
 
 VALUE = '[[value]]\nname = "step"\npattern = \'^dx = ([\\d.]+)\'\nunit = "um"\nto = "m"\n'
+
+
+@pytest.mark.parametrize(
+    "words", ["Abtastabstand", "Distancia entre puntos", "Pas d'échantillonnage", "Puntafstand"]
+)
+def test_the_pitch_is_known_by_its_name_in_other_languages(tmp_path, words):
+    file = tmp_path / "line.txt"
+    heights = "".join(f"{np.sin(n / 7):.4f}\n".replace(".", ",") for n in range(100))
+    file.write_text(f"{words}: 0,25 µm\nZ [µm]\n{heights}", encoding="utf-8")
+    assert np.diff(read_scans(file).x.values) == pytest.approx(2.5e-7, rel=1e-6)
+
+
+def test_what_is_told_of_a_compressed_scan_names_that_file(tmp_path):
+    file = tmp_path / "a.csv.gz"
+    file.write_bytes(gzip.compress(b'"Horizontal","3"\n"Height"\n1,2,3\n4,5,6\n'))
+    with pytest.raises(ReadError) as refused:
+        read_scans(file)
+    assert str(file) in str(refused.value) and "tribolab-" not in str(refused.value)
 
 
 def test_a_pitch_in_the_dialect_stands_for_positions(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import dataclasses
 import functools
 import gzip
 import shutil
@@ -12,7 +13,7 @@ import zlib
 from pathlib import Path
 from typing import Protocol
 
-from tribolab.errors import ReadError, shown
+from tribolab.errors import Cure, ReadError, TribolabError, shown
 
 GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
@@ -48,6 +49,27 @@ def unpacked(path: Path, head: bytes) -> Path:
         state = path.stat()
         return _unpacked(path.resolve(), state.st_size, state.st_mtime_ns, "zip")
     return path
+
+
+def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
+    """Return an error about what was unpacked as one about the file that the user knows.
+
+    >>> error = ReadError("/tmp/u/a.csv: no heights", cure="describe 'a.csv'")
+    >>> print(of_the_file(error, Path("/tmp/u/a.csv"), Path("raw/a.csv.gz")))
+    raw/a.csv.gz: no heights; describe 'a.csv.gz'
+    """
+
+    def renamed(text: str) -> str:
+        parts = text.split(str(inside))
+        return str(path).join(part.replace(inside.name, path.name) for part in parts)
+
+    cure = error.cure
+    if isinstance(cure, Cure):
+        cure = Cure(*(renamed(words) for words in dataclasses.astuple(cure)))
+    else:
+        cure = renamed(cure)
+    what = error.what if isinstance(error.what, TribolabError) else renamed(error.what)
+    return ReadError(what, where=renamed(error.where), function=error.function, cure=cure)
 
 
 def _members(path: Path) -> list[str] | None:

@@ -34,8 +34,11 @@ PITCH = re.compile(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
     r"|^(?:schritt\w*|pas|paso|passo|stap\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
     r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
-    r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon)\w*"
-    r"(?:pitch|spacing|increment|step|interval|distance|abstand|schritt\w*|intervall)"
+    r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
+    r"(?:pitch|spacing|increment|step|interval|distance|abstand|afstand|schritt\w*|intervall)"
+    r"|(?:distan[czt]\w*?|afstand|abstand|ecart|espaciado|intervall?[eo]?|pas|paso|passo)"
+    r"(?:de\w?|di|entre(?:les|los)?|tra\w?|fra\w?|tussen|zwischen\w{0,5}|der)?"
+    r"(?:punt\w+|points?|punkten?|muestreo|d?echantillonnage|campionamento)$"
     r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
 )
 RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|straal|半径")

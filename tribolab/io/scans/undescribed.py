@@ -6,12 +6,13 @@ from pathlib import Path
 
 import xarray as xr
 
+from tribolab.errors import ReadError
 from tribolab.io.scans.formats import read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
 from tribolab.io.scans.sur import is_sur, plain_sur
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
-from tribolab.io.unpacked import ZIP, unpacked
+from tribolab.io.unpacked import ZIP, of_the_file, unpacked
 
 _HEAD = 1 << 14  # bytes that tell a format
 
@@ -47,7 +48,10 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
         head = file.read(_HEAD)
     inside = unpacked(path, head)
     if inside != path:
-        return read_undescribed(inside, x_unit, height_unit)
+        try:
+            return read_undescribed(inside, x_unit, height_unit)
+        except ReadError as error:
+            raise of_the_file(error, inside, path) from error
     if head.startswith(ZIP) and (main := main_of(path)) is not None:
         return read_x3p(path, main)
     if is_iso_xml(head):
