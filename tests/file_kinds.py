@@ -69,7 +69,8 @@ def read_in_some_way(written: WrittenRun, folder: Path) -> HowRead:
 
 
 def _speed_is_known(run: xr.Dataset) -> bool:
-    return bool({"sliding_velocity", "position", "set_speed"} & set(run))
+    signals = {"sliding_velocity", "position", "set_speed"} & set(run)
+    return bool(signals) or "set_speed_m_s" in run.attrs
 
 
 def judge(written: WrittenRun, run: xr.Dataset) -> Judged:

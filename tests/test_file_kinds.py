@@ -21,6 +21,7 @@ WAYS = {
     "mini_traction": AT_ONCE,
     "stroke_settings": AT_ONCE,
     "stresses": AT_ONCE,
+    "tribox": AT_ONCE,
     "compressed": AT_ONCE,
     "intervals": AT_ONCE,
     "workbook": AT_ONCE,

@@ -70,7 +70,7 @@ def test_a_value_that_is_no_quantity_is_told_its_own_si_unit_and_the_nearest(tmp
         (('quantity = "friction_force"', 'quantity = "friction_forse"'), "friction_force"),
         (("line = 1", 'pattern = "("'), "regular expression"),
         (('name = "F"', 'name = "F"\nunit = "mm"'), "cannot be turned into 'N'"),
-        (('name = "F"', 'name = "F"\nposition = 2'), "either name or position"),
+        (('name = "F"', 'name = "F"\nposition = 2'), "either name, name_pattern or position"),
         (("line = 1", ""), "position and unit"),
         (('quantity = "time"', 'quantity = "position"'), "time"),
         (('decimal = ","', 'decimal = ";"'), "decimal"),

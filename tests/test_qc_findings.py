@@ -45,6 +45,7 @@ BITS = {
     "sampling": 23,
     "segment_speed": 24,
     "rows_left_out": 25,
+    "said_elsewhere": 27,
     "segments": 28,
     "zero_reference": 29,
     "rectified": 30,

@@ -16,11 +16,13 @@ from tribolab.io.content.model import Content
 from tribolab.io.content.newest_first import oldest_first
 from tribolab.io.content.read import read_content
 from tribolab.io.content.twice import each_row_once
-from tribolab.io.content.values import single_values, step_values
+from tribolab.io.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.io.derived import add_derived
+from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.column_rule import FRICTION
 from tribolab.io.dialects.find import Dialect
 from tribolab.io.dialects.signature import peek
+from tribolab.io.forces_agree import keep_forces_that_agree
 from tribolab.io.row_counts import row_attributes
 from tribolab.io.speed import add_speed, keep_settings
 from tribolab.io.two_rates import sampled_together
@@ -36,6 +38,7 @@ Logs = list[tuple[Path, Dialect]]
 
 def assemble(logs: Logs, zero: str | None = None) -> xr.Dataset:
     """Make one run of the files of one instrument."""
+    logs = [(path, as_written(path, dialect)) for path, dialect in logs]
     dialect = logs[0][1]
     size = sum(peek(path).size for path, _ in logs) if len(logs) > 1 else 0
     contents = [read_content(path, dialect, size) for path, _ in logs]
@@ -73,7 +76,10 @@ def assemble(logs: Logs, zero: str | None = None) -> xr.Dataset:
 
     attrs |= take_zeros(columns, time, rules, blank, where)
     keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
+    assumed = add_assumed(attrs, dialect)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
+    tell_assumed(attrs, assumed, dialect)
+    keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)

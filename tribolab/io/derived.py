@@ -56,7 +56,11 @@ def add_derived(
     known = _operands(columns, symbols, attrs, dialect) if dialect.derived else {}
     missing, said = [], {}
     for rule in dialect.derived:
-        lost = sorted(names_in(parse_formula(rule.formula)) - set(known))
+        if rule.quantity in columns:
+            continue
+        lost = sorted({*names_in(parse_formula(rule.formula)), *rule.beside} - set(known))
+        if lost and rule.optional:
+            continue
         if lost:
             missing.append(f"{rule.quantity} = {rule.formula} needs {', '.join(lost)}")
             continue

@@ -12,6 +12,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST, Content, Piece
 from tribolab.io.content.steps import last_match, started
+from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, fits_format, peek
@@ -51,6 +52,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
             f"{path}: this is a {file.format} file, instrument '{dialect.name}' writes "
             f"{dialect.format}"
         )
+    dialect = as_written(file, dialect)
     if dialect.format == "mat":
         from tribolab.io.content.mat import read_mat
 

@@ -9,10 +9,12 @@ import numpy as np
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content
 from tribolab.io.content.steps import last_match
+from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.value_rule import Value
-from tribolab.units import conversion
+from tribolab.units import conversion, to_si
+from tribolab.untyped import Json
 
 # 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
 _OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
@@ -28,13 +30,33 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
     """
     attrs: dict[str, str | float] = {}
     for value in dialect.value:
-        if value.source == "step":
+        if value.source == "step" or value.pattern is None:
             continue
         text = content.path.name if value.source == "file name" else content.pieces[0].before
         text_found = _first_match(value.pattern, text)
         if text_found:
             attrs[value.attribute] = _converted(text_found, value, content, dialect)
     return attrs
+
+
+def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
+    """Add the dialect's values where neither the table nor the text beside it says them.
+
+    Returns which these are, for `tell_assumed`.
+    """
+    lost = [v for v in dialect.value if v.default is not None and v.attribute not in attrs]
+    for value in lost:
+        attrs[value.attribute] = to_si(str(value.default), value.si_unit, value.name)
+    return lost
+
+
+def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
+    """Say in ``assumed`` which of the values that were added something follows from."""
+    used = set(dialect.speed.values_named.values())
+    for formula in attrs.get("derived", {}).values():
+        used |= names_in(parse_formula(formula))
+    if told := [f"{value.name} {value.default}" for value in assumed if value.name in used]:
+        attrs["assumed"] = "; ".join(told)
 
 
 def step_values(
@@ -48,7 +70,7 @@ def step_values(
     attrs: dict[str, str] = {}
     places = [(content, piece) for content in contents for piece in content.pieces]
     for value in dialect.value:
-        if value.source != "step":
+        if value.source != "step" or value.pattern is None:
             continue
         texts = [last_match(value.pattern, piece.before) or "" for _, piece in places]
         if value.unit is None:

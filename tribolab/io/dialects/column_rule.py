@@ -7,6 +7,7 @@ from typing import Literal, Self
 from pydantic import Field, PositiveInt, model_validator
 
 from tribolab.io.dialects.checked_text import (
+    Pattern,
     QuantityName,
     Sign,
     Strict,
@@ -30,6 +31,9 @@ class Column(Strict):
         None, description="instead of a quantity: a name of your own, for formulas of [[derived]]"
     )
     name: str | None = Field(None, description="name in the header without its unit")
+    name_pattern: Pattern | None = Field(
+        None, description="instead of a name: the whole name without its unit matches this"
+    )
     occurrence: PositiveInt = Field(1, description="which one, when a name is used twice")
     position: PositiveInt | None = Field(None, description="number of the column, from 1")
     group: str | None = Field(None, description="TDMS only: the channel's group")
@@ -64,8 +68,9 @@ class Column(Strict):
             raise ValueError("a column has either a quantity or a symbol")
         if self.symbol in QUANTITIES:
             raise ValueError(f"'{self.symbol}' is a quantity: say quantity = '{self.symbol}'")
-        if (self.name is None) == (self.position is None):
-            raise ValueError(f"column '{self.key}': give either name or position")
+        places = (self.name, self.name_pattern, self.position)
+        if sum(place is not None for place in places) != 1:
+            raise ValueError(f"column '{self.key}': give either name, name_pattern or position")
         if self.unit is not None:
             check_unit(self.unit, self.si_unit(self.unit), self.bare)
         stated = {"zero_uncertainty": self.zero_uncertainty, "rectified": self.rectified}

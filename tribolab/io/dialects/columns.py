@@ -10,6 +10,7 @@ import numpy as np
 from tribolab.errors import ReadError, UnitError, nearest, shown
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import guarded
 from tribolab.units import conversion
 
 AGAIN = "~"  # between a quantity and the number of a further column that may hold it
@@ -134,7 +135,8 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
         raise ReadError(
             f"column {column.position} ({column.key}) is missing, the table has {width} columns"
         )
-    places = [index for index, name in enumerate(names) if name == column.name]
+    called = column.name or f"like {column.name_pattern}"
+    places = [index for index, name in enumerate(names) if _is_called(name, column)]
     if len(places) >= column.occurrence:
         index = places[column.occurrence - 1]
         if index < width:
@@ -142,20 +144,26 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
         if not column.optional:
             raise ReadError(
                 f"the header names {len(names)} columns, but the first row of numbers "
-                f"has {width}: column '{shown(column.name)}' ({column.key}) has no values"
+                f"has {width}: column '{shown(called)}' ({column.key}) has no values"
             )
         return None
     if column.optional:
         return None
     if places:
         raise ReadError(
-            f"column '{shown(column.name)}' ({column.key}) should stand there "
+            f"column '{shown(called)}' ({column.key}) should stand there "
             f"{column.occurrence} times, it stands {len(places)} times"
         )
     hint = nearest(column.name or "", [name for name in names if name])
     if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
         hint = ""  # no column of this instrument is there: what the file holds is not told
-    raise ReadError(f"column '{shown(column.name)}' ({column.key}) is missing{hint}")
+    raise ReadError(f"column '{shown(called)}' ({column.key}) is missing{hint}")
+
+
+def _is_called(name: str, column: Column) -> bool:
+    if column.name_pattern is None:
+        return name == column.name
+    return guarded(column.name_pattern).fullmatch(name)
 
 
 def _signal(

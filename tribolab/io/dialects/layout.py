@@ -26,7 +26,11 @@ class Text(Strict):
     """How delimited text is written."""
 
     encoding: Encoding = Field("utf-8", description="utf-8 (a BOM is ignored), latin-1, ...")
-    delimiter: str = Field(",", description="one character, or 'whitespace'")
+    delimiter: str = Field(
+        ",",
+        description="one character, 'whitespace', or 'any': that which parts the header's line "
+        "most; decimal mark, encoding and a line of units below the names are then as in the file",
+    )
     decimal: Literal[".", ","] = Field(
         ".",
         description="decimal mark; a comma may part the cells, too, where numbers are in quotes",
@@ -42,8 +46,8 @@ class Text(Strict):
 
     @model_validator(mode="after")
     def _delimiter_is_usable(self) -> Self:
-        if self.delimiter != "whitespace" and len(self.delimiter) != 1:
-            raise ValueError("delimiter is one character, or the word 'whitespace'")
+        if self.delimiter not in ("whitespace", "any") and len(self.delimiter) != 1:
+            raise ValueError("delimiter is one character, or the word 'whitespace' or 'any'")
         if self.delimiter == self.decimal and not self.is_quoted:
             raise ValueError(f"delimiter and decimal mark are both '{self.decimal}'")
         if self.thousands == self.decimal:

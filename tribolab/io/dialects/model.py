@@ -31,6 +31,14 @@ class Derived(Strict):
         description="+ - * / ( ) of quantities and symbols of columns, names of values, pi, and "
         "numbers with units in quotes: \"torque / (radius + '5 mm')\""
     )
+    optional: bool = Field(
+        False,
+        description="left out of files that do not hold all that the formula needs; of several "
+        "such formulas for one quantity the first that can be worked out is taken",
+    )
+    beside: tuple[str, ...] = Field(
+        (), description="what the file has to hold besides, if the formula is to be used"
+    )
 
 
 class Dialect(Strict):
@@ -74,7 +82,9 @@ class Dialect(Strict):
                     f"'{name}' is given by two columns; if each file fills one of them, say "
                     "optional = true for all: the first that is filled is taken"
                 )
-        _check_formulas(self.derived, names, [v.name for v in self.value if v.unit is not None])
+        sure = {column.key for column in self.column if not column.optional}
+        values = [v.name for v in self.value if v.unit is not None]
+        _check_formulas(self.derived, names, values, sure)
         profile = "height" in names and self.time == Time()  # heights have no time
         timed = self.time.source in ("column", "period")
         if ("time" in names) != timed and not (profile and "time" not in names):
@@ -87,6 +97,8 @@ class Dialect(Strict):
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
         without_header = self.header.line is None and self.header.pattern is None
+        if without_header and self.text.delimiter == "any":
+            raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")
         if self.format == "text" and without_header:
             for column in self.column:
                 if column.position is None or column.unit is None:
@@ -103,15 +115,20 @@ class Dialect(Strict):
         return self
 
 
-def _check_formulas(derived: tuple[Derived, ...], columns: list[str], values: list[str]) -> None:
-    """Each formula needs what there is: columns, values with a unit, results of those before it."""
+def _check_formulas(
+    derived: tuple[Derived, ...], columns: list[str], values: list[str], sure: set[str]
+) -> None:
+    """Each formula needs what there is: columns, values with a unit, results of those before it.
+
+    A quantity that a column surely holds has no formula; of an optional column it is the stand-in.
+    """
     known = {*columns, *values}
     for one in derived:
-        for name in sorted(names_in(parse_formula(one.formula)) - known):
+        for name in sorted({*names_in(parse_formula(one.formula)), *one.beside} - known):
             raise ValueError(
                 f"formula of '{one.quantity}': there is no column, value with a unit or derived "
                 f"quantity before it called '{shown(name)}'{nearest(name, known)}"
             )
-        if one.quantity in columns:
+        if one.quantity in sure:
             raise ValueError(f"'{one.quantity}' is given by a column and by a formula")
         known.add(one.quantity)

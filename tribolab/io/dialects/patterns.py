@@ -75,6 +75,13 @@ class Guarded(Generic[AnyStr]):
             raise self._endless() from error
         return match
 
+    def fullmatch(self, text: AnyStr) -> bool:
+        """Whether it matches the whole text; errors as in `search`."""
+        try:
+            return self._compiled.fullmatch(text, timeout=_limit(len(text))) is not None
+        except TimeoutError as error:
+            raise self._endless() from error
+
     def all(self, text: AnyStr | mmap.mmap, start: int = 0) -> Iterator[regex.Match[AnyStr]]:
         """Give the matches in a text, one after the other; errors as in `search`."""
         limit = _limit(len(text) - start)

@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.layout import Recognise
 from tribolab.io.dialects.model import Dialect
@@ -66,6 +67,7 @@ def _text_mismatch(file: File, dialect: Dialect) -> str | None:
         if not guarded(pattern).search(text[:_PREAMBLE]):
             return f"nothing in it matches '{shown(pattern)}'"
     try:
+        dialect = as_written(file, dialect)
         raw = find_tables(file, dialect, head_only=True)
     except ReadError as error:
         # a file that is otherwise this instrument's is recognised, so that the error is told

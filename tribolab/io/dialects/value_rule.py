@@ -13,7 +13,7 @@ from tribolab.io.dialects.checked_text import Pattern, Sign, Strict, check_unit
 from tribolab.io.dialects.patterns import guarded
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
-from tribolab.units import base_unit, conversion
+from tribolab.units import base_unit, conversion, to_si
 
 
 class Value(Strict):
@@ -24,7 +24,12 @@ class Value(Strict):
 
     name: str = Field(description="a quantity, or a name of your own")
     source: Literal["preamble", "file name", "step"] = "preamble"
-    pattern: Pattern = Field(description="group 1 is the value")
+    pattern: Pattern | None = Field(None, description="group 1 is the value")
+    default: str | None = Field(
+        None,
+        description="what it is where the file does not say it, e.g. '1 mm': of a method or a part "
+        "of the instrument that is always so; the run says that it was taken",
+    )
     unit: str | None = Field(None, description="without a unit the value is kept as text")
     to: str | None = Field(None, description="SI unit to keep it in, if the name is no quantity")
     scale: float = 1.0
@@ -32,12 +37,24 @@ class Value(Strict):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        if guarded(self.pattern).groups < 1:
+        if self.pattern is None and self.default is None:
+            raise ValueError(f"value '{shown(self.name)}': give a pattern, a default or both")
+        if self.pattern is not None and guarded(self.pattern).groups < 1:
             raise ValueError(
                 f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
             )
         if self.unit is not None:
             check_unit(self.unit, self.si_unit, self.bare)
+        if self.default is not None:
+            if self.unit is None or self.source == "step":
+                raise ValueError(
+                    f"value '{shown(self.name)}': a default is for a number with a unit that "
+                    "holds for the whole file"
+                )
+            try:
+                to_si(self.default, self.si_unit, "default")
+            except TribolabError as error:
+                raise ValueError(f"value '{shown(self.name)}': {error}") from error
         return self
 
     @property

@@ -1,4 +1,4 @@
-"""Checks on the reading of a file: whether every row of it was taken over."""
+"""Checks on the reading of a file: whether every row was taken over, and what was not in it."""
 
 from __future__ import annotations
 
@@ -60,6 +60,21 @@ def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     ]
 
 
+def _said_elsewhere(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    attrs = subject.run.attrs
+    results = []
+    if "forces_left_out" in attrs:
+        text = f"left out: {attrs['forces_left_out']}".replace("_", " ")
+        results.append(Result("suspect", "friction_force", text))
+    if "assumed" in attrs:
+        text = "not in the file, and taken as the instrument's description has it: "
+        text += str(attrs["assumed"]).replace("_", " ")
+        results.append(Result("pass", "settings", text, noted=True))
+    if results:
+        return results
+    raise Skip("nothing that the file does not say was taken for it")
+
+
 READING_CHECKS = (
     Check(
         "rows_left_out",
@@ -73,5 +88,14 @@ READING_CHECKS = (
             "not_covered": Limit(5.0, "s", "people start two logs within some seconds"),
         },
         _rows_left_out,
+    ),
+    Check(
+        "said_elsewhere",
+        27,
+        "Is what the file does not say itself right for it?",
+        "State what holds for this machine in a copy of the instrument's description: the default "
+        "of its [[value]].",
+        {},
+        _said_elsewhere,
     ),
 )

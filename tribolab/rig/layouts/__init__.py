@@ -1,6 +1,11 @@
 """The files that instruments of other labs would have written of a run whose truth is known."""
 
-from tribolab.rig.layouts import clocks_and_text, formats, where_speed  # noqa: F401 - they add kinds
+from tribolab.rig.layouts import (
+    clocks_and_text,  # noqa: F401 - they add kinds
+    formats,  # noqa: F401
+    makers,  # noqa: F401
+    where_speed,  # noqa: F401
+)
 from tribolab.rig.layouts.kinds import KINDS, Kind, WrittenRun, write_kind
 
 __all__ = ["KINDS", "Kind", "WrittenRun", "write_kind"]
