@@ -369,3 +369,31 @@ def test_numbers_that_are_missing_at_the_ends_are_named():
     found = find_segments(velocity_run(velocity))
     assert found["omitted_reason"].values.tolist() == ["not a number"] * 2
     assert found["start"].item() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("noise", [0.003, 0.01])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_last_bits_of_times_and_velocities_move_no_end_of_a_segment(noise, seed):
+    made = strokes(noise=noise, rate="follows", seed=seed, samples=100).run
+    rng = np.random.default_rng(seed)
+    log, read = made["time"].values, made["sliding_velocity"].values
+    # between the samples of a log, as where two clocks are brought together
+    place = np.sort(rng.uniform(0, read.size - 1, read.size))
+    time = np.interp(place, np.arange(read.size), log)
+    velocity = np.interp(time, log, read)
+    bits = 2e-16 * rng.integers(-2, 3, velocity.size)
+
+    def ends(time, velocity):
+        run = xr.Dataset({"sliding_velocity": ("time", velocity)}, {"time": time})
+        return find_segments(run)[["start", "stop", "omitted_start", "omitted_stop"]]
+
+    told = ends(time, velocity)
+    assert told.sizes["segment"] >= 26
+    for same in (
+        ends(time, np.interp(time + 1e-12, log, read)),
+        ends(time, velocity * (1 + 1e-12)),
+        ends(time, velocity * (1 + bits)),
+        ends(time * (1 + 1e-12), velocity),
+    ):
+        assert same.sizes == told.sizes
+        xr.testing.assert_allclose(told, same, rtol=1e-10)

@@ -30,6 +30,9 @@ SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a br
 TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
 FAR = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
 WORSE = 16.0  # squares (in variances) by which one line may be worse than two
+TIE = 9  # digits of a height: breaks that differ by less are as high as one another
+EQUAL = 6  # digits of a cost: mergers that differ by less cost the same
+EXACT = 1e-11  # of the squares: a line that leaves less leaves what arithmetic adds
 
 
 class Noise(NamedTuple):
@@ -141,7 +144,8 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     top = float(middle.max()) if middle.size else 0.0
     if top == 0:
         return Noise(least, nothing, nothing)
-    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8))).astype(int)
+    # the highest speed, and whole decades below it, lie on no edge
+    bins = np.floor(4 * np.log10(np.maximum(middle / top, 1e-8)) + 1e-6).astype(int)
     levels = []
     for group in np.unique(bins):
         inside = bins == group
@@ -258,7 +262,8 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
     if width == 1:
         return position
     # candidates of one cluster lie close together: the highest of each bin, then thin out
-    order = np.argsort(-height, kind="stable")
+    # from rest all are as high: the earliest is taken, and not what arithmetic adds most to
+    order = np.argsort(-np.round(height, TIE), kind="stable")
     taken = np.zeros(position[-1] + width + 2, dtype=bool)
     chosen = []
     for index in order:
@@ -306,7 +311,8 @@ def _misfit(m: np.ndarray) -> np.ndarray:
     """Weighted squares left by the straight line through a piece."""
     with np.errstate(divide="ignore", invalid="ignore"):
         explained = np.where(m[4] > 0, m[5] ** 2 / m[4], 0.0)
-    return np.maximum(m[6] - explained, 0.0)
+    left = m[6] - explained
+    return np.where(left > EXACT * m[6], left, 0.0)
 
 
 def straight_pieces(
@@ -335,6 +341,9 @@ def straight_pieces(
             noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60
         )
         cost = (both - left - right) / np.maximum(WORSE * memory, shorter * small)
+        # a line through two samples costs nothing: which pair is joined first tells the order in
+        # time, and not the last bit
+        cost = np.round(cost, EQUAL)
         if not (cost < 1).any():
             break
         ahead = np.concatenate([[np.inf], cost[:-1]])

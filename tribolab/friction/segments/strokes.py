@@ -14,6 +14,7 @@ HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a t
 LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
 SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
 FEWEST = 3  # strokes, the cut ones at both ends left out
+SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
 
 
 class Strokes(NamedTuple):
@@ -121,7 +122,7 @@ def _by_position(run: xr.Dataset) -> _Parts:
     part = np.repeat(np.arange(side.size), np.diff(change))
     height = position[inside] * side[part]
     top = np.maximum.reduceat(height, change[:-1] - change[0])
-    at = inside[height == top[part]]
+    at = inside[height >= top[part] - SAME * (high - low)]
     turn = at[np.searchsorted(at, change[:-1])]
     way = -side[:-1]
     length = np.abs(np.diff(position[turn]))
@@ -142,7 +143,8 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
     if change.size < 2:
         return _nothing(velocity.size)
     # the turn lies where the velocity last had the sign of before
-    same = np.flatnonzero(velocity[:-1] * velocity[1:] <= 0) + 1
+    sign = np.where(np.abs(velocity) > SAME * limit, np.sign(velocity), 0.0)
+    same = np.flatnonzero(sign[:-1] * sign[1:] <= 0) + 1
     turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
     way = np.sign(state[np.minimum(turn[1:] - 1, state.size - 1)]).astype(int)
     steps = np.diff(time) * (velocity[1:] + velocity[:-1]) / 2

@@ -17,8 +17,8 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
+from numpy.fft import irfft, rfft
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len, rfft
 
 Array = NDArray[np.float64]
 
@@ -31,6 +31,7 @@ _LEAST_CONTRAST = 0.1
 _ALMOST_NOTHING = 1e-3
 _TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
 _RIVALS = 8  # other peaks, at most
+_EDGE = 1e-6  # of a cell: a sample so near to the next one is in it, whatever its last bit says
 _LASTING = 12  # times as many changes as classes: then these are summed as they last
 
 
@@ -58,7 +59,7 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     speed = np.abs(np.nan_to_num(velocity))
     fastest = speed.max()
     rank = np.zeros(len(speed), dtype=np.int64)
-    moving = speed > fastest * 10.0**-_DECADES
+    moving = speed > fastest * 10.0**-_DECADES * (1.0 + 1e-9)
     # the middle of a class is at the fastest speed, so that its noise stays in one class
     level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
     rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
@@ -82,8 +83,8 @@ def coarse_shift(
     """Best shift on a grid, the half width in which the true one lies, and others `apart` [s]."""
     spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
     cell = max(spans) / _GRID
-    cells = [int(span / cell) + 1 for span in spans]
-    where = ((force_time - force_time[0]) / cell).astype(np.int64)
+    cells = [int(span / cell + _EDGE) + 1 for span in spans]
+    where = ((force_time - force_time[0]) / cell + _EDGE).astype(np.int64)
     weights = (np.ones(len(force)), force, force**2)
     sums = [np.asarray(np.bincount(where, w, cells[0]), dtype=float) for w in weights]
     grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
@@ -170,11 +171,16 @@ def _correlated_classes(
     sums: list[Array], classes: NDArray[np.int64], lags: NDArray[np.int64]
 ) -> Iterator[tuple[Array, Array]]:
     """Give number and sum below each class (lag), by FFT."""
-    length = next_fast_len(len(sums[0]) + len(classes), real=True)
+    length = _power_of_two(len(sums[0]) + len(classes))
     count, total = (rfft(s, length) for s in sums)
     for k in np.unique(classes):
         here = np.conj(rfft((classes == k).astype(float), length))
         yield irfft(count * here, length)[lags], irfft(total * here, length)[lags]
+
+
+def _power_of_two(least: int) -> int:
+    """Length of a fast transform: to ask scipy for a shorter one takes longer than to do it."""
+    return 1 << (least - 1).bit_length()
 
 
 class Classes:
@@ -277,7 +283,7 @@ def _correlated(residual: Array) -> float:
     means = residual[: rows * block].reshape(rows, block).mean(axis=1)
     if rows < 2 or not means.any():
         return float(block)
-    spectrum = np.abs(rfft(means, next_fast_len(2 * rows, real=True))) ** 2
+    spectrum = np.abs(rfft(means, _power_of_two(2 * rows))) ** 2
     correlation = irfft(spectrum)[:rows]
     correlation /= correlation[0]
     negative = np.flatnonzero(correlation <= 0)
