@@ -53,9 +53,34 @@ def test_the_peak_is_found_within_its_error():
         truth = SLIDING * (1 + excess)
         error = table["static_friction_coefficient_sem"].values
         off.append((table["static_friction_coefficient"].values - truth) / truth)
-        assert (error < 0.02 * truth).all() and (table["peak"].values == 1).all()
-    # the top of a spike is rounded off by the parabola, by no more than this
-    assert np.abs(np.mean(off)) < 0.02 and np.abs(off).max() < 0.05
+        # a pointed peak may lie between two readings, of which one is 2.5 % to 3.5 % lower
+        assert (error < 0.025 * truth).all() and (table["peak"].values == 1).all()
+    assert np.abs(np.mean(off)) < 0.01 and np.abs(off).max() < 0.03
+
+
+def sled(stiffness, *, rate=50.0, width=0.2, noise=0.004, seed=0):
+    """A sled of 2 N on a string, which lets go at 0.45 and slides at 0.32; the crosshead moves."""
+    time = np.arange(0, 20, 1 / rate)
+    speed, load = 100e-3 / 60, 2.0
+    pulled = stiffness * speed * np.clip(time - 2, 0, None)
+    after = time - (2 + 0.45 * load / stiffness / speed)
+    slides = load * (0.32 + 0.13 * np.exp(-np.clip(after, 0, None) / width))
+    force = np.where(after < 0, pulled, slides)
+    force = force + noise * np.random.default_rng(seed).standard_normal(time.size)
+    data = {"sliding_velocity": speed * (time >= 2), "friction_force": force}
+    data["normal_force"] = np.full(time.size, load)
+    run = xr.Dataset({k: ("time", x) for k, x in data.items()}, {"time": time})
+    return run.assign_attrs(friction_force_zero_uncertainty_N=1e-4)
+
+
+@pytest.mark.parametrize("noise", [0.001, 0.02])
+@pytest.mark.parametrize(("stiffness", "bound"), [(1500.0, 0.05), (150.0, 0.04)])
+def test_a_pointed_peak_at_the_end_of_the_pull_of_a_string_is_found(stiffness, bound, noise):
+    """A soft string lets go long after the crosshead starts, and the peak is no round one."""
+    tables = [measured(sled(stiffness, noise=noise, seed=seed)) for seed in range(3)]
+    off = np.concatenate([t["static_friction_coefficient"].values for t in tables]) - 0.45
+    error = np.concatenate([t["static_friction_coefficient_sem"].values for t in tables])
+    assert (np.abs(off) < 3 * error).all() and np.abs(off).max() < bound * 0.45
 
 
 def test_noise_does_not_raise_the_peak():

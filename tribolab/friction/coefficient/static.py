@@ -13,24 +13,28 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient
+from tribolab.friction.coefficient.peak import FEWEST, noise_between, peak_of_start
 from tribolab.friction.segments.stretches import name_of
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
-CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
-_FEWEST = 5  # samples of a start
-_NOISE = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
-_NEAR = 0.8  # of the way from sliding to the highest reading: what belongs to the peak
+_LATEST = 0.5  # of the segment: how far a rise may go on, at most
+_LONGER = 1.5  # times the readings before it, what is looked at where the force still rises
+_AT_END = 0.1  # of the readings: where their mean is the highest, the force still rises
 
 
 class _Start(NamedTuple):
-    """Start of one segment: samples before and within it, and how long the contact rested."""
+    """Start of one segment: samples before and within it, and how long the contact rested.
+
+    Where the force still rises at `last`, samples up to `latest` belong to it, too.
+    """
 
     number: int
     first: int
     last: int
+    latest: int
     rested: float
 
 
@@ -53,7 +57,8 @@ def static_friction(
         From `tribolab.friction_coefficient` on both; computed if not given.
     within
         Distance from the start of motion within which the peak is looked for [m]; by default
-        the untrimmed first part of the segment.
+        the untrimmed first part of the segment, and as far as the force still rises beyond it, as
+        where a sled hangs on a soft string (at most half of the segment).
 
     Returns
     -------
@@ -76,9 +81,11 @@ def static_friction(
     The highest of n noisy readings lies above the true peak. So readings near the top (from 80 %
     of the way between sliding and the highest reading on) are fitted by a parabola, and the peak
     is its highest value within them; the error is that of the fit, with the noise between
-    neighbouring samples as the readings' own, and that of the zero. With fewer than five readings
-    near the top the peak is their mean. Where a single reading does not stand out of the noise,
-    means over 2, 4, 8 ... readings are looked at. ASTM D1894 and ISO 8295 take the highest reading.
+    neighbouring samples as the readings' own, and that of the zero. Of a pointed peak that no
+    parabola follows within the noise, fewer readings are taken; with fewer than five the peak is
+    the highest reading, as ASTM D1894 and ISO 8295 have it, and half of the larger step beside it
+    is in its error: so much may lie between two readings. Where a single reading does not stand
+    out of the noise, means over 2, 4, 8 ... readings are looked at.
 
     References
     ----------
@@ -154,15 +161,15 @@ def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[
         if not before.size or end[before[-1]] < earliest:
             continue  # it was already moving
         rest = before[-1]
-        limit = trimmed[i]
+        limit, latest = trimmed[i], start[i] + _LATEST * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:
-            limit = start[i] + reach / speed[i]
+            limit = latest = start[i] + reach / speed[i]
         # the force may rise before the velocity shows motion
         back = max(begin[rest], start[i] - BEFORE * (stop[i] - start[i]))
-        first, last = np.searchsorted(time, [back, limit])
-        if last - first >= _FEWEST:
+        first, last, end_of_it = np.searchsorted(time, [back, limit, max(limit, latest)])
+        if last - first >= FEWEST:
             rested = _rested(run, begin, end, int(rest))
-            starts.append(_Start(i, int(first), int(last), rested))
+            starts.append(_Start(i, int(first), int(last), int(end_of_it), rested))
     return starts
 
 
@@ -181,7 +188,7 @@ def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> f
 
 def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start) -> _Peak:
     i = start.number
-    part = slice(start.first, start.last)
+    part = slice(start.first, start.latest)
     time = run.variables["time"].values[part]
     zero = float(friction.variables[f"{signal}_offset"].values[i])
     way = int(friction.variables["direction"].values[i]) or 1
@@ -190,7 +197,9 @@ def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start)
     sem = float(friction.variables["friction_coefficient_sem"].values[i])
     load = _load(run, friction, i, part)
     ratio = values / load if load is not None else values
-    moment, height, error, stands = _peak(time, ratio, sliding, sem)
+    noise = min(noise_between(ratio), noise_between(ratio[start.last - start.first :]))
+    taken = _taken(ratio, start.last - start.first)
+    moment, height, error, stands = peak_of_start(time[:taken], ratio[:taken], sliding, sem, noise)
     pressed = float(np.nanmedian(load)) if load is not None else np.nan
     return _Peak(
         number=int(friction["segment"].values[i]),
@@ -218,62 +227,14 @@ def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndar
     return np.where(load > 0.5 * usual, load, np.nan)
 
 
-def _peak(
-    time: np.ndarray, ratio: np.ndarray, sliding: float, sem: float
-) -> tuple[float, float, float, bool]:
-    """Moment, height and error of the highest part of a start, and whether it stands out."""
-    known = np.isfinite(ratio)
-    time, ratio = time[known], ratio[known]
-    if ratio.size < _FEWEST or not np.isfinite(sliding):
-        return np.nan, np.nan, np.nan, False
-    noise = _NOISE * float(np.median(np.abs(np.diff(ratio))))
-    smooth, width, clear = _smoothed(ratio, sliding, noise)
-    top = int(np.argmax(smooth))
-    level = sliding + _NEAR * (smooth[top] - sliding)
-    low = np.flatnonzero(smooth < level)
-    first = low[low < top][-1] + 1 if (low < top).any() else 0
-    last = low[low > top][0] if (low > top).any() else ratio.size
-    if not clear:  # the highest of noise: what a stretch as long as its own mean holds
-        first, last = top, min(top + 1, smooth.size)
-    near, when = ratio[first : last + width - 1], time[first : last + width - 1]
-    if not clear or near.size < _FEWEST or not np.ptp(when) > 0:
-        height, error, moment = float(near.mean()), noise / np.sqrt(near.size), float(when.mean())
-    else:
-        height, error, moment = _parabola(when, near, noise)
-    if not clear:  # where the start ends and sliding begins is not seen
-        error = float(np.hypot(error, height - sliding))
-    error = float(np.hypot(error, sem))
-    return moment, height, error, bool(clear and height - sliding > CLEAR * error)
-
-
-def _smoothed(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
-    """Return running means over the fewest readings in which a peak stands out of the noise.
-
-    Also how many readings these are, and whether there is such a peak at all; where there is none,
-    the means are those over an eighth of the start.
-    """
-    total = np.concatenate([[0.0], np.cumsum(ratio)])
-    width = 1
-    while True:
-        smooth = (total[width:] - total[:-width]) / width
-        beyond = np.sqrt(2 * np.log(max(ratio.size / width, 2.0))) + 1.0
-        if smooth.max() - sliding > beyond * noise / np.sqrt(width):
-            return smooth, width, True
-        if 8 * width >= ratio.size:
-            return smooth, width, False
-        width *= 2
-
-
-def _parabola(time: np.ndarray, values: np.ndarray, noise: float) -> tuple[float, float, float]:
-    """Height of a parabola's highest point within its readings, its error, and the moment."""
-    middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
-    u = (time - middle) / half
-    basis = np.stack([np.ones(u.size), u, u * u], axis=1)
-    terms, *_ = np.linalg.lstsq(basis, values, rcond=None)
-    rest = values - basis @ terms
-    scatter = max(noise, float(np.sqrt(rest @ rest / max(u.size - 3, 1))))
-    at = -terms[1] / (2 * terms[2]) if terms[2] < 0 else np.sign(terms[1])
-    at = float(np.clip(at, -1.0, 1.0))
-    row = np.array([1.0, at, at * at])
-    error = scatter * float(np.sqrt(row @ np.linalg.pinv(basis.T @ basis) @ row))
-    return float(row @ terms), error, float(middle + half * at)
+def _taken(ratio: np.ndarray, usual: int) -> int:
+    """Return how many readings belong to a start: the usual ones, more where it still rises."""
+    taken = usual
+    while taken < ratio.size:
+        size = max(int(_AT_END * taken), FEWEST)
+        blocks = [ratio[max(end - size, 0) : end] for end in range(taken, 0, -size)]
+        means = [float(np.nanmean(b)) for b in blocks if np.isfinite(b).any()]
+        if means and means[0] < max(means):
+            break
+        taken = min(int(_LONGER * taken) + 1, ratio.size)
+    return taken
