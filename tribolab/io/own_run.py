@@ -15,19 +15,22 @@ from tribolab.quantities import QUANTITIES
 from tribolab.untyped import Json
 
 _NUMBERS = "fiub"
+_DESCRIBE = "of others a description says which is which (raw_data_schema/README.md)"
 # attributes that are reckoned with; of another kind they say nothing
 _KINDS: Mapping[str, type | tuple[type, ...]] = {"columns_used": dict, "findings": (list, tuple)}
 _UNITS = ("_s", "_m", "_N", "_m_s", "_m_per_s", "_Hz", "_K", "_Pa")
 _COUNTS = {"rows_not_covered", "rows_left_out", "rows_in_file"}
 
 
-def read_own_run(path: Path) -> xr.Dataset:
+def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     """Read a run from netCDF, whoever wrote it.
 
     Parameters
     ----------
     path
         The file.
+    content
+        Where its content lies, if it is compressed.
 
     Returns
     -------
@@ -42,10 +45,11 @@ def read_own_run(path: Path) -> xr.Dataset:
     """
     from tribolab.io.netcdf import read_netcdf
 
-    run = read_netcdf(path, group="run?")
+    run = read_netcdf(content or path, group="run?")
     if "time" not in run.coords or run.sizes.get("time", 0) == 0:
-        what = "this netCDF file holds no run: it has no coordinate 'time'"
-        raise UnknownFileError(what, where=path)
+        what = "this netCDF or HDF5 file holds no run: it has no coordinate 'time'"
+        cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
+        raise UnknownFileError(what, where=path, cure=cure)
     strange = [str(name) for name in run.variables if not _along_time(run[name])]
     for name in strange:
         if name == "time" or name in QUANTITIES:

@@ -96,7 +96,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return wide["name"], wide["unit"].strip()
     known = {symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols}
     if squeezed(label) in known:
-        return label, None
+        return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
         unit = _PER.sub("/", unit)
@@ -107,6 +107,18 @@ def split_unit(label: str) -> tuple[str, str | None]:
             if name and not unitless and is_unit(text):
                 return name, text
     return label, None
+
+
+def _symbol_and_unit(label: str) -> tuple[str, str] | None:
+    """Separate the unit from a symbol with which it happens to make another: Ff_N is no F/Fn.
+
+    >>> _symbol_and_unit("Ff_N"), _symbol_and_unit("F_N"), _symbol_and_unit("t_s")
+    (('Ff', 'N'), None, ('t', 's'))
+    """
+    name, _, unit = label.strip().rpartition("_")
+    meant = [word.quantity for word in RUN_WORDS if squeezed(name) in word.symbols]
+    fits = any(converts(unit, quantity(q).unit) for q in meant if quantity(q).unit != "1")
+    return (name, unit) if fits else None
 
 
 def is_count(unit: str) -> bool:

@@ -107,7 +107,8 @@ def _understood(file: File) -> tuple[Layout, Understood]:
             where=file.path,
         )
     layout, columns = layout_of_columns(file)
-    return layout, as_held(understand(layout), columns)
+    assert layout.held is not None  # whoever lays columns out says where they are
+    return layout, as_held(understand(layout), columns, layout.held)
 
 
 def save_draft(draft: Draft, path: PathLike, *, force: bool = False) -> Path:

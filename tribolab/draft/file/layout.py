@@ -39,12 +39,18 @@ _MOST_COLUMNS = 20_000
 
 
 class Held(NamedTuple):
-    """Where columns are in a file that names them: its format, and of a workbook the sheet."""
+    """Where columns are in a file that names them: its format, and of a workbook the sheet.
+
+    `increment` is the time [s] from row to row where the file has a clock and no column of it;
+    `others` names tables besides the chosen one that have columns of the same names.
+    """
 
     form: str
     sheet: str = ""
     line: int = 1
     units_below: bool = False
+    increment: float = 0.0
+    others: str = ""
 
 
 class Layout(NamedTuple):

@@ -11,7 +11,7 @@ from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columnar import layout_of, named
 from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.tables.columnar import open_columns
+from tribolab.io.tables.columnar import open_columns, seconds_of
 from tribolab.provenance import sha256_of_file
 
 
@@ -62,8 +62,9 @@ def read_columnar(path: Path, dialect: Dialect) -> Content:
 
 
 def _numbers(path: Path, label: str, values: np.ndarray) -> np.ndarray:
-    if values.dtype.kind == "M":  # moments: seconds since 1970
-        return values.astype("datetime64[ns]").astype(np.int64) * 1e-9
+    if values.dtype.kind in "Mm":  # moments: seconds since 1970; or what has passed
+        return seconds_of(values)
     if values.dtype.kind in "fiub":
-        return np.asarray(values, dtype=float)
+        with np.errstate(invalid="ignore"):  # what is damaged is not a number
+            return np.asarray(values, dtype=float)
     raise ReadError(f"column '{shown(label)}' holds no numbers", where=path)

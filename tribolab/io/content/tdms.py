@@ -14,7 +14,7 @@ from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.layout import Marks
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.tables.tdms_file import open_tdms
+from tribolab.io.tables.tdms_file import on_one_grid, open_tdms
 from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
 
@@ -40,9 +40,10 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     named = [split_name(channel.name) for channel in channels]
     names, units = [n for n, _ in named], [u for _, u in named]
     signals, unused = resolve(str(path), names, units, len(names), dialect)
+    grid = on_one_grid([channels[s.place] for s in signals]) if dialect.time.rate_pattern else None
     columns = {}
-    for signal in signals:
-        numbers = np.asarray(channels[signal.place][:])
+    for number, signal in enumerate(signals):
+        numbers = grid.values[number] if grid else np.asarray(channels[signal.place][:])
         if numbers.dtype.kind not in "fiu":
             raise ReadError(f"{path}: channel '{shown(signal.label)}' holds no numbers")
         with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
@@ -51,6 +52,7 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
     text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
+    text = f"wf_increment: {grid.increment!r}\n{text}" if grid else text
     notes = _incomplete(file)
     if dialect.marks is not None:
         columns["step"], more = _steps(path, file, columns["time"], dialect.marks)

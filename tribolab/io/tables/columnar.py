@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import datetime as dt
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -54,6 +55,17 @@ def open_columns(path: Path, form: str, layout: Layout) -> Columns:
     return _READERS[form](path, layout)
 
 
+def seconds_of(values: np.ndarray) -> np.ndarray:
+    """Return moments as seconds since 1970, and durations as seconds; NaN where there is none.
+
+    >>> seconds_of(np.array(["1970-01-01T00:01:00.5", "NaT"], dtype="datetime64[ms]")).tolist()
+    [60.5, nan]
+    """
+    known = ~np.isnat(values)
+    since = values.astype("datetime64[ns]" if values.dtype.kind == "M" else "timedelta64[ns]")
+    return np.where(known, since.astype(np.int64) * 1e-9, np.nan)
+
+
 def _of_arrow(table: object) -> Columns:
     import pyarrow as pa
 
@@ -85,21 +97,49 @@ def _hdf5(path: Path, layout: Layout) -> Columns:
     names: list[str] = []
     units: list[str | None] = []
     arrays: list[np.ndarray] = []
+
+    def take(name: str, values: np.ndarray, unit: object) -> None:
+        if values.dtype.kind not in "fiu" or values.size == 0:
+            return
+        if values.size != max(values.shape, default=0):
+            return  # not one column
+        unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
+        names.append(name)
+        units.append(str(unit) if unit is not None else None)
+        arrays.append(values.ravel())
+
     with h5py.File(path, "r") as file:
 
-        def take(name: str, item: object) -> None:
-            if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu":
+        def visit(name: str, item: object) -> None:
+            if not isinstance(item, h5py.Dataset) or item.size is None:
                 return
-            if item.size == 0 or item.size != max(item.shape, default=0):
-                return  # not one column
-            unit = item.attrs.get("units", item.attrs.get("unit"))
-            unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
-            names.append(name)
-            units.append(str(unit) if unit is not None else None)
-            arrays.append(item[()].ravel())
+            labels = _labels_of_matrix(item)
+            if item.dtype.names:  # rows of several numbers, as tables are kept
+                for field in item.dtype.names:
+                    take(f"{name}/{field}", item[field], None)
+            elif labels:
+                matrix = item[()]
+                for place, label in enumerate(labels):
+                    take(f"{name}/{label}", matrix[:, place], None)
+            elif item.dtype.kind in "fiu" and item.size == max(item.shape, default=0):
+                take(name, item[()], item.attrs.get("units", item.attrs.get("unit")))
 
-        file.visititems(take)
+        file.visititems(visit)
     return Columns(names, units, arrays.__getitem__)
+
+
+def _labels_of_matrix(item: object) -> list[str]:
+    """Return the names of a matrix' columns, where its attributes say them."""
+    import h5py
+
+    assert isinstance(item, h5py.Dataset)
+    if len(item.shape) != 2:
+        return []
+    for key in ("columns", "column_names", "names", "labels", "channels"):
+        said = item.attrs.get(key)
+        if said is not None and np.shape(said) == item.shape[1:]:
+            return [t.decode("utf-8", "replace") if isinstance(t, bytes) else str(t) for t in said]
+    return []
 
 
 def _excel(path: Path, layout: Layout) -> Columns:
@@ -130,9 +170,26 @@ def _excel(path: Path, layout: Layout) -> Columns:
         cells = [row[place] if place < len(row) else "" for row in body]
         # an empty row ends the table
         filled = [n for n, cell in enumerate(cells) if cell != ""]
-        return np.array([_cell(path, cell) for cell in cells[: filled[-1] + 1 if filled else 0]])
+        return _of_cells(path, cells[: filled[-1] + 1 if filled else 0])
 
     return Columns(names, units[: len(names)], column)
+
+
+def _of_cells(path: Path, cells: Sequence[object]) -> np.ndarray:
+    """Return the numbers of a sheet's column, or its moments or times of day."""
+    first = next((cell for cell in cells if cell != ""), None)
+    if isinstance(first, dt.datetime):
+        moments = [c if isinstance(c, dt.datetime) else None for c in cells]
+        return np.array(moments, dtype="datetime64[us]")
+    if isinstance(first, dt.time | dt.timedelta):
+        return np.array([_passed(cell) for cell in cells], dtype="timedelta64[us]")
+    return np.array([_cell(path, cell) for cell in cells])
+
+
+def _passed(cell: object) -> dt.timedelta | None:
+    if isinstance(cell, dt.time):
+        return dt.datetime.combine(dt.date.min, cell) - dt.datetime.min
+    return cell if isinstance(cell, dt.timedelta) else None
 
 
 def _cell(path: Path, cell: object) -> float:

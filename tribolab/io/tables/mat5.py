@@ -19,10 +19,15 @@ _TYPES = dict(
 )
 _CLASSES = dict(zip(range(6, 16), "f8 f4 i1 u1 i2 u2 i4 u4 i8 u8".split(), strict=True))
 _COMPLEX = 0x0800
+_STRUCTURE = 2
+_DEEPEST = 8  # structures within structures
 
 
 class Variable(NamedTuple):
-    """One variable: its name, and its numbers (None: text, a structure, a complex array)."""
+    """One variable: its name, and its numbers (None: text, cells, a complex array).
+
+    A field of a structure is called as in MATLAB: ``data.force``.
+    """
 
     name: str
     numbers: np.ndarray | None
@@ -64,7 +69,7 @@ def read_variables(path: Path) -> list[Variable]:
                     raise ValueError(f"{len(inner)} variables stand where one should")
                 kind, data = inner[0]
             if kind == _MATRIX:
-                variables.append(_variable(data, order))
+                variables += _variables(data, order)
         if not variables:
             raise ValueError("it holds no variable")
     except (ValueError, struct.error, zlib.error, OSError, MemoryError) as error:
@@ -94,18 +99,21 @@ def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview
         place = after
 
 
-def _variable(data: memoryview, order: str) -> Variable:
+def _variables(data: memoryview, order: str, within: str = "", depth: int = 0) -> list[Variable]:
+    """Return the variable that an element holds; of a single structure its fields."""
     parts = list(_elements(data, order))
     if len(parts) < 3:
         raise ValueError("a variable has no name")
     flags = _numbers(parts[0], order)
     shape = _numbers(parts[1], order)
-    name = bytes(parts[2][1]).decode("utf-8", errors="replace").rstrip("\0")
+    name = within or bytes(parts[2][1]).decode("utf-8", errors="replace").rstrip("\0")
     if len(flags) < 1 or len(shape) < 2 or (shape < 0).any():
         raise ValueError(f"the size of variable '{name[:40]}' is not given")
     kind = int(flags[0]) & 0xFF
+    if kind == _STRUCTURE and (shape == 1).all() and len(parts) > 4 and depth < _DEEPEST:
+        return _fields(name, parts, order, depth)
     if kind not in _CLASSES or int(flags[0]) & _COMPLEX:
-        return Variable(name, None)
+        return [Variable(name, None)]
     numbers = _numbers(parts[3], order) if len(parts) > 3 else np.empty(0)
     wanted = 1
     for length in shape.tolist():
@@ -113,7 +121,25 @@ def _variable(data: memoryview, order: str) -> Variable:
     if wanted != numbers.size:
         raise ValueError(f"variable '{name[:40]}' has {numbers.size} of {wanted} numbers")
     values = numbers.astype(np.dtype(_CLASSES[kind]), casting="unsafe")
-    return Variable(name, values.reshape(shape.tolist(), order="F"))
+    return [Variable(name, values.reshape(shape.tolist(), order="F"))]
+
+
+def _fields(
+    name: str, parts: list[tuple[int, memoryview]], order: str, depth: int
+) -> list[Variable]:
+    """Return the fields of one structure: all names have one length, their values follow."""
+    longest = _numbers(parts[3], order)
+    text = bytes(parts[4][1])
+    size = int(longest[0]) if len(longest) else 0
+    if size < 1 or len(text) != size * len(parts[5:]):
+        raise ValueError(f"the fields of structure '{name[:40]}' are not named")
+    variables = []
+    for number, (kind, data) in enumerate(parts[5:]):
+        field = text[number * size : (number + 1) * size].split(b"\0")[0]
+        label = f"{name}.{field.decode('utf-8', errors='replace')}"
+        if kind == _MATRIX and len(data):
+            variables += _variables(data, order, label, depth + 1)
+    return variables
 
 
 def _numbers(part: tuple[int, memoryview], order: str) -> np.ndarray:

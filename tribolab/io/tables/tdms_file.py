@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from tribolab.errors import ReadError, brief
 
@@ -12,6 +14,59 @@ DAMAGE = (
     *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
     *(MemoryError, OverflowError, NotImplementedError, AttributeError),
 )
+
+# how the text of a TDMS file says the time from row to row
+INCREMENT_PATTERN = r"^wf_increment: (\S+)"
+_WHOLE = 1e-3  # of an interval, how far the ratio of two may be from a whole number
+
+
+class Grid(NamedTuple):
+    """Channels as numbers at the same moments, NaN between those of slower ones; the interval."""
+
+    values: list[np.ndarray]
+    increment: float
+
+
+def on_one_grid(channels: list[Any]) -> Grid | None:
+    """Bring channels that have a clock of their own (waveforms) to that of the fastest.
+
+    Parameters
+    ----------
+    channels
+        From nptdms.
+
+    Returns
+    -------
+    Grid or None
+        None unless all have a clock, they start together, and the slower ones tick at whole
+        numbers of the fastest one's intervals.
+    """
+    steps = [_number(channel.properties.get("wf_increment")) for channel in channels]
+    starts = {
+        (str(c.properties.get("wf_start_time")), str(c.properties.get("wf_start_offset", 0.0)))
+        for c in channels
+    }
+    values = [np.asarray(channel[:]) for channel in channels]
+    if not values or len(starts) > 1 or not all(step > 0 for step in steps):
+        return None
+    if any(v.dtype.kind not in "fiu" or not v.size for v in values):
+        return None
+    finest = min(steps)
+    ratios = [round(step / finest) for step in steps]
+    if any(abs(s / finest - r) > _WHOLE for s, r in zip(steps, ratios, strict=True)):
+        return None
+    size = max(v.size for v, r in zip(values, ratios, strict=True) if r == 1)
+    spread = []
+    for numbers, ratio in zip(values, ratios, strict=True):
+        cells = np.full(size, np.nan)
+        taken = numbers[: -(-size // ratio)]
+        cells[: taken.size * ratio : ratio] = taken
+        spread.append(cells)
+    return Grid(spread, finest)
+
+
+def _number(said: object) -> float:
+    return float(said) if isinstance(said, int | float) and np.isfinite(said) else 0.0
 
 
 def channel_names(path: Path) -> set[str]:

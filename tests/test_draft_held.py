@@ -1,0 +1,176 @@
+"""Files of others that hold columns by name: read at once as they lie, or asked about."""
+
+from __future__ import annotations
+
+import gzip
+import zipfile
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.draft.columns.words import split_unit
+
+N = 300
+T = np.arange(N) / 20
+LOAD = 20 + 0.1 * np.sin(T)
+FRICTION = 0.25 * LOAD
+SPEED = np.where(T < 8, 2.0, 5.0)  # mm/s
+COLUMNS = {"time_s": T, "Ff_N": FRICTION, "Fn_N": LOAD, "v_mm_s": SPEED}
+
+
+def is_right(run):
+    np.testing.assert_allclose(run.time, T, atol=1e-6)
+    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-6)
+    np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-6)
+    np.testing.assert_allclose(run.sliding_velocity, 1e-3 * SPEED, atol=1e-9)
+
+
+def mat(path):
+    from scipy.io import savemat
+
+    savemat(path, COLUMNS)
+
+
+def mat_structure(path):
+    from scipy.io import savemat
+
+    savemat(path, {"test": {"operator": "B. Person", "log": COLUMNS}}, do_compression=True)
+
+
+def rows_in_hdf5(path):
+    import h5py
+
+    rows = np.zeros(N, dtype=[(name, "f8") for name in COLUMNS])
+    for name, values in COLUMNS.items():
+        rows[name] = values
+    with h5py.File(path, "w") as file:
+        file["data/table"] = rows
+
+
+def matrix_in_hdf5(path):
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        matrix = file.create_dataset("log", data=np.column_stack(list(COLUMNS.values())))
+        matrix.attrs["columns"] = ["Time [s]", "Friction force [N]", "Load [N]", "Speed [mm/s]"]
+
+
+def frame(**time):
+    import pandas as pd
+
+    table = {"Friction force [N]": FRICTION, "Load [N]": LOAD, "Speed [mm/s]": SPEED}
+    return pd.DataFrame({**time, **table})
+
+
+def moments():
+    return np.datetime64("2025-03-01T10:00:00", "us") + (1e6 * T).astype("timedelta64[us]")
+
+
+def parquet_of_moments(path):
+    frame(recorded=moments()).to_parquet(path)
+
+
+def feather_of_durations(path):
+    frame(passed=moments() - moments()[0]).to_feather(path)
+
+
+def sheet_of_moments(path):
+    frame(Date=moments()).to_excel(path, index=False)
+
+
+def sheet_of_text(path):
+    frame(**{"Time [s]": T}).map(lambda x: f"{x:.9f}".replace(".", ",")).to_excel(path, index=False)
+
+
+@pytest.mark.parametrize(
+    ("write", "ending"),
+    [
+        (mat, "mat"),
+        (mat_structure, "mat"),
+        (rows_in_hdf5, "h5"),
+        (matrix_in_hdf5, "h5"),
+        (parquet_of_moments, "parquet"),
+        (feather_of_durations, "feather"),
+        (sheet_of_moments, "xlsx"),
+        (sheet_of_text, "xlsx"),
+    ],
+)
+def test_columns_are_read_at_once_however_a_format_holds_them(write, ending, tmp_path):
+    write(tmp_path / f"run.{ending}")
+    is_right(tl.read(tmp_path / f"run.{ending}"))
+
+
+@pytest.mark.parametrize("write", [rows_in_hdf5, mat])
+def test_what_is_compressed_is_read_as_what_it_holds(write, tmp_path):
+    inner = tmp_path / "run.bin"
+    write(inner)
+    with zipfile.ZipFile(tmp_path / "run.zip", "w") as archive:
+        archive.write(inner, "run.h5")
+        archive.writestr("__MACOSX/._run.h5", "of the system")
+    (tmp_path / "run.gz").write_bytes(gzip.compress(inner.read_bytes()))
+    is_right(tl.read(tmp_path / "run.zip"))
+    is_right(tl.read(tmp_path / "run.gz"))
+
+
+def waveforms(path, step, speed, start=None):
+    """Write forces at 20 Hz and speed in a group of its own, each with its interval."""
+    from nptdms import ChannelObject, TdmsWriter
+
+    def said(interval, unit, begins="2025-01-01T10:00:00"):
+        clock = {"wf_start_time": np.datetime64(begins), "wf_start_offset": 0.0}
+        return {"wf_increment": interval, "unit_string": unit, **clock}
+
+    motion = said(step, "mm/s", start) if start else said(step, "mm/s")
+    with TdmsWriter(path) as file:
+        file.write_segment(
+            [
+                ChannelObject("Forces", "Friction force", FRICTION, said(0.05, "N")),
+                ChannelObject("Forces", "Load", LOAD, said(0.05, "N")),
+                ChannelObject("Motion", "Speed", speed, motion),
+            ]
+        )
+
+
+def test_channels_with_clocks_of_their_own_are_brought_together(tmp_path):
+    file = tmp_path / "run.tdms"
+    waveforms(file, 0.05, SPEED)
+    is_right(tl.read(file))
+    waveforms(file, 0.2, SPEED[::4])
+    run = tl.read(file)
+    assert (
+        run.attrs["time_source"] == "sample rate" and "every 4th row" in run.attrs["interpolated"]
+    )
+    np.testing.assert_allclose(run.friction_force / run.normal_force, 0.25, rtol=1e-6)
+    assert set(np.round(1e3 * run.sliding_velocity.values[T[: run.time.size] < 7], 6)) == {2.0}
+    # one that began later is on no common grid, and its group is left out
+    waveforms(file, 0.2, SPEED[::4], start="2025-01-01T10:00:01")
+    with pytest.raises(tl.TribolabError, match="rows are counted as seconds"):
+        tl.read(file)
+
+
+def test_of_several_tables_alike_it_is_asked_which_is_meant(tmp_path):
+    import h5py
+    import pandas as pd
+
+    with h5py.File(tmp_path / "runs.h5", "w") as file:
+        for name, rows in (("run1", N), ("run2", N - 50)):
+            for label, values in COLUMNS.items():
+                file[f"{name}/{label}"] = values[:rows]
+    with pytest.raises(tl.TribolabError, match="not 'run2'"):
+        tl.read(tmp_path / "runs.h5")
+    with pd.ExcelWriter(tmp_path / "runs.xlsx") as book:
+        frame(**{"Time [s]": T}).to_excel(book, sheet_name="first", index=False)
+        frame(**{"Time [s]": T})[:-50].to_excel(book, sheet_name="second", index=False)
+        pd.DataFrame({"Mean": [1.0, 2.0], "Max": [3.0, 4.0]}).to_excel(book, sheet_name="about")
+    with pytest.raises(tl.TribolabError, match="not 'second'"):
+        tl.read(tmp_path / "runs.xlsx")
+
+
+@pytest.mark.parametrize(
+    ("label", "parts"),
+    [("Ff_N", ("Ff", "N")), ("t_s", ("t", "s")), ("F/Fn", ("F/Fn", None)), ("F_N", ("F_N", None))],
+)
+def test_a_symbol_and_its_unit_make_no_other_symbol(label, parts):
+    """Ff in N, read as the coefficient F/Fn, would be a wrong one."""
+    assert split_unit(label) == parts

@@ -1,0 +1,58 @@
+"""A column of a file that names its columns, and which others in it are called the same."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import shown
+
+ROWS = 20_000  # rows looked at
+_TOLD = 4  # other tables that are named
+
+
+class HeldColumn(NamedTuple):
+    """A column: its name (and group) as the reader finds it, its unit, its numbers.
+
+    `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
+    looks for its meaning, where that is not its name.
+    """
+
+    name: str
+    unit: str | None
+    values: np.ndarray
+    group: str = ""
+    said: bool = True
+    shown: str = ""
+
+
+def leaf(name: str) -> str:
+    """Return a column's own name, without the folder or structure that it lies in.
+
+    >>> leaf("log/Fx"), leaf("data.force"), leaf("Friction N/mm")
+    ('Fx', 'force', 'mm')
+    """
+    name = name.rsplit("/", 1)[-1]
+    return name.rsplit(".", 1)[-1] if " " not in name else name
+
+
+def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
+    """Name the tables besides the chosen columns that have columns of the same names; "" if none.
+
+    Parameters
+    ----------
+    chosen
+        The columns that are read.
+    every
+        All columns of the file.
+    """
+    names = {leaf(column.name) for column in chosen}
+    alike: dict[str, int] = {}
+    for column in every:
+        if not any(column is c for c in chosen) and leaf(column.name) in names:
+            table = column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
+            alike[table] = alike.get(table, 0) + 1
+    tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
+    return ", ".join(tables[:_TOLD])

@@ -1,0 +1,91 @@
+"""Unknown workbooks: which sheet holds the table, and in which row its names stand."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tribolab.draft.file.held_column import ROWS, HeldColumn
+from tribolab.draft.file.layout import Held
+from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.cells import split_name
+from tribolab.io.tables import columnar
+
+_ABOVE = 40  # rows of a sheet above its names
+_MOMENTS = (dt.datetime, dt.time, dt.timedelta)
+
+
+def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
+    """Return the columns of the sheet that holds most rows of numbers below names.
+
+    Parameters
+    ----------
+    path
+        The workbook.
+
+    Raises
+    ------
+    ReadError
+        If no sheet holds such rows.
+    """
+    from python_calamine import CalamineWorkbook
+
+    book = CalamineWorkbook.from_path(path)
+    tables: list[tuple[int, Held, set[str]]] = []
+    for sheet in book.sheet_names:
+        rows = book.get_sheet_by_name(sheet).to_python(skip_empty_area=False, nrows=ROWS)
+        place = _names_row(rows)
+        if place is not None:
+            held = Held("excel", sheet, place + 1, not _is_numeric(rows[place + 1]))
+            tables.append((len(rows) - place, held, {str(c) for c in rows[place] if c != ""}))
+    if not tables:
+        raise ReadError("no sheet holds numbers below names", where=path)
+    _, held, names = max(tables, key=lambda table: table[0])
+    alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
+    held = held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4]))
+    layout = columnar.Layout(held.sheet, held.line, held.units_below)
+    table = columnar.open_columns(path, "excel", layout)
+    columns = []
+    for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        name, own = split_name(label)
+        try:
+            values = table.column(place)
+        except ReadError:  # a column of words
+            values = np.empty(0)
+        if label:
+            columns.append(HeldColumn(name, unit or own, values))
+    return held, columns
+
+
+def _names_row(rows: Sequence[Sequence[object]]) -> int | None:
+    """Return the first row of words with numbers below it, or below a row of units."""
+    for index in range(min(len(rows) - 2, _ABOVE)):
+        words = [cell for cell in rows[index] if isinstance(cell, str) and cell.strip()]
+        if len(words) < 2 or _is_numeric(rows[index]):
+            continue
+        if _is_numeric(rows[index + 1]):
+            return index
+        units = sum(1 for cell in rows[index + 1] if isinstance(cell, str) and cell.strip())
+        if 2 * units >= len(words) and _is_numeric(rows[index + 2]):
+            return index
+    return None
+
+
+def _is_numeric(row: Sequence[object]) -> bool:
+    filled = [cell for cell in row if cell not in ("", None)]
+    numbers = sum(map(_is_number, filled))
+    return numbers >= 2 and 2 * numbers >= len(filled)
+
+
+def _is_number(cell: object) -> bool:
+    """Whether a cell is a number, a moment, or a number that was typed as text."""
+    if isinstance(cell, str):
+        try:
+            float(cell.strip().replace(",", "."))
+        except ValueError:
+            return False
+        return True
+    return isinstance(cell, (int, float, *_MOMENTS)) and not isinstance(cell, bool)
