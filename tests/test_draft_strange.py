@@ -474,3 +474,22 @@ def test_heights_alone_say_that_their_distance_is_missing(tmp_path):
     file.write_text("Traverse: 2.0 mm\nElevation (um)\n" + "".join(f"{x:.4f}\n" for x in T))
     with pytest.raises(tl.TribolabError, match="how far they lie apart"):
         tl.read(file)
+
+
+def test_what_is_said_before_each_step_is_that_of_the_step(tmp_path):
+    """Taken from the first, speed and load of all later steps would be wrong."""
+    head = "Time [s];Rotation [rpm];Friction [N]"
+    text = "Disc rig\n"
+    for step, (radius, load) in enumerate(((10, 5.0), (20, 5.0), (25, 8.0)), 1):
+        text += f"Step {step}\nTrack radius: {radius} mm\nLoad: {load} N\n{head}\n"
+        text += "".join(f"{n / 20:.2f};60;{0.25 * load + 0.001 * (n % 3):.4f}\n" for n in range(N))
+    file = tmp_path / "a.txt"
+    file.write_text(text)
+    run = tl.read(file)
+    radii, loads = np.repeat([10e-3, 20e-3, 25e-3], N), np.repeat([5.0, 5.0, 8.0], N)
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * radii, rtol=1e-6)
+    np.testing.assert_allclose(run.normal_force, loads)
+    toml = tl.draft_dialect(file).toml.replace('source = "step"', 'source = "preamble"')
+    (tmp_path / "a.toml").write_text(toml)
+    with pytest.raises(tl.TribolabError, match=r"is 10 before the first table and 20 before a"):
+        tl.read(file, tmp_path / "a.toml")

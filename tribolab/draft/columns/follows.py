@@ -188,6 +188,10 @@ def _with_speed(
     turning = "rotation_speed" in names
     if turning and understood.radius:
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
+    if turning and any(value.source == "step" for value in track.values):
+        about = "turns and the radius of each step"
+        formula = Formula("sliding_velocity", f"rotation_speed * {track.formula}", about)
+        return _and(before, formula, track.values)._replace(speed=SpeedBy("none"))
     if turning and track.values:
         speed = SpeedBy("rotation", (("radius_value", track.formula),))
         return before._replace(speed=speed, values=(*before.values, *track.values))
@@ -284,5 +288,6 @@ def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> Draf
         value
         for value in values
         if value.unit and converts(value.unit, unit) and key.search(value.key)
+        if value.source != "step"
     ]
     return fitting[0]._replace(to=unit) if len(fitting) == 1 else None

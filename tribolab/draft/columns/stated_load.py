@@ -22,7 +22,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     """
     fitting = []
     for value in values:
-        if value.source != "preamble" or not LOAD.search(value.key):
+        if value.source == "file name" or not LOAD.search(value.key):
             continue
         unit = _WEIGHT.get(value.own_unit or "", value.own_unit or "")
         if converts(unit, "N"):

@@ -103,7 +103,17 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
                 if stated := _of_phrase(phrase):
                     _keep(values, stated)
                 strokes = STROKE.search(phrase.key) is not None
-    return list(values.values())
+    return [_of_steps(value, layout) for value in values.values()]
+
+
+def _of_steps(value: DraftValue, layout: Layout) -> DraftValue:
+    """Return a value as one of each step, where the text before later tables says another."""
+    if not layout.repeats or value.source != "preamble":
+        return value
+    edges = [0, *(edge for block in layout.blocks for edge in (block.start, block.stop))]
+    texts = ["\n".join(layout.lines[a:b]) for a, b in zip(edges[::2], edges[1::2], strict=False)]
+    said = {match[1] for text in texts for match in re.finditer(value.pattern, text, re.MULTILINE)}
+    return value._replace(source="step") if len(said) > 1 else value
 
 
 def _radius_in_name(name: str) -> DraftValue | None:

@@ -35,6 +35,7 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
         text = content.path.name if value.source == "file name" else content.pieces[0].before
         text_found = _first_match(value.pattern, text)
         if text_found:
+            _agrees(text_found, value, content, dialect)
             attrs[value.attribute] = _converted(text_found, value, content, dialect)
     return attrs
 
@@ -57,6 +58,21 @@ def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
         used |= names_in(parse_formula(formula))
     if told := [f"{value.name} {value.default}" for value in assumed if value.name in used]:
         attrs["assumed"] = "; ".join(told)
+
+
+def _agrees(text: str, value: Value, content: Content, dialect: Dialect) -> None:
+    """Refuse a value that is reckoned with, where the text before a later table says another."""
+    reckoned = value.name in dialect.values_reckoned_with
+    if value.source != "preamble" or value.pattern is None or not reckoned:
+        return
+    for piece in content.pieces[1:]:
+        later = last_match(value.pattern, piece.before)
+        if later is not None and later != text:
+            raise ReadError(
+                f"{content.path}: {value.name} is {shown(text)} before the first table and "
+                f"{shown(later)} before a later one; say source = 'step' in its [[value]] (dialect "
+                f"'{dialect.name}'), so that each has its own"
+            )
 
 
 def step_values(

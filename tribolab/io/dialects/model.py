@@ -114,6 +114,12 @@ class Dialect(Strict):
                 )
         return self
 
+    @property
+    def values_reckoned_with(self) -> set[str]:
+        """Names that the speed or formulas rest on, of values and of all else."""
+        formulas = (names_in(parse_formula(rule.formula)) for rule in self.derived)
+        return set(self.speed.values_named.values()).union(*formulas)
+
 
 def _check_formulas(
     derived: tuple[Derived, ...], columns: list[str], values: list[str], sure: set[str]

@@ -63,7 +63,7 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
     """
     known = ~np.isnat(values)
     since = values.astype("datetime64[ns]" if values.dtype.kind == "M" else "timedelta64[ns]")
-    return np.where(known, since.astype(np.int64) * 1e-9, np.nan)
+    return np.where(known, since.astype(np.int64) / 1e9, np.nan)
 
 
 def _of_arrow(table: object) -> Columns:
