@@ -60,10 +60,10 @@ def read_run(
         raise ReadError("no file is given")
     shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
     other = instrument is not None and load_dialect(instrument).format in ("hdf5", "binary")
-    if len(paths) == 1 and not other and (file := peek(paths[0])).format == "netcdf":
+    if len(paths) == 1 and not other and (first := peek(paths[0])).format == "netcdf":
         from tribolab.io.own_run import read_own_run
 
-        return read_own_run(paths[0], file.path)
+        return read_own_run(paths[0], first.path)
     dialects = _dialects(paths, instrument)
     for file, dialect in zip(paths, dialects, strict=True):
         if is_scan(dialect):
