@@ -1,4 +1,4 @@
-"""A speed that no file records, said in the campaign file, reaches friction and curve."""
+"""A speed or load that no file records, said in the campaign file, reaches friction and curve."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ sliding_speed = "6 mm/min"
 """
 
 
-def analysed(folder, dialect=DIALECT, extra=()):
+def analysed(folder, dialect=DIALECT, extra=(), campaign=CAMPAIGN):
     """Process a run of forces and, where given, another column of mm/s."""
     rng = np.random.default_rng(0)
     head = "t [s],F [N],N [N]" + "".join(f",{name} [mm/s]" for name, _ in extra)
@@ -30,7 +30,7 @@ def analysed(folder, dialect=DIALECT, extra=()):
     (folder / "raw").mkdir()
     (folder / "raw" / "one.csv").write_text("\n".join(rows))
     (folder / "plain.toml").write_text(dialect)
-    (folder / "campaign.toml").write_text(CAMPAIGN)
+    (folder / "campaign.toml").write_text(campaign)
     (folder / "results").mkdir()
     return process(load_campaign(folder), folder / "results")
 
@@ -59,3 +59,27 @@ def test_a_file_with_set_speeds_of_its_own_needs_none(tmp_path):
     column = '[[column]]\nquantity = "set_speed"\nname = "v"\n'
     [run] = analysed(tmp_path, DIALECT + column, extra=[("v", 0.2)]).runs
     assert not run.done and "leave sliding_speed out" in run.reason
+
+
+FORCE_ALONE = dialect_of("plain", time="t", friction_force="F")
+UNDER_LOAD = CAMPAIGN + 'normal_force = "12 N"\n'
+
+
+def test_a_stated_load_is_the_load_of_a_file_that_records_none(tmp_path):
+    outcome = analysed(tmp_path, FORCE_ALONE, campaign=UNDER_LOAD)
+    data = outcome.folder / outcome.runs[0].data_file
+    friction = read_netcdf(data, group="friction")
+    assert friction.friction_coefficient.values == pytest.approx([3 / 12], abs=0.001)
+    assert friction.normal_force.values == pytest.approx([12])
+    run = read_netcdf(data, group="run")
+    assert run.attrs["derived"] == {"normal_force": "stated"}
+    words = {row["message"] for row in run.attrs["findings"] if row["check"] == "stuck"}
+    assert any("stated and not measured" in word for word in words)
+
+
+def test_a_recorded_load_is_used_and_compared_with_the_stated_one(tmp_path):
+    outcome = analysed(tmp_path, campaign=UNDER_LOAD)
+    data = outcome.folder / outcome.runs[0].data_file
+    friction = read_netcdf(data, group="friction")
+    assert friction.friction_coefficient.values == pytest.approx([3 / 10], abs=0.001)
+    assert "derived" not in read_netcdf(data, group="run").attrs

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from tribolab.campaign.runs.reading import Earlier, earlier_signals, note_reading
 from tribolab.campaign.runs.zeros import attributes
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.errors import ConfigError
 from tribolab.room import let_go
+from tribolab.stamping import stamp
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 
 # Attributes of a data file's run: the gravest status of its checks, and what they said.
 QUALITY, FINDINGS = "quality", "findings"
+_LOADS = {"normal_force", "normal_stress", "friction_coefficient"}  # any of them tells the load
 AS_FOUND = "friction_as_found"  # group of a data file: friction without a person's decisions
 
 
@@ -155,7 +159,17 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
         signals.attrs["set_normal_force_N"] = run.normal_force
     if run.sliding_speed is not None:
         signals.attrs |= _stated_speed(signals, run.sliding_speed)
-    return signals
+    return _under_stated_load(signals)
+
+
+def _under_stated_load(signals: xr.Dataset) -> xr.Dataset:
+    """Return the signals with the load that was stated, where friction was recorded and no load."""
+    load = signals.attrs.get("set_normal_force_N")
+    if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):
+        return signals
+    signals.attrs["derived"] = signals.attrs.get("derived", {}) | {"normal_force": "stated"}
+    constant = np.full(signals.sizes["time"], float(load))
+    return stamp(signals.assign(normal_force=("time", constant)))
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
