@@ -325,7 +325,7 @@ def friction_factor_effect(
     ...     xu2026.contact, xu2026.psd("Sb-R", 301), 1.4, 310.0, "1 MPa", [1e-4, 1e-3], cells=100
     ... )
     >>> tl.plot.figure_data(friction_factor_effect({"Sb-R": curve})).friction.round(3).tolist()
-    [1.011, 0.864, 1.007, 0.837]
+    [1.011, 0.866, 1.007, 0.837]
     """
     curves = by_surface(curves)
     chosen = colours(list(curves), surfaces)
