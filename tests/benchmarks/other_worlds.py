@@ -359,7 +359,7 @@ def main(worlds: int = 30, first: int = 0) -> int:
                       f"true {row.true:.4g}", flush=True)  # fmt: skip
     fine = True
     table = pd.DataFrame([row._asdict() | {"inside": row.inside} for row in rows])
-    for what, group in table.groupby("what"):
+    for what, group in table.groupby("what") if rows else ():
         held, size = int(group.inside.sum()), len(group)
         enough = held >= stats.binom.ppf(1e-3, size, 0.95)
         fine &= bool(enough)
