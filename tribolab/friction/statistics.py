@@ -17,6 +17,9 @@ noise 69 and 99.7 %; memory (AR(1)) of 1/100, 1/50, 1/20 of the record 75, 75, 7
 98.7 %; stick-slip of 5 to 10 periods with 5 to 10 % jitter 63 to 83 % and at least 99 %. The
 error is too wide (75 to 92 % within 1) where a stroke holds a whole number of teeth.
 
+What repeats with each turn of a rig whose rotation is recorded is known to cancel over whole turns
+(:mod:`tribolab.friction.run_out`; ``tests/benchmarks/bench_run_out.py`` prints coverage).
+
 A drift is part of the signal and is not removed: it lengthens the memory and widens the error.
 
 References
@@ -34,6 +37,7 @@ import numpy as np
 from scipy import special
 
 from tribolab.friction.memory import errors_with_memory
+from tribolab.friction.run_out import MOST, fitted_waves, hidden_by_part, turns_of
 
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
 ORDER = 20  # highest order: as long as one of five teeth of a saw
@@ -62,6 +66,7 @@ class Estimate(NamedTuple):
     trend: float
     trend_change: float
     trend_p_value: float
+    turns: float = np.nan
 
 
 NOTHING = Estimate(
@@ -109,15 +114,17 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     return estimates_of([(time, values)])[0]
 
 
-def estimates_of(records: Iterable[tuple[np.ndarray, np.ndarray]]) -> list[Estimate]:
+def estimates_of(records: Iterable[tuple[np.ndarray, ...]]) -> list[Estimate]:
     """Give what `estimate_of` does for several records at once, in a fraction of the time.
 
     Parameters
     ----------
     records
-        Sample times [s] and samples of each, looked at one after the other.
+        Sample times [s] and samples of each, looked at one after the other; of a rig that turns
+        the angle [rad] of each sample, too: what repeats with each turn is then no slow wander,
+        and ``turns`` says how many were seen (:mod:`tribolab.friction.run_out`).
     """
-    told = [_described(time, values) for time, values in records]
+    told = [_described(*record) for record in records]
     out = [NOTHING if isinstance(each, _Record) else each for each in told]
     alike: dict[int, list[int]] = {}
     for place, each in enumerate(told):
@@ -138,13 +145,17 @@ class _Record(NamedTuple):
     samples: int
     duration: float
     blocks: np.ndarray
+    angle: np.ndarray  # of the rig's rotation over the same stretches [rad]; empty if unknown
 
 
-def _described(time: np.ndarray, values: np.ndarray) -> _Record | Estimate:
+def _described(
+    time: np.ndarray, values: np.ndarray, angle: np.ndarray | None = None
+) -> _Record | Estimate:
     """Describe a record; the whole answer where it has no scatter or hardly a sample."""
     good = np.isfinite(values)
     if not good.all():
         time, values = time[good], values[good]
+        angle = None if angle is None else angle[good]
     n = values.size
     if n == 0:
         return NOTHING
@@ -161,38 +172,71 @@ def _described(time: np.ndarray, values: np.ndarray) -> _Record | Estimate:
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
-    return _Record(mean, std, n, duration, blocks)
+    known = angle is not None and bool(np.isfinite(angle[-1]))
+    turned = on_grid(time, angle, blocks.size) if angle is not None and known else np.empty(0)
+    return _Record(mean, std, n, duration, blocks, turned)
 
 
 def _with_errors(records: list[_Record]) -> list[Estimate]:
     """Give the estimates of records with as many stretches each."""
     count, blocks = len(records), np.stack([record.blocks for record in records])
-    centred, lines = blocks - blocks.mean(axis=1, keepdims=True), _lines_of(blocks)
+    lines = _lines_of(blocks)
+    calmed, left = _without_turns(records)
+    centred = calmed - calmed.mean(axis=1, keepdims=True)
     # of all at once: it is the calls that take the time
     power, floor = model_spectra(np.concatenate([centred, lines.rest]))
     plain, sem = _errors_of_mean(centred, power[:count], floor[:count])
     calm = np.array([not _oscillates(own, blocks.shape[1]) for own in power[:count]])
     slow = np.zeros(count)
-    slow[calm] = errors_with_memory(blocks[calm])
+    slow[calm] = errors_with_memory(calmed[calm])
     p_values = _p_values(lines, power[count:])
     out = []
-    for k, (mean, std, n, duration, _) in enumerate(records):
-        effective = float(np.clip((std / plain[k]) ** 2, 1.0, n))
+    for k, (mean, std, n, duration, own, angle) in enumerate(records):
+        # what turns leave aside, as many samples as that part of the scatter asks for
+        share = min(float(calmed[k].std() / own.std()), 1.0)
+        effective = float(np.clip((std * share / plain[k]) ** 2, 1.0, n))
+        error = max(float(sem[k]), float(plain[k]) * student_widening(effective), float(slow[k]))
+        if left[k] > 0:
+            error = float(np.hypot(error, left[k]))
+            effective = float(np.clip(std**2 / (plain[k] ** 2 + left[k] ** 2), 1.0, n))
         change = float(lines.slope[k]) * blocks.shape[1]
         out.append(
             Estimate(
                 mean,
                 std,
-                max(float(sem[k]), float(plain[k]) * student_widening(effective), float(slow[k])),
+                error,
                 n,
                 effective,
                 duration / (2 * effective),
                 change / duration,
                 change,
                 float(p_values[k]),
+                turns_of(angle),
             )
         )
     return out
+
+
+def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
+    """Give the stretches without what repeats with each turn, and the error that it leaves."""
+    blocks, left = np.stack([record.blocks for record in records]), np.zeros(len(records))
+    turns = np.array([turns_of(record.angle) for record in records])
+    looked = np.flatnonzero((turns > 0) & (turns <= min(MOST, blocks.shape[1] / 6)))
+    if not looked.size or blocks.shape[1] < 2 * ORDER:
+        return blocks, left
+    waves = [fitted_waves(blocks[k], records[k].angle) for k in looked]
+    repeated = np.stack([np.sum([wave.signal for wave in own], axis=0) for own in waves])
+    rest = blocks[looked] - repeated
+    power, _ = model_spectra(rest - rest.mean(axis=1, keepdims=True))
+    for k, own, beside in zip(looked, waves, power, strict=True):
+        if turns[k] < 1:
+            left[k] = own[0].signal.std() * hidden_by_part(turns[k])
+            continue
+        clear = [wave for wave in own if wave.stands_out(beside)]
+        for wave in clear:
+            blocks[k] -= wave.signal
+        left[k] = np.sqrt(sum(wave.left**2 for wave in clear))
+    return blocks, left
 
 
 def _oscillates(power: np.ndarray, samples: int) -> bool:

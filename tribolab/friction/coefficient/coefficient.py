@@ -12,6 +12,7 @@ from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
+from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.statistics import Estimate, estimates_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
@@ -200,7 +201,8 @@ def _column(estimates: list[Estimate], name: str) -> np.ndarray:
 def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
-    forces = estimates_of((time[s], force[s]) for s in one_by_one(parts))
+    turns = _Turning.of(run, segments)
+    forces = estimates_of((time[s], force[s], *turns.angle(s)) for s in one_by_one(parts))
     means = _column(forces, "mean")
     loads: list[Estimate] = []
     load = np.nan
@@ -231,7 +233,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     }
     if not loads:
         empty = [force.samples == 0 for force in forces]
-        few = np.array([student_remark(force.effective_samples) for force in forces], dtype=object)
+        few = np.array([_remark(force) for force in forces], dtype=object)
         told = np.where(empty, "no samples that are numbers", few).astype(object)
         trend = turn * _column(forces, "trend") - signs.sign * zero.slope
         data |= _memory(forces) | {"force_trend": trend}
@@ -240,7 +242,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     both = reversal_of(zero, pair, held, middle, rests, run.attrs.get("uncertainty", {}))
     pointwise: list[_Pointwise] = []
 
-    def records() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    def records() -> Iterator[tuple[np.ndarray, ...]]:
         for i, s in enumerate(one_by_one(parts)):
             own = time[s] - middle[i]
             own *= zero.slope[i]
@@ -249,7 +251,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
             np.subtract(turn[i] * force[s], own, out=own)
             at, ratio, said = _ratio(time[s], own, normal[s] - n0[i], loads[i], n0[i], load)
             pointwise.append(said)
-            yield at, ratio
+            yield at, ratio, *turns.angle(s, at)
 
     ratios = estimates_of(records())
     remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
@@ -278,6 +280,36 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     return _table(data, np.array(remarks, dtype=object), zero, run, both.middle)
 
 
+def _remark(estimate: Estimate) -> str:
+    """Say why an error is wide, if it is."""
+    told = (student_remark(estimate.effective_samples), turn_remark(estimate.turns))
+    return "; ".join(filter(None, told))
+
+
+class _Turning(NamedTuple):
+    """How a rig turns that always turns the same way; both None where none does."""
+
+    time: np.ndarray | None = None
+    speed: np.ndarray | None = None
+
+    @classmethod
+    def of(cls, run: xr.Dataset, segments: xr.Dataset) -> _Turning:
+        # an arc to and fro rubs the same part of the disc: nothing is to be averaged over turns
+        direction = segments["direction"].values
+        if "rotation_speed" not in run or ((direction > 0).any() and (direction < 0).any()):
+            return cls()
+        return cls(run["time"].values, run["rotation_speed"].values)
+
+    def angle(self, part: slice, at: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
+        """Return the angle [rad] of a part's samples, or of those of some times; () if unknown."""
+        if self.time is None or self.speed is None or part.stop - part.start < 2:
+            return ()
+        time = self.time[part]
+        angle = turned(time, self.speed[part])
+        whole = at is None or at.size == time.size
+        return (angle if at is None or whole else np.interp(at, time, angle),)
+
+
 class _Pointwise(NamedTuple):
     """What there is to say of the ratio of one segment: why there is none, samples left out."""
 
@@ -289,7 +321,7 @@ class _Pointwise(NamedTuple):
         if self.missing or estimate.samples == 0:
             return self.missing or "friction force is not a number"
         said = [f"{self.left} samples without contact left out"] if self.left else []
-        said += filter(None, [student_remark(estimate.effective_samples)])
+        said += filter(None, [_remark(estimate)])
         return "; ".join(said)
 
 
@@ -325,7 +357,8 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     """Segments of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
-    estimates = estimates_of((time[s], ratio[s]) for s in one_by_one(parts))
+    turns = _Turning.of(run, segments)
+    estimates = estimates_of((time[s], ratio[s], *turns.angle(s)) for s in one_by_one(parts))
     means, own = _column(estimates, "mean"), _column(estimates, "sem")
     alike, middle = np.ones(means.size), _middles(time, parts, segments)
     zero, signs, pair = zero_of_run(
@@ -346,7 +379,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         "trend": turn * _column(estimates, "trend"),
         "trend_change": turn * _column(estimates, "trend_change"),
     }
-    few = np.array([student_remark(e.effective_samples) for e in estimates], dtype=object)
+    few = np.array([_remark(estimate) for estimate in estimates], dtype=object)
     remarks = np.where(_column(estimates, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), zero, run, both.middle)
 

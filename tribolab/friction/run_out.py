@@ -1,0 +1,127 @@
+"""What repeats with each turn of a rig, and what of it an unfinished turn leaves in a mean.
+
+Notes
+-----
+A disc that runs out moves the friction once (and twice) per turn. Over whole turns that cancels,
+however few they are; a spectrum of the record alone cannot know this of one or two turns and takes
+them for a slow wander. Where the rotation is recorded, the waves are fitted at its angle [1]_ and
+the error of the mean is that of the rest, and beside it what a wave of this size, at any phase,
+leaves in the mean over an unfinished turn, ``A abs(sin(pi k) / (pi k)) / sqrt(2)`` after k turns.
+A wave is believed where it stands far above the spectrum of what is left.
+
+Less than a turn tells neither the size of the wave nor its middle: the error is widened to what
+the part that is seen may hide in the worst case, half a turn about a crest.
+
+References
+----------
+.. [1] Percival and Walden (1993), Spectral Analysis for Physical Applications, ch. 10, Cambridge.
+   doi:10.1017/CBO9780511622762
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+MOST = 40.0  # turns in a record: of more, each stretch of time holds half a turn
+TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
+LEAST = 0.25  # of a turn: less is taken for as much
+CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
+
+
+class Wave(NamedTuple):
+    """What repeats a whole number of times per turn, as it was fitted to a record."""
+
+    signal: np.ndarray  # over the record's stretches, in the signal's unit
+    amplitude: float
+    turns: float  # of the wave: twice those of the rig, if it repeats twice
+
+    @property
+    def left(self) -> float:
+        """Standard error that an unfinished turn leaves in the mean, whatever its phase."""
+        return float(self.amplitude * abs(np.sinc(self.turns)) / np.sqrt(2))
+
+    def stands_out(self, power: np.ndarray) -> bool:
+        """Whether it is far above the spectrum of what is left, from 0 to half the sampling."""
+        count = self.signal.size
+        cycles = np.linspace(0, count / 2, power.size)
+        beside = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
+        return bool(self.signal @ self.signal / 2 > CLEAR * beside.max())
+
+
+def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Angle that a rig has turned through since the first sample.
+
+    Parameters
+    ----------
+    time, speed
+        Moments [s] and rotation speed [rad/s] (time).
+
+    Returns
+    -------
+    numpy.ndarray
+        Angle [rad] (time); not a number everywhere where a speed is missing.
+
+    Examples
+    --------
+    >>> turned(np.array([0.0, 1.0, 3.0]), np.array([2.0, 2.0, 4.0])).tolist()
+    [0.0, 2.0, 8.0]
+    """
+    angle = np.zeros(time.size)
+    np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time), out=angle[1:])
+    return angle if np.isfinite(angle[-1:]).all() else np.full(time.size, np.nan)
+
+
+def hidden_by_part(turns: float) -> float:
+    """Return the standard error that part of a turn hides, over the scatter that it shows.
+
+    Notes
+    -----
+    Worst about a crest: the mean is off by sinc(k), which 1.96 errors shall hold; the scatter is
+    ``(1 + sinc(2 k))/2 - sinc(k)**2``, squared, with ``sinc(x) = sin(pi x)/(pi x)``.
+    """
+    k = max(turns, LEAST)
+    scatter = np.sqrt((1 + np.sinc(2 * k)) / 2 - np.sinc(k) ** 2)
+    return float(np.sinc(k) / scatter / 1.96)
+
+
+def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
+    """Fit waves of once (and twice) per turn to a record, its mean beside them.
+
+    Parameters
+    ----------
+    blocks, angle
+        Means of the signal and of the angle [rad] over equal stretches of time (stretch).
+    """
+    turns = turns_of(angle)
+    orders = (1, 2) if turns >= TWICE else (1,)
+    columns = [f(order * angle) for order in orders for f in (np.cos, np.sin)]
+    design = np.stack([np.ones(blocks.size), *columns], axis=1)
+    size, *_ = np.linalg.lstsq(design, blocks, rcond=None)
+    waves = []
+    for order in orders:
+        own = slice(2 * order - 1, 2 * order + 1)
+        amplitude = float(np.hypot(*size[own]))
+        waves.append(Wave(design[:, own] @ size[own], amplitude, order * turns))
+    return waves
+
+
+def turns_of(angle: np.ndarray) -> float:
+    """Return the turns of a record, from the angle [rad] of its stretches; NaN if unknown."""
+    if angle.size < 2:
+        return np.nan
+    return float(abs(angle[-1] - angle[0]) / (2 * np.pi) * angle.size / (angle.size - 1))
+
+
+def turn_remark(turns: float) -> str:
+    """Say that less than a turn was seen; "" where it was more, or is not known.
+
+    Examples
+    --------
+    >>> turn_remark(0.43)
+    'only 0.43 of a turn: what repeats with each turn is not averaged out'
+    """
+    if not turns < 1:
+        return ""
+    return f"only {turns:.2g} of a turn: what repeats with each turn is not averaged out"
