@@ -138,11 +138,19 @@ def printed(outcome):
     return [re.split(r"\s{2,}", row.strip()) for row in rows if row.strip()]
 
 
+def errors_of(outcome, run):
+    friction = read_netcdf(outcome.folder / run.data_file, group="friction")
+    return friction["friction_coefficient_sem"].values.tolist()
+
+
 def test_friction_is_printed_where_the_speed_is_unknown(together):
     (heading, row) = printed(together)
     assert heading[0] == "surface"
     load, friction = "1.961 N", "0.768 to 0.785"
-    assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction]
+    assert heading[-1] == "standard error"
+    own = [v for run in together.runs for v in errors_of(together, run)]
+    error = f"at most {max(own):.2g} within the run"
+    assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction, error]
 
 
 def test_a_run_of_no_surface_stands_under_its_own_name(shared_data, tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from tribolab.app.ranges import range_of
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.parts import CurveOutcome, RunOutcome
+from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.run_record import RunRecord
 from tribolab.words import Count
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5
 _NONE = "–"
+_COUNTS = ("load", "runs", "segments")
 
 
 def console() -> Console:
@@ -63,7 +64,7 @@ def outcome_table(outcome: Outcome) -> Table:
     nameless = any(not (curve.surface or curve.medium) for curve in done)
     for heading in (*(("run",) if nameless else ()), "surface", "medium"):
         table.add_column(heading)
-    for heading in ("load", "runs", "segments", "speeds", "friction coefficient"):
+    for heading in (*_COUNTS, "speeds", "friction coefficient", "standard error"):
         table.add_column(heading, justify="right")
     for curve in done:
         load = _NONE if curve.normal_force is None else f"{curve.normal_force:g} N"
@@ -74,7 +75,7 @@ def outcome_table(outcome: Outcome) -> Table:
     return table
 
 
-def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
+def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     entry = outcome.store.get("curve", curve.name, CurveRecord)
     points = [] if entry is None else entry.record.points
     speed = [row["sliding_speed_m_s"] for row in points if row["sliding_speed_m_s"] is not None]
@@ -87,10 +88,24 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]
         str(segments) if "segments" in points[0] else "",
         f"{range_of(f'{min(speed):.2g}', f'{max(speed):.2g}')} m/s",
         range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
+        _error_of(points),
     )
 
 
-def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, str, str]:
+def _error_of(points: Sequence[Row]) -> str:
+    """Say what is the largest standard error, and what it holds."""
+    own = [row.get("friction_coefficient_sem") for row in points]
+    known = [float(v) for v in own if v is not None]
+    if not known:
+        return _NONE
+    several = [int(row.get("runs") or 1) > 1 for row in points]
+    held = "within or between runs"
+    if all(several) or not any(several):
+        held = "between runs" if several[0] else "within the run"
+    return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {held}"
+
+
+def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     """Return the friction of the segments themselves: without a speed there is no curve."""
     entries = [outcome.store.get("run", name, RunRecord) for name in curve.run_names]
     rows = [row for entry in entries if entry for row in entry.record.facts.segments]
@@ -99,7 +114,7 @@ def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, str, 
     is_known = any(row.get("sliding_speed_m_s") is not None for row in rows)
     said = _NONE if is_known else "speed unknown"
     runs = [run for run in outcome.runs if run.name in curve.run_names]
-    return str(len(runs)), str(sum(run.segments for run in runs)), said, text
+    return str(len(runs)), str(sum(run.segments for run in runs)), said, text, _error_of(rows)
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:

@@ -134,6 +134,8 @@ def find_segments(
         return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
         stretches = from_velocity(run, limits, gap)
+        if "stroke_m" in run.attrs:  # computed without noise: only what does not move rests
+            stretches = [_driven(run, stretch) for stretch in stretches]
     elif source == "position":
         stretches = from_position(run, limits, gap)
     elif source == "step":
@@ -177,6 +179,14 @@ def why_no_segment(segments: xr.Dataset) -> str:
     ]
     detail = f" ({', '.join(shares)} of the time)" if shares else ""
     return f"no segment: the run never slides at constant speed{detail}"
+
+
+def _driven(run: xr.Dataset, stretch: Stretch) -> Stretch:
+    """Call a ramp what a crank drives to and fro, so that its mean velocity is nothing."""
+    first, last = np.searchsorted(run["time"].values, (stretch.start, stretch.stop))
+    if stretch.kind != "at rest" or not run["sliding_velocity"].values[first : last + 1].any():
+        return stretch
+    return stretch._replace(kind="ramp")
 
 
 def _share(trim: str | float) -> float:

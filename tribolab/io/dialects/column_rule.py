@@ -82,7 +82,8 @@ class Column(Strict):
         if self.zero is not None and (self.symbol or self.quantity in ("time", "x", "y")):
             raise ValueError(f"column '{self.key}': only a signal has a zero")
         if self.zero_uncertainty is not None:
-            to_si(self.zero_uncertainty, self.si_unit(None), "zero_uncertainty")
+            key = f"column '{self.key}': zero_uncertainty"
+            to_si(self.zero_uncertainty, self.si_unit(None), key)
         return self
 
     @property

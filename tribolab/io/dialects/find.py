@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tribolab.errors import ConfigError, ReadError, brief, nearest, shown
+from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
 from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, peek
@@ -184,6 +184,8 @@ def _parse(path: Path) -> Dialect:
         said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
+    except TribolabError as error:  # of a unit or number: it says of which key
+        raise ConfigError(error, where=path) from error
 
 
 def _explain(problem: Any) -> str:
