@@ -83,3 +83,10 @@ def test_a_recorded_load_is_used_and_compared_with_the_stated_one(tmp_path):
     friction = read_netcdf(data, group="friction")
     assert friction.friction_coefficient.values == pytest.approx([3 / 10], abs=0.001)
     assert "derived" not in read_netcdf(data, group="run").attrs
+
+
+def test_a_column_of_the_set_load_is_the_load_where_none_was_measured(tmp_path):
+    dialect = dialect_of("plain", time="t", friction_force="F", set_normal_force="N")
+    outcome = analysed(tmp_path, dialect)
+    friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
+    assert friction.friction_coefficient.values == pytest.approx([3 / 10], abs=0.001)

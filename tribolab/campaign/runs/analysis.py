@@ -164,12 +164,12 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
 
 def _under_stated_load(signals: xr.Dataset) -> xr.Dataset:
     """Return the signals with the load that was stated, where friction was recorded and no load."""
-    load = signals.attrs.get("set_normal_force_N")
+    load = signals.get("set_normal_force", signals.attrs.get("set_normal_force_N"))
     if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):
         return signals
     signals.attrs["derived"] = signals.attrs.get("derived", {}) | {"normal_force": "stated"}
-    constant = np.full(signals.sizes["time"], float(load))
-    return stamp(signals.assign(normal_force=("time", constant)))
+    stated = np.broadcast_to(load, signals.sizes["time"]).astype(float)
+    return stamp(signals.assign(normal_force=("time", stated)))
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:

@@ -134,18 +134,22 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
-    stated = subject.run.attrs.get("derived", ())  # by formulas: from a load above the table
+    stated = subject.run.attrs.get("derived", {})  # by formulas: from a load above the table
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
-        if name in stated and np.nanmin(values) == np.nanmax(values):
+        steady = bool(np.nanmin(values) == np.nanmax(values))
+        if name in stated and (steady or stated[name] == "stated"):
             good = uniform(values.size, GOOD)
-            told = "one value for all of the run: it is stated and not measured"
+            told = (
+                f"{'one value for all of the run: it is ' if steady else ''}stated and not measured"
+            )
             results.append(Result("pass", name, told, 0.0, flags=good))
             continue
         if name == "normal_force" and _is_set(subject, values):
             good = uniform(values.size, GOOD)
-            told = "one value for all of the run while friction changes: it is set and not measured"
-            results.append(Result("pass", name, told, 0.0, flags=good))
+            told = "one value for all of the run while friction changes: it is set and not "
+            told += "measured, or its sensor is dead; call a set load set_normal_force"
+            results.append(Result("suspect", name, told, 0.0, flags=good))
             continue
         flags = signals.stuck(values, limits["chance"])
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
@@ -153,7 +157,7 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
-    """Whether a load is a set-point: never another digit, not zero, and friction is alive."""
+    """Whether a load may be a set-point: never another digit, not zero, and friction is alive."""
     if not (np.nanmin(load) == np.nanmax(load) != 0):
         return False
     others = [values for name, values in subject.force_signals.items() if name != "normal_force"]
