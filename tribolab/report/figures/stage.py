@@ -86,6 +86,10 @@ class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
         there = self.linked(task, record.file, record.file)
         return record if there and all(map(self._store.link_beside, beside)) else None
 
+    def order(self, tasks: Sequence[tuple[int, FigureTask]]) -> list[tuple[int, FigureTask]]:
+        """Return what takes longest first: traces and spectra of the sliding."""
+        return sorted(tasks, key=lambda pair: pair[1].section != "sliding_figures")
+
     @staticmethod
     def work(task: FigureTask) -> FigureRecord | None:
         """Draw one figure into the results."""
