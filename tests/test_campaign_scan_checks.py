@@ -129,7 +129,8 @@ def test_flags_travel_with_the_heights_and_what_was_found_is_known_the_next_time
 def test_where_no_scan_passes_all_are_used_and_marked(tmp_path, files, scans):
     x, heights = scans
     written(files[0], holed(heights[0]), x)
-    outcome = processed(tmp_path, planned(files[:1]))
+    strict = {"dropouts": {"fail": 0.1}}
+    outcome = processed(tmp_path, planned(files[:1], limits=strict))
     assert outcome.done and outcome.quality == "fail"
     assert any("all that follows from them is marked" in text for text in said(outcome, "note"))
     quiet = processed(tmp_path, planned(files[:1], skip=("dropouts",)))
@@ -175,6 +176,7 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     written(file, holed(heights[0]), x)
     text = campaign.read_text("utf-8")
     text = re.sub(r"(?m)^work_of_adhesion.*\n", "", text)
+    text += "\n[qc.limits.dropouts]\nfail = 0.1\n"
     campaign.write_text(text, "utf-8")
     done = CliRunner().invoke(app, ["run", str(campaign), "-q", "-j", "1", *BARE])
     assert done.exit_code == 1

@@ -158,3 +158,28 @@ def test_results_with_gaps_are_the_same_each_time():
     xr.testing.assert_identical(
         psd_2d(gappy).drop_attrs(), psd_2d(gappy.copy(deep=True)).drop_attrs()
     )
+
+
+def test_the_error_of_a_row_counts_its_own_gaps_and_not_those_of_other_rows():
+    area = synthesise_map(ROUGH, points=128, pitch=1e-6, rng=3)
+    whole = roughness_parameters(area, lambda_c=None)
+    missing = np.zeros((128, 128), dtype=bool)
+    missing[:64, :64] = True
+    gappy = area.assign(height=area.height.where(~missing))
+    rough = roughness_parameters(gappy, lambda_c=None)
+    untouched = rough.isel(y=slice(64, None))
+    np.testing.assert_array_equal(untouched.Rq_gap_error, 0.0)
+    np.testing.assert_allclose(untouched.Rq, whole.Rq[64:])
+    held = abs(rough.Rq - whole.Rq)[:64] <= 1.96 * rough.Rq_gap_error[:64]
+    assert float(held.mean()) > 0.85
+
+
+def test_ra_of_a_profile_that_lacks_half_in_one_piece_lies_within_its_error():
+    for seed in range(4):
+        line = synthesise_profiles(ROUGH, points=4096, pitch=1e-6, profiles=1, rng=seed)
+        line = line.isel(profile=0)
+        whole = roughness_parameters(line)
+        rough = roughness_parameters(
+            line.assign(height=line.height.where(abs(line.x - 2e-3) > 1e-3))
+        )
+        assert abs(float(rough.Ra - whole.Ra)) < 1.96 * float(rough.Ra_gap_error)

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
 
 
 _BAND = ("", "_low", "_high")
+_ISO = ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq")
 
 
 ROUGHNESS = [
     "scans",
     *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
+    *(column(f"{name}_gap_error") for name in _ISO),
     *(f"rms_roughness{end}_m" for end in _BAND),
     *(f"rms_slope{end}" for end in _BAND),
     *("measured_rms_roughness_m", "measured_rms_slope"),
@@ -78,8 +80,10 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
 
 def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
-    for name in ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq"):
+    for name in _ISO:
         rough[column(name)] = float(moments[name].mean())
+        if (error := f"{name}_gap_error") in moments:
+            rough[column(error)] = _error_of_mean(moments[error])
     for name in ("rms_roughness", "rms_slope"):
         for end in _BAND:
             if name + end in moments:
@@ -89,6 +93,12 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     q = psd.wavenumber.values
     rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
     return rough
+
+
+def _error_of_mean(error: xr.DataArray) -> float:
+    """Return the standard error of a mean over scans; the rows of a map err together."""
+    scans = error.mean("y") if "y" in error.dims else error
+    return float(np.sqrt((scans**2).sum()) / scans.size)
 
 
 def _contact(groups: Mapping[str, xr.Dataset]) -> list[Row]:

@@ -219,7 +219,7 @@ _ALL = (
     ScanFault(
         "lifted",
         "The gauge loses the surface for a quarter of a scan.",
-        "fail",
+        "suspect",
         "dropouts",
         _lifted,
     ),

@@ -174,23 +174,34 @@ def _corrected(
     shape = scans.height.shape
     is_map = "y" in scans.height.dims
     grid = shape[-2:] if is_map else shape[-1:]
+    # a mean over sampling lengths loses a share of itself with each, and so does a skewness
+    added = {"Rsk", "Rku"} if evaluation.sampling and evaluation.cut else {"Rsk"}
+    factors = np.array([not is_map and name not in added for name in data])
 
     def parameters(height: np.ndarray) -> np.ndarray:
         same = scans.assign(height=scans.height.copy(data=height.reshape(shape)))
-        return np.stack(list(evaluation.parameters(same).values()))
+        values = np.stack(list(evaluation.parameters(same).values()))
+        values[factors] = np.log(values[factors])
+        return values.reshape(len(values), -1, *grid[:-1])
 
     effect = gap_effect(
         scans.height.values.reshape(-1, *grid),
         missing.reshape(-1, *grid),
         parameters,
         is_map=is_map,
+        own=factors,
     )
-    dims = data["Ra"].dims
-    for name, shift, error in zip(list(data), effect.shift, effect.error, strict=True):
+    rows = data["Ra"].shape
+    for number, name in enumerate(list(data)):
+        shift, error = effect.shift[number].reshape(rows), effect.error[number].reshape(rows)
         if name == "Rz":  # few gaps hide a highest peak, but those that do hide much
             error = np.full_like(error, error.max())
-        data[name] = data[name] - shift
-        data[f"{name}_gap_error"] = (dims, error)
+        if factors[number]:
+            data[name] = data[name] * np.exp(-shift)
+            error = error * data[name].values
+        else:
+            data[name] = data[name] - shift
+        data[f"{name}_gap_error"] = (data["Ra"].dims, error)
     return data
 
 

@@ -131,7 +131,9 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
         where = subject.where(row, int(at[0]), int(at[-1]))
         text = f"{Count(count):height is|heights are} missing at the ends, which are left out"
         left_out = float(ends.mean(axis=1).max())
-        status = "suspect" if left_out > limits["fail"] else "pass"
+        status = "suspect" if left_out > limits["stretch"] else "pass"
+        if left_out > limits["fail"]:
+            status = "fail"
         cure = "Let the scan begin and end on the surface."
         return [
             Result(status, "height", text, left_out, "1", where, count, flags, True, cure),
@@ -149,11 +151,19 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     # a map has other rows across a gap, a profile has not
     far = not subject.is_map and span > limits["stretch"] * whole
     status = "pass"
-    if share > limits["suspect"] or longest > limits["in_a_row"]:
+    if share > limits["suspect"] or longest > limits["in_a_row"] or far:
         status = "suspect"
-    if share > limits["fail"] or far:
+    if _most_missing(subject) > limits["fail"]:
         status = "fail"
+    elif far and (cost := profiles.cost_of_gaps(subject.profile_of(row))):
+        text += f"; it leaves {cost}"
     return [Result(status, "height", text, share, "1", where, count, flags, noted=True)]
+
+
+def _most_missing(subject: ScanSubject) -> float:
+    """Share of heights missing in the scan that lacks most: a map, or one of the profiles."""
+    missing = ~np.isfinite(subject.rows)
+    return float(missing.mean() if subject.is_map else missing.mean(axis=1).max())
 
 
 def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -284,8 +294,10 @@ PROFILE_CHECKS = (
         {
             "suspect": Limit(1e-3, "1", "bridged singly, they change no spectrum"),
             "in_a_row": Limit(8.0, "1", "a bridge this long takes waves of its length away"),
-            "fail": Limit(0.25, "1", "up to a fifth the error of gaps is known to hold"),
-            "stretch": Limit(0.05, "1", "a profile without so much of its length in one piece"),
+            "fail": Limit(0.5, "1", "of less than half a scan nothing is computed"),
+            "stretch": Limit(
+                0.05, "1", "a profile without so much of its length scatters by per cents"
+            ),
         },
         _dropouts,
     ),

@@ -6,10 +6,13 @@ Each is a plain function from arrays and limits to flags or numbers; none change
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
 
+from tribolab.errors import AnalysisError
 from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
+from tribolab.surface.roughness import roughness_parameters
 
 _MOVED = 0.02  # share of points that move, from which on they are no rare jumps
 _BLOCK = 512  # points whose slopes are compared with each other
@@ -230,3 +233,28 @@ def odd_one_out(
         worst = int(np.argmax(logs.sum(axis=1)))
     largest = float(np.exp(min(max(odd), 700.0)))
     return (worst, largest) if largest > factor else (-1, largest)
+
+
+def cost_of_gaps(profile: xr.Dataset | None) -> str:
+    """Say how well Rq of a profile without form is known where heights are missing.
+
+    Parameters
+    ----------
+    profile
+        ``height`` [m] (x), filled; what was filled is marked. None: it has too few heights.
+
+    Returns
+    -------
+    str
+        Empty if it has no roughness.
+    """
+    if profile is None:
+        return ""
+    try:
+        rough = roughness_parameters(profile, lambda_c=None)
+    except AnalysisError:
+        return ""
+    if "Rq_gap_error" not in rough:
+        return ""
+    share = float(rough.Rq_gap_error / rough.Rq)
+    return f"the roughness Rq with a standard error of {share:.2g} of its value"

@@ -95,6 +95,11 @@ class ScanSubject:
         profiles = [xr.Dataset({"height": ("x", self.rows[n])}, {"x": x}) for n in self.usable]
         return [fill_dropouts(profile) for profile in profiles]
 
+    def profile_of(self, row: int) -> xr.Dataset | None:
+        """Return a row without form, what was filled marked; None if it holds too few heights."""
+        _, profiles = self.form
+        return profiles[self.usable.index(row)] if row in self.usable else None
+
     @cached_property
     def form(self) -> tuple[str, list[xr.Dataset]]:
         """Profiles without form, and which form it was: a circle, or a line if none fits."""
