@@ -201,3 +201,21 @@ def test_a_dialect_by_hand_is_told_how_a_column_of_another_kind_is_used(line, sa
     with pytest.raises(tl.TribolabError) as caught:
         tl.read(table(tmp_path / "a.txt", "t\tT", T, FORCE), toml)
     assert said in str(caught.value)
+
+
+def test_units_tell_what_turns_where_the_names_are_unknown(tmp_path):
+    head = "Radio de pista: 18,0 mm\nTiempo [s]\tGiro [rpm]\tPar [N·cm]\tCarga [N]"
+    torque = 100 * FORCE * 18e-3
+    run = tl.read(table(tmp_path / "a.txt", head, T, 60.0, torque, LOAD))
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 18e-3, rtol=1e-6)
+    np.testing.assert_allclose(run.friction_force, FORCE, rtol=1e-4)
+
+
+def test_one_heading_with_its_unit_tells_that_commas_are_decimal_marks(tmp_path):
+    height = np.round(100 * RNG.standard_normal(400), 1)
+    lines = [f"{value:.1f}".replace(".", ",") for value in height]
+    text = "Profilometr\nRozteč bodů: 0,5 µm\nVýška [nm]\n" + "\n".join(lines) + "\n"
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    profile = tl.read_scans(tmp_path / "a.txt")
+    np.testing.assert_allclose(profile.height, 1e-9 * height, atol=1e-15)
+    np.testing.assert_allclose(np.diff(profile.x), 0.5e-6)

@@ -206,7 +206,7 @@ SCAN_WORDS = (
         _words(
             "height hoehe profile profil amplitude topography depth tiefe raw hauteur altura "
             "elevation relief ordinate hoogte "
-            "altezza 高度 高さ"
+            "altezza vyska wysokosc hojd hoyde hojde korkeus magassag visina yukseklik 高度 高さ"
         ),
     ),
 )

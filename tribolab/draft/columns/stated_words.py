@@ -7,7 +7,7 @@ import re
 # a sample rate by its name; "Frequency" alone may be that of the strokes
 RATE = re.compile(
     r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
-    r"|abtastrate|echantillonnage|muestreo|campionamento|采样|サンプリング"
+    r"|abtastrate|cadence|echantillonnage|muestreo|campionamento|采样|サンプリング"
     r"|^(?:sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
 )
 # what passes from one sample to the next
@@ -33,6 +33,7 @@ LOAD = re.compile(
 PITCH = re.compile(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
     r"|^(?:schritt\w*|pas|paso|passo|stap\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
+    r"|^(?:roztec|rozestup|krok|odstep|avstand|steglangd|lepeskoz)\w*"
     r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
     r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
     r"(?:pitch|spacing|increment|step|interval|distance|abstand|afstand|schritt\w*|intervall)"

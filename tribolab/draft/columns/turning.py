@@ -13,20 +13,24 @@ from tribolab.io.dialects.cells import split_name
 
 _TORQUE = re.compile(
     r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|koppel|扭矩|转矩|力矩|トルク"
-    r"|^(?:m|mr|mf|md|tq)$"
+    r"|parmotor|^(?:m|mr|mf|md|tq|par)$"
 )
+_TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
 
 
 def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds a torque, with its unit.
+    """Return the one column that holds a torque by its name, else by its unit; with its unit.
 
     Parameters
     ----------
     columns
         The columns as they are understood.
     """
-    return _only_column(columns, _TORQUE.search, "N m")
+    units = [_name_and_unit(column)[1] for column in columns if not column.used]
+    told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
+    named = _only_column(columns, _TORQUE.search, "N m")
+    return named or (_only_column(columns, str, "N m") if told else None)
 
 
 def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:

@@ -34,6 +34,9 @@ _UNIT_WORDS = {
     **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
 }
 COUNTS = "counts"
+# units in which nothing else is measured, whatever the name
+_TURNS = re.compile(r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw)\.?/\s?(?:min|s)", re.IGNORECASE)
+_NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
 _COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc increments".split())
 # a speed that was set is not how fast it slid
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
@@ -150,7 +153,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     """
     text = squeezed(name)
     own = squeezed(device_of(name)[1]) if "." in name else ""
-    if not text:
+    if not text or _NUMBERED.fullmatch(name.strip()):
         return []
     options = []
     counted = unit is not None and is_count(unit)
@@ -170,6 +173,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
             score = SURE + (1 - SURE) * score if told else score
             held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
             options.append(Match(held, score, read_as))
+    if not scan and role != "set" and _TURNS.fullmatch(unit or ""):
+        options.append(Match("rotation_speed", SURE, None))
     best: dict[str, Match] = {}
     for match in sorted(options, key=lambda match: -match.score):
         best.setdefault(match.quantity, match)

@@ -29,6 +29,7 @@ _NO_NUMBER = re.compile(
 
 _HALVES = re.compile(r"([+-]?\d+),(\d+)")
 _ROWS = 16  # rows that tell
+_ONE_NAME = re.compile(r"[^\[\](),;\t]+[\[(][^\[\](),;\t]+[\])]")  # a heading as "Height [nm]"
 
 
 class Grammar:
@@ -144,12 +145,19 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
 
 
 def _one_column(grammar: Grammar, voters: Sequence[str]) -> bool:
-    """Whether commas are decimal marks of one column, and do not part two of whole numbers."""
+    """Whether commas are decimal marks of one column, and do not part two of whole numbers.
+
+    The heading above tells that it names one, or that numbers follow a comma as in 3,05.
+    """
     if grammar.delimiter != ",":
         return False
-    parts = [told for told in (_HALVES.fullmatch(line.strip()) for line in voters) if told]
+    halves = [_HALVES.fullmatch(line.strip()) for line in voters]
+    parts = [told for told in halves if told]
     if len(parts) < _ROWS or 2 * len(parts) < len(voters):
         return False
+    first = next(place for place, told in enumerate(halves) if told)
+    if first and _ONE_NAME.fullmatch(voters[first - 1].strip()):
+        return True
     # no whole number is written 0312
     leading = sum(told[2].startswith("0") and len(told[2]) > 1 for told in parts)
     return 50 * leading >= len(parts)

@@ -82,7 +82,8 @@ def find_strokes(run: xr.Dataset) -> Strokes:
             where=name_of(run),
             cure=Cure(
                 notebook="for plateaus of constant speed use find_segments without stroke_middle",
-                campaign="leave out stroke_middle",
+                campaign="leave out stroke_middle, or give it to the runs of a crank alone: "
+                "segments.stroke_middle = 0.5 in their [[run]]",
             ),
         )
     usual = length > SHORTEST * np.median(length)

@@ -289,7 +289,8 @@ SLIDING_CHECKS = (
         "Does the run slide at constant speed anywhere, and could anything be examined?",
         "Record position or speed, slide longer at one speed, or state `sliding_speed` in the "
         "campaign file; of what a crank drives, take the middle of each stroke "
-        "(`stroke_middle = 0.5` takes half of it); see `drift` and `min_samples` under [segments].",
+        "(`segments.stroke_middle = 0.5` in its [[run]] takes half of it); see `drift` and "
+        "`min_samples` under [segments].",
         {},
         _segments,
     ),
