@@ -217,5 +217,5 @@ def test_one_heading_with_its_unit_tells_that_commas_are_decimal_marks(tmp_path)
     text = "Profilometr\nRozteč bodů: 0,5 µm\nVýška [nm]\n" + "\n".join(lines) + "\n"
     (tmp_path / "a.txt").write_text(text, encoding="utf-8")
     profile = tl.read_scans(tmp_path / "a.txt")
-    np.testing.assert_allclose(profile.height, 1e-9 * height, atol=1e-15)
-    np.testing.assert_allclose(np.diff(profile.x), 0.5e-6)
+    np.testing.assert_allclose(profile.height.squeeze(), 1e-9 * height, atol=1e-15)
+    np.testing.assert_allclose(np.diff(profile.x).squeeze(), 0.5e-6)
