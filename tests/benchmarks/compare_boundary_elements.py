@@ -1,8 +1,8 @@
 """Contact area and mean separation against exact numerics: boundary elements on random surfaces.
 
 Run with ``PYTHONPATH=. python tests/benchmarks/compare_boundary_elements.py [points] [seeds]
-[figure] [light seeds] [first seed] [finer]``; 256 points, 4 seeds, 60 at light pressure and 6 on
-the finer mesh take some half an hour. The numerics are the ContactMechanics package's (Polonsky and
+[figure] [light seeds] [first seed] [finer]``; 256 points, 4 seeds, 120 at light pressure and 6 on
+the finer mesh take some 40 minutes. The numerics are the ContactMechanics package's (Polonsky and
 Keer's conjugate gradients on a periodic elastic half-space), installed with tribolab's extra
 ``test`` or by ``pip install ContactMechanics``.
 
@@ -263,7 +263,7 @@ def main(
     points: int = 256,
     seeds: int = 4,
     path: str = "",
-    light: int = 60,
+    light: int = 120,
     first: int = 101,
     fine: int = 6,
 ) -> None:
