@@ -257,6 +257,8 @@ _ROWS = [
     ("sample_noise", "", "1", "noise of the friction coefficient from sample to sample"),
     ("hysteresis", "", "1", "smallest swing of the friction coefficient that counts"),
     ("mains_amplitude", "", "1", "amplitude of the mains in the friction coefficient"),
+    ("rig_swing", "", "1", "swing of friction that repeats with each turn of the rig"),
+    ("rig_wave", "", "1", "what repeats with each turn of the rig"),
     (
         "loading_slope",
         "d\\mu/dx",
@@ -275,6 +277,7 @@ _ROWS = [
     ("force_sample_noise", "", "N", "noise of the friction force from sample to sample"),
     ("force_hysteresis", "", "N", "smallest swing of the friction force that counts"),
     ("force_mains_amplitude", "", "N", "amplitude of the mains in the friction force"),
+    ("force_rig_swing", "", "N", "swing of the friction force that repeats with each turn"),
     ("force_loading_slope", "dF/dx", "N/m", "friction force over distance in a stick"),
     ("force_event_drop", "\\Delta F", "N", "drop of the friction force"),
     ("force_psd", "S", "N2/Hz", "power spectrum of the friction force"),

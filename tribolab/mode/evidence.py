@@ -11,7 +11,7 @@ from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, STEADY
 from tribolab.friction.oscillation.waveform import UNDECIDED, oscillating
 from tribolab.mode.misfit import is_sufficient
 from tribolab.mode.model import AGAINST, FOR, NEUTRAL, Evidence
-from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text
+from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text, rig_wave_text
 from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
@@ -164,6 +164,14 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
         text = "the frequency does not go with the speed: something rings, as no fold that crosses "
         return Evidence(AGAINST, text + "the contact does", "traces")
     return None
+
+
+def repeating(slip: xr.Dataset | None) -> Evidence | None:
+    """Say what repeats with each turn of the rig, and was taken out of the traces."""
+    text = rig_wave_text(slip)
+    if not text:
+        return None
+    return Evidence(NEUTRAL, f"{text}; it is taken out, not counted as stick-slip", "traces")
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:

@@ -136,6 +136,7 @@ def sliding_mode(
             evidence.vanishing_adhesion(known),
             evidence.strength(slip),
             evidence.scaling(slip),
+            evidence.repeating(slip),
             evidence.weakening(curve, slip),
             evidence.plateau(numbers, model),
             evidence.misfit(numbers),

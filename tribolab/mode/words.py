@@ -10,13 +10,15 @@ import xarray as xr
 
 from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
 from tribolab.mode.misfit import SUFFICIENT, is_sufficient
-from tribolab.mode.model import SUSPECTED
+from tribolab.mode.model import LOCAL, SUSPECTED, UNEXPLAINED
 from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
     from tribolab.mode.model import Evidence, Mode
 
 STEADY, SAW, SINE, REVERSED = CLASSES
+LONG = 0.5e-3  # m: shorter waves are no turn of a track and no pitch of a screw
+APART, ALIKE = 1.5, 1.15  # times, of the speeds at which a wavelength is the same, and of those
 
 
 def friction_text(value: float) -> str:
@@ -29,10 +31,34 @@ def percent_text(share: float) -> str:
     return f"{100 * share:.2g} %"
 
 
+def rig_wave_text(slip: xr.Dataset | None) -> str:
+    """Say what repeats with each turn of the rig, at how many speeds, how large; "" if nothing."""
+    if slip is None or "rig_wave" not in slip:
+        return ""
+    kinds = slip["rig_wave"].values.astype(str)
+    seen = kinds != ""
+    if not seen.any():
+        return ""
+    names, counts = np.unique(kinds[seen], return_counts=True)
+    what = str(names[np.argmax(counts)]).replace("run-out: ", "run-out of the disc: friction ")
+    text = f"{what} at {seen.sum()} of {Count(kinds.size):speed|speeds}"
+    swing = slip["rig_swing"].values if "rig_swing" in slip else np.full(kinds.size, np.nan)
+    if np.isfinite(swing).any():  # of forces alone it has another unit
+        text += f", by up to {friction_text(float(np.nanmax(swing)))}"
+    return text
+
+
 def verdict_text(
     verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
 ) -> str:
     """Return the verdict as one sentence."""
+    text = _verdict_text(verdict, numbers, slip, modelled)
+    return f"{text}; {wave}" if (wave := rig_wave_text(slip)) else text
+
+
+def _verdict_text(
+    verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
+) -> str:
     speeds = np.zeros(0)
     if slip is not None and "waveform" in slip:
         speeds = slip["sliding_speed"].values[oscillating(slip["waveform"].values)]
@@ -80,6 +106,32 @@ def suggestions(
     verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
 ) -> tuple[str, ...]:
     """Return what measurement would decide."""
+    length = _fixed_wavelength(slip)
+    compare: tuple[str, ...] = ()
+    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > LONG:
+        compare = (
+            f"compare the wavelength, {1e3 * length:.3g} mm at every speed, with the "
+            "circumference of the track (2 π times its radius), the pitch of the drive's screw and "
+            "the spacing of its teeth or rollers: if it is one of these, or a whole part of one, "
+            "it is the rig's and no stick-slip",
+        )
+    return (*compare, *_measurements(verdict, known, slip))
+
+
+def _fixed_wavelength(slip: xr.Dataset | None) -> float:
+    """Return the wavelength [m] that the traces share at several speeds; NaN if they do not."""
+    if slip is None or "dominant_wavelength" not in slip:
+        return np.nan
+    moving = oscillating(slip["waveform"].values)
+    length, speed = slip["dominant_wavelength"].values[moving], slip["sliding_speed"].values[moving]
+    good = np.isfinite(length)
+    length, speed = length[good], speed[good]
+    if length.size < 2 or speed.max() < APART * speed.min() or length.max() > ALIKE * length.min():
+        return np.nan
+    return float(np.median(length))
+
+
+def _measurements(verdict: str, known: Mode, slip: xr.Dataset | None) -> tuple[str, ...]:
     if verdict == SUSPECTED:
         advice = [
             "watch the contact through the transparent body: detached folds that cross it would "
@@ -97,7 +149,7 @@ def suggestions(
                 "wavelength, folds in the contact would not"
             )
         return tuple(advice)
-    if verdict == "stick-slip of unknown origin":
+    if verdict == UNEXPLAINED:
         if known.work_of_adhesion is not None:
             return ("change stiffness or mass of the rig: its own vibration would move with them",)
         return (

@@ -12,6 +12,7 @@ from scipy import special
 from tribolab.errors import AnalysisError
 from tribolab.friction.decisions.rejected import REJECTED, kept
 from tribolab.friction.joined import Label, grouped, joined_curves
+from tribolab.friction.oscillation.rig_waves import REPEATS
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.stamping import stamp
@@ -29,7 +30,7 @@ _MEANS = (
     "period_scatter",
     "oscillating_time_share",
 )
-_NUMBERS = (*_MEANS, "oscillation_swing")
+_NUMBERS = (*_MEANS, "oscillation_swing", "rig_swing")
 # variables of a result of `stick_slip` that make a curve: nothing else of it has to be read
 NEEDED = frozenset(
     {"sliding_speed", "waveform", "instrument", "regularity", REJECTED, *_NUMBERS}
@@ -82,7 +83,9 @@ def stick_slip_curve(
         are not), there means over those and ``_std`` of ``drop``, ``dominant_wavelength`` [m] (of
         the spectrum), ``recurrence_distance`` [m] (between drops), ``dominant_frequency`` [Hz],
         ``fall_share``, ``harmonic_content``, ``period_scatter``, ``oscillating_time_share``, and
-        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates.
+        of all ``oscillation_swing``: a bound of what could be hidden where nothing oscillates;
+        ``rig_swing`` and ``rig_wave`` (text): what repeats with each turn of the rig, and is no
+        stick-slip.
         Segments whose oscillation is a resonance of the rig, seen in one run or over all, count as
         smooth. Attributes ``scaling_exponent``, ``scaling_error``, ``scaling`` and, of a resonance,
         ``resonance_frequency_Hz``. With `labels` all that is over these dims, too
@@ -123,11 +126,12 @@ def stick_slip_curve(
     edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
     groups = [group for group in np.split(order, edges) if group.size]
     regular = np.concatenate([_regularity(s) for s in slips]).astype(object)
+    repeats = np.array([_repeats(str(t)) for s in slips for t in s["instrument"].values], object)
     columns = {name: _column(slips, name) for name in _NUMBERS}
-    rows = [_row(group, kind, regular, columns) for group in groups]
+    rows = [_row(group, kind, regular, repeats, columns) for group in groups]
     names = list(rows[0]) if rows else [*_EMPTY]
     data = {n: ("sliding_speed", np.array([row[n] for row in rows])) for n in names}
-    for name in ("waveform", "regularity"):
+    for name in ("waveform", "regularity", "rig_wave"):
         texts = np.array([row[name] for row in rows], dtype=object)
         data[name] = "sliding_speed", texts
     middle = np.array([np.exp(np.mean(np.log(speed[g]))) for g in groups])
@@ -184,7 +188,10 @@ def one_curve(curve: xr.Dataset) -> xr.Dataset:
     return alone.sel(sliding_speed=alone["segments"].notnull().values)
 
 
-_EMPTY = ("segments", "segments_oscillating", "waveform", "regularity", "oscillation_swing")
+_EMPTY = (
+    *("segments", "segments_oscillating", "waveform", "regularity"),
+    *("oscillation_swing", "rig_swing", "rig_wave"),
+)
 
 
 def _column(slips: Sequence[xr.Dataset], name: str) -> np.ndarray:
@@ -202,8 +209,17 @@ def _regularity(slip: xr.Dataset) -> np.ndarray:
     return slip["regularity"].values if "regularity" in slip else np.full(slip.sizes["segment"], "")
 
 
+def _repeats(instrument: str) -> str:
+    """Return what is said of the turns of the rig among what is the instrument's."""
+    return next((part for part in instrument.split("; ") if REPEATS in part), "")
+
+
 def _row(
-    group: np.ndarray, kind: np.ndarray, regular: np.ndarray, columns: dict[str, np.ndarray]
+    group: np.ndarray,
+    kind: np.ndarray,
+    regular: np.ndarray,
+    repeats: np.ndarray,
+    columns: dict[str, np.ndarray],
 ) -> dict[str, float | str]:
     moving = group[oscillating(kind[group])]
     waveform, regularity, count = STEADY, "", moving.size
@@ -218,21 +234,23 @@ def _row(
         "segments_oscillating": count,
         "waveform": waveform,
         "regularity": regularity,
+        "rig_wave": _commonest(repeats[group][repeats[group] != ""]),
     }
     for name in _MEANS:
         values = columns[name][moving]
         values = values[np.isfinite(values)]
         row[name] = values.mean() if values.size else np.nan
         row[f"{name}_std"] = values.std(ddof=1) if values.size > 1 else np.nan
-    swing = columns["oscillation_swing"][group]
-    row["oscillation_swing"] = np.nanmean(swing) if np.isfinite(swing).any() else np.nan
+    for name in ("oscillation_swing", "rig_swing"):
+        swing = columns[name][group]
+        row[name] = np.nanmean(swing) if np.isfinite(swing).any() else np.nan
     return row
 
 
 def _commonest(words: np.ndarray) -> str:
     """Return the most frequent word; of equally frequent ones that which comes first."""
     known = words.astype(str).tolist()
-    return max(dict.fromkeys(known), key=known.count)
+    return max(dict.fromkeys(known), key=known.count, default="")
 
 
 def frequency_scaling(curve: xr.Dataset) -> Scaling:

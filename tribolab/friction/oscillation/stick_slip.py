@@ -13,6 +13,7 @@ from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation.examine import Examined, Limits, examine_record
 from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
 from tribolab.friction.oscillation.slip_table import (
     class_of,
     class_table,
@@ -43,6 +44,7 @@ _IN_SIGNAL_UNIT = (
     "sample_noise",
     "hysteresis",
     "mains_amplitude",
+    "rig_swing",
     "loading_slope",
     "event_drop",
     "line_swing",
@@ -67,6 +69,7 @@ REVERSED = (
 class SegmentSignal(NamedTuple):
     """Friction of one segment, positive as resistance, and what the sensor gave."""
 
+    part: slice
     time: np.ndarray
     values: np.ndarray
     raw: np.ndarray
@@ -112,8 +115,9 @@ def stick_slip(
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
         ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m];
         ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
-        ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``spike_share``;
-        ``instrument`` (text: mains and resonances), ``method``, ``remark`` (text).
+        ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``rig_swing``
+        (of what repeats with each turn), ``spike_share``;
+        ``instrument`` (text: mains, run-out and resonances), ``method``, ``remark`` (text).
         Where the class is smooth sliding or not decided, only what describes the noise is a number;
         its ``oscillation_swing`` bounds what could be hidden.
         On (segment, line), the strongest first: ``line_frequency`` [Hz], ``line_wavelength`` [m],
@@ -143,7 +147,9 @@ def stick_slip(
     scatter, within a factor of 1.8), and the segment has to hold four periods: else the class is
     "not decided", and the remark says why. An oscillation with fewer than four periods is not told
     from a slow wander.
-    A line of the mains is taken out before anything else is sought; an oscillation that keeps its
+    Lines of the mains, and what repeats with each turn of the rig where its rotation is known
+    (`tribolab.friction.oscillation.rig_waves`), are taken out before anything else is sought and
+    named in ``instrument``; an oscillation that keeps its
     frequency within 3 % over speeds that differ by a factor of two or more is named as a resonance.
 
     Examples
@@ -166,14 +172,18 @@ def stick_slip(
     limits = Limits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
     force = "friction_force" in run and "normal_force" not in run
-    examined, loads, remarks = [], [], []
+    motion = motion_of(run)
+    examined, loads, remarks, waves = [], [], [], []
     for signal, v in zip(_signals(run, segments), speed, strict=True):
-        seen = examine_record(signal.time, signal.values, limits, force=force)
+        values, wave = _beside_rig(signal, motion)
+        seen = examine_record(signal.time, values, limits, force=force)
         examined.append(seen)
         loads.append(signal.load)
+        waves.append(wave)
         remarks.append(_remark(seen, _cut_off(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
-    data["instrument"] = _texts(_instrument(examined, speed))
+    data["rig_swing"] = np.array([np.nan if wave is None else wave.swing for wave in waves])
+    data["instrument"] = _texts(_instrument(examined, speed, waves, motion))
     data["remark"] = _texts(remarks)
     data |= {name: segments[name].values for name in _OF_SEGMENTS if name in segments}
     classes = {"class_probability": (("segment", "waveform_class"), class_table(examined))}
@@ -215,7 +225,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = force[part]
             if normal is None:
-                yield SegmentSignal(time[part], _signed(raw, sign), raw, np.nan)
+                yield SegmentSignal(part, time[part], _signed(raw, sign), raw, np.nan)
                 continue
             pressed = normal[part] - zero
             load = float(np.mean(pressed)) if pressed.size else np.nan
@@ -225,9 +235,10 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
             if np.isfinite(load):
                 with np.errstate(divide="ignore", invalid="ignore"):
                     ratio = np.divide(_signed(raw, sign), pressed, out=pressed)
-                yield SegmentSignal(time[part], ratio, raw, load)
+                yield SegmentSignal(part, time[part], ratio, raw, load)
             else:
-                yield SegmentSignal(time[part], np.full(raw.size, np.nan), raw, load)
+                nothing = np.full(raw.size, np.nan)
+                yield SegmentSignal(part, time[part], nothing, raw, load)
     elif "friction_coefficient" in run:
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
@@ -235,7 +246,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = ratio[part]
-            yield SegmentSignal(time[part], _signed(raw, sign if signed else 1.0), raw, np.nan)
+            values = _signed(raw, sign if signed else 1.0)
+            yield SegmentSignal(part, time[part], values, raw, np.nan)
     else:
         raise AnalysisError(
             f"{name_of(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
@@ -305,16 +317,41 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
     return words
 
 
-def _instrument(examined: list[Examined | str], speed: np.ndarray) -> list[str]:
-    """Name what is the instrument's: lines of the mains, and lines that ignore the speed."""
+def _beside_rig(
+    signal: SegmentSignal, motion: RigMotion | None
+) -> tuple[np.ndarray, RigWave | None]:
+    """Take what repeats with each turn or stroke of the rig out of a segment's friction."""
+    if motion is None:
+        return signal.values, None
+    good = np.isfinite(signal.values)
+    angle = motion.angle(signal.time, signal.part)
+    if good.all():
+        wave = rig_wave(signal.values, angle)
+        return (signal.values if wave is None else signal.values - wave.signal), wave
+    wave = rig_wave(signal.values[good], angle[good])
+    values = signal.values.copy()
+    if wave is not None:
+        values[good] -= wave.signal
+    return values, wave
+
+
+def _instrument(
+    examined: list[Examined | str],
+    speed: np.ndarray,
+    waves: list[RigWave | None],
+    motion: RigMotion | None,
+) -> list[str]:
+    """Name what is the instrument's: the mains, its turns, and lines that ignore the speed."""
     kind = np.array([class_of(e) for e in examined], dtype=object)
     own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in examined])
     texts = []
-    for e, rings in zip(examined, ringing(kind, own, speed), strict=True):
+    for e, wave, rings in zip(examined, waves, ringing(kind, own, speed), strict=True):
         if isinstance(e, str):
             texts.append("")
             continue
         names = [f"mains at {line.name}" for line in e.oscillation.mains]
+        if wave is not None and motion is not None:
+            names.append(wave.words(motion.what))
         if rings:
             names.append(f"resonance at {e.oscillation.frequency:.4g} Hz")
         texts.append("; ".join(names))

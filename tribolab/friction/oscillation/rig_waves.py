@@ -1,0 +1,181 @@
+"""What repeats with each turn or stroke of a rig: its run-out, not stick-slip of the contact.
+
+Notes
+-----
+A disc that runs out, or whose track differs from place to place, moves the friction at whole
+multiples of its turns. Where to look is known, as of the mains: at the rig's own angle. A speed
+that is some per cent off would lose step with the disc over many turns, so the waves are fitted
+to a few turns at a time. They are the rig's where they stand out of what lies beside them and go
+on from one piece to the next in step; stick-slip whose period is a turn by chance does not.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from tribolab.friction.run_out import turned
+from tribolab.pieces import pieces
+
+_TURNS = 8.0  # that one fit spans
+_FEWEST = 3.0  # turns: of fewer, a wander is not told from what repeats
+_FIRST = 3  # orders that may stand alone; a scratch or a dent shows higher ones beside them
+_ORDERS = 8
+_SAMPLED = 32  # blocks in a turn that tell the waves
+_BESIDE = (1.0, 1.5, 2.0)  # spectral widths from a line, at which its surroundings are looked at
+_CHANCE = 1e-3  # that noise shows as much at one of the orders
+_TALLER = 2.0  # times its surroundings
+_IN_STEP = 0.5  # coherence from piece to piece
+_LATE = 0.02  # of a turn for each turn, by which the stated speed may be off
+REPEATS = "repeats"  # the word by which what repeats is known among what is the instrument's
+_TIMES = {1: "once", 2: "twice"}
+
+
+class RigWave(NamedTuple):
+    """What repeats with a rig: its values (time), its swing, and how often in a turn or cycle."""
+
+    signal: np.ndarray
+    swing: float
+    orders: tuple[int, ...]
+
+    def words(self, what: str) -> str:
+        """Say how often it repeats in what, e.g. "turn".
+
+        Examples
+        --------
+        >>> RigWave(np.zeros(0), 0.1, (1, 2)).words("turn")
+        'run-out: repeats once and twice a turn'
+        """
+        often = [_TIMES.get(order, f"{order} times") for order in self.orders]
+        listed = ", ".join(often[:-1]) + " and " + often[-1] if often[1:] else often[0]
+        kind = "run-out" if what == "turn" else "the strokes"
+        return f"{kind}: {REPEATS} {listed} a {what}"
+
+
+class RigMotion(NamedTuple):
+    """How fast a rig turns [rad/s] (time), or goes to and fro; and what its period is called."""
+
+    rate: np.ndarray | float
+    what: str
+
+    def angle(self, time: np.ndarray, part: slice) -> np.ndarray:
+        """Angle [rad] of the samples of a part at some times [s]."""
+        if isinstance(self.rate, float):
+            return self.rate * (time - time[:1])
+        return turned(time, self.rate[part])
+
+
+def motion_of(run: xr.Dataset) -> RigMotion | None:
+    """Return how a rig turns, or goes to and fro in strokes that are not told apart.
+
+    Parameters
+    ----------
+    run
+        With ``rotation_speed``, or a rotation speed or frequency of strokes that its file states.
+    """
+    if "rotation_speed" in run:
+        return RigMotion(run["rotation_speed"].values, "turn")
+    if stated := run.attrs.get("rotation_speed_rad_s"):
+        return RigMotion(float(stated), "turn")
+    if strokes := run.attrs.get("stroke_frequency_Hz"):
+        return RigMotion(2 * np.pi * float(strokes), "cycle")
+    return None
+
+
+def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
+    """Find what repeats with each turn of a rig in a record; None where nothing stands out.
+
+    Parameters
+    ----------
+    values, angle
+        Any unit, and [rad] (time).
+
+    Examples
+    --------
+    >>> angle = np.arange(2000) * 0.05
+    >>> noise = np.random.default_rng(1).standard_normal(2000)
+    >>> wave = rig_wave(np.sin(angle) + 0.1 * noise, angle)
+    >>> wave.orders, round(wave.swing, 1)
+    ((1,), 2.0)
+    >>> rig_wave(np.sin(1.6 * angle) + 0.1 * noise, angle) is None
+    True
+    """
+    n = values.size
+    if n < 16 or not np.isfinite(angle[-1]) or not np.isfinite(values.sum()):
+        return None
+    turns = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
+    orders = np.arange(1, min(_ORDERS, int(0.4 * n / max(turns, 1e-9))) + 1)
+    if turns < _FEWEST or not orders.size:
+        return None
+    count = max(1, round(turns / _TURNS))
+    turn = np.linspace(angle[0], angle[-1], count + 1)
+    edges = np.searchsorted(np.sign(turn[-1] - turn[0]) * angle, np.sign(turn[-1] - turn[0]) * turn)
+    edges[-1] = n
+    size = max(1, int(n / turns / _SAMPLED))
+    if np.diff(edges).min() < 3 * size * (2 * orders.size + 2):
+        return None
+    fits = [_fit(values[a:b], angle[a:b], size, orders, turns / count) for a, b in _ranges(edges)]
+    believed, real = _believed(orders, fits, turns / count)
+    if not believed.size:
+        return None
+    signal = np.zeros(n)
+    for (a, b), fit in zip(_ranges(edges), fits, strict=True):
+        for first, last in pieces(a, b):
+            turning = np.exp(1j * np.outer(orders[believed], angle[first:last]))
+            signal[first:last] = (fit.size[believed] @ turning).real
+    low, high = np.quantile(signal[:: max(1, n // 100_000)], [0.005, 0.995])
+    return RigWave(signal, real * float(high - low), tuple(int(orders[k]) for k in believed))
+
+
+class _Fit(NamedTuple):
+    """Complex amplitude of each order, and mean power beside each, of a piece (order)."""
+
+    size: np.ndarray
+    beside: np.ndarray
+    freedom: np.ndarray
+
+
+def _ranges(edges: np.ndarray) -> list[tuple[int, int]]:
+    return list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
+
+
+def _fit(
+    values: np.ndarray, angle: np.ndarray, size: int, orders: np.ndarray, turns: float
+) -> _Fit:
+    """Fit a straight line and the waves to a piece, and look at what is left beside them."""
+    count = values.size // size
+    y = values[: count * size].reshape(count, size).mean(axis=1)
+    at = angle[: count * size].reshape(count, size).mean(axis=1)
+    columns = [f(k * at) for k in orders for f in (np.cos, np.sin)]
+    design = np.stack([np.ones(count), np.linspace(-1, 1, count), *columns], axis=1)
+    told, *_ = np.linalg.lstsq(design, y, rcond=None)
+    rest = y - design @ told
+    amplitude = told[2::2] - 1j * told[3::2]
+    beside, freedom = np.zeros(orders.size), np.zeros(orders.size)
+    for k, order in enumerate(orders):
+        near = order + np.array([sign * off / turns for off in _BESIDE for sign in (-1, 1)])
+        near = near[near > 1 / turns]
+        power = abs(2 / count * np.exp(-1j * np.outer(near, at)) @ rest) ** 2
+        beside[k], freedom[k] = power.mean(), 2 * near.size
+    return _Fit(amplitude, beside, freedom)
+
+
+def _believed(orders: np.ndarray, fits: list[_Fit], turns: float) -> tuple[np.ndarray, float]:
+    """Places of the orders that stand out and stay in step, and the part that noise is not."""
+    size = np.array([fit.size for fit in fits])
+    power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
+    ratio = power / np.maximum(beside, 1e-300)
+    chance = special.fdtrc(2 * len(fits), len(fits) * fits[0].freedom, ratio)
+    clear = (chance < _CHANCE) & (ratio > _TALLER)
+    if len(fits) > 2:
+        step = (size[1:] * size[:-1].conj()).sum(axis=0)
+        whole = np.sqrt((abs(size[1:]) ** 2).sum(axis=0) * (abs(size[:-1]) ** 2).sum(axis=0))
+        late = 2 * np.pi * _LATE * turns * orders
+        clear &= (abs(step) > _IN_STEP * whole) & (abs(np.angle(step)) < late)
+    if not clear[orders <= _FIRST].any():
+        return np.zeros(0, int), 0.0
+    noise = beside[clear].sum() / power[clear].sum()
+    return np.flatnonzero(clear), float(np.sqrt(max(0.0, 1 - noise)))
