@@ -13,9 +13,9 @@ import pytest
 import xarray as xr
 
 import tribolab
-from tribolab.app.demo import DemoComparison
 from tribolab.app.terminal import truth_lines
 from tribolab.app.truth.friction import TruthComparison
+from tribolab.app.truth.known import DemoComparison
 from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.campaign.models.analysis import beside
 from tribolab.campaign.pipeline import process

@@ -22,7 +22,7 @@ from tribolab.words import Count
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tribolab.app.demo import DemoComparison
+    from tribolab.app.truth.known import DemoComparison
 
 _PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.curves import Curves
 from tribolab.campaign.engine.pool import WorkerDied
-from tribolab.campaign.engine.stage import Progress, perform
+from tribolab.campaign.engine.stage import Progress, begun, perform
 from tribolab.campaign.models.stage import Models
 from tribolab.campaign.runs.kept import keep_runs
 from tribolab.campaign.runs.stage import RunCame, Runs
@@ -80,8 +80,9 @@ def process(
     _refuse_if_all_died(came)
     came = keep_runs(campaign, store, _with_lent_zeros(runs, came, store, executor))
     outcomes = tuple(run.outcome for run in came)
-    surfaces = perform(Surfaces(campaign, outcomes, store), executor, progress)
-    curves = perform(Curves(came, store), executor, progress)
+    surfacing = begun(Surfaces(campaign, outcomes, store), executor, progress)
+    combining = begun(Curves(came, store), executor, progress)  # while the last surfaces are done
+    surfaces, curves = surfacing(), combining()
     models = perform(Models(campaign, curves, surfaces, store), executor, progress)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
         part.unlink()

@@ -35,10 +35,11 @@ def demo(
     """
     with reported(debug):
         from tribolab.app.demo import run_demo
-        from tribolab.app.terminal import truth_lines
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
+        from tribolab.app.terminal import truth_lines  # after workers have begun
+
         code = show_outcome(outcome, debug)
         for line in truth_lines(compared, outcome):
             say(line)
