@@ -24,6 +24,7 @@ def report(runs, findings=(), **fit):
         for v, mu in ((0.999e-6, 1.1), (1e-4, 1.05), (1e-2, 0.2))
     ]
     labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": 31.0}
+    labels["load_from"] = "stated"
     curve = labels | {"name": "c", "runs": ["a"], "points": points}
     model = {"curve": "c", "status": "done", "reason": "", "fit": fit or None}
     mode = {"curve": "c", "text": "steady sliding, no stick-slip at any speed"}

@@ -74,6 +74,22 @@ def force_text(force: float | None) -> str:
     return f"{number(force)} N"
 
 
+LOAD_STATED, LOAD_MEASURED, LOAD_VARIES = "stated", "measured", "varies"
+
+
+def load_text(load: float | None, load_from: str) -> str:
+    """Return the load [N] of a run or curve, with the word that it was not stated but measured.
+
+    Examples
+    --------
+    >>> load_text(31.0, LOAD_STATED), load_text(15.0, LOAD_MEASURED), load_text(None, LOAD_VARIES)
+    ('31 N', '15 N measured', 'several loads')
+    """
+    if load is None:
+        return "several loads" if load_from == LOAD_VARIES else force_text(load)
+    return f"{force_text(load)} measured" if load_from == LOAD_MEASURED else force_text(load)
+
+
 def span(values: Iterable[float | None], unit: str = "") -> str:
     """Return smallest to largest, once if they look the same.
 

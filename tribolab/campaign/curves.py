@@ -21,7 +21,7 @@ from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.wording import plain_value
 from tribolab.stamping import stamp
-from tribolab.words import explain
+from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -100,6 +100,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             surface=surface,
             medium=medium,
             normal_force=load,
+            load_from=_load_from(came.outcome for came in used),
             data_file=f"data/{name}.nc",
             run_names=tuple(came.outcome.name for came in used),
         )
@@ -215,6 +216,12 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     wanted = ("friction", FRICTION_AS_FOUND)
     parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
     return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])[0]
+
+
+def _load_from(runs: Iterable[RunOutcome]) -> str:
+    """Return where the load of a curve is from: stated of one run, it is that of all."""
+    known = {run.load_from for run in runs}
+    return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
 
 
 def _condition(run: RunOutcome) -> Condition:

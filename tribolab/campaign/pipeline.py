@@ -13,6 +13,7 @@ from tribolab.campaign.engine.pool import WorkerDied
 from tribolab.campaign.engine.stage import Progress, begun, perform
 from tribolab.campaign.models.stage import Models
 from tribolab.campaign.runs.kept import keep_runs
+from tribolab.campaign.runs.repeats import with_loads_alike
 from tribolab.campaign.runs.stage import RunCame, Runs
 from tribolab.campaign.runs.zeros import to_lend
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
@@ -79,6 +80,7 @@ def process(
     came = perform(Runs(runs, store), executor, progress)
     _refuse_if_all_died(came)
     came = keep_runs(campaign, store, _with_lent_zeros(runs, came, store, executor))
+    came = with_loads_alike(store, came)
     outcomes = tuple(run.outcome for run in came)
     surfacing = begun(Surfaces(campaign, outcomes, store), executor, progress)
     combining = begun(Curves(came, store), executor, progress)  # while the last surfaces are done

@@ -73,7 +73,13 @@ class RunOutcome(PartOutcome):
     surface, medium
         As the campaign file calls them; "" where it says nothing.
     normal_force
-        Set-point [N] of the campaign file, else of the raw file, else None.
+        Set-point [N] of the campaign file, else of the raw file; else the mean of what was
+        measured, the same for repeats; None where neither is known.
+    load_from
+        Where that is from: `LOAD_STATED`, `LOAD_MEASURED`, `LOAD_VARIES` where the run has several
+        loads, "" where nothing tells.
+    measured_load
+        Mean load [N] while the run slides, where none is stated.
     segments
         Number of segments found.
     quality
@@ -93,6 +99,8 @@ class RunOutcome(PartOutcome):
     quality: str = ""
     segments_rejected: int = 0
     quality_as_found: str = ""
+    load_from: str = ""
+    measured_load: float | None = None
 
     @property
     def in_curves(self) -> bool:
@@ -111,8 +119,8 @@ class RunOutcome(PartOutcome):
 class CurveOutcome(HasStatus):
     """One measured curve: the runs of one surface, medium and load, taken together.
 
-    `status` and `reason` are as for a run; `data_file` is "" for a curve that failed. `crash` is
-    the traceback of an error that nobody raised on purpose, else "".
+    `status`, `reason` and `load_from` are as for a run; `data_file` is "" for a curve that failed.
+    `crash` is the traceback of an error that nobody raised on purpose, else "".
     """
 
     name: str
@@ -124,6 +132,7 @@ class CurveOutcome(HasStatus):
     status: str = "done"
     reason: str = ""
     crash: str = ""
+    load_from: str = ""
 
 
 Cell = float | int | str | bool | None

@@ -15,6 +15,7 @@ from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
 from tribolab.friction.decisions.decision import REJECT, Decision
 from tribolab.records.parts import RunOutcome
 from tribolab.records.run_record import DecisionRow, RunRecord
+from tribolab.words import LOAD_STATED
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -89,6 +90,8 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
         surface=entry.surface or "",
         medium=entry.medium or "",
         normal_force=run.normal_force if entry.normal_force is None else entry.normal_force,
+        load_from=run.load_from if entry.normal_force is None else LOAD_STATED,
+        measured_load=run.measured_load if entry.normal_force is None else None,
         reused=False,
         kept=kept_text(path, f"the raw file cannot be read now ({why})"),
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
+from tribolab.campaign.runs.loads import load_of
 from tribolab.campaign.runs.reading import Earlier, mark_of
 from tribolab.campaign.runs.sources import source_of, sources_of_run
 from tribolab.campaign.runs.zeros import zero_of
@@ -23,7 +24,7 @@ from tribolab.records.run_record import RunFacts, RunRecord
 from tribolab.records.traces import page_trace, trace_size
 from tribolab.room import tidy_up
 from tribolab.untyped import Json
-from tribolab.words import explain
+from tribolab.words import LOAD_STATED, explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -230,15 +231,15 @@ def process_run(task: RunTask) -> RunAnswer:
         sources = tuple(map(source_of, run.files, run.labels))
         facts = RunFacts(decisions=not_applied(run.decisions))
         return RunAnswer(RunRecord(outcome, sources, facts=facts))
-    load = run.normal_force
-    if load is None:
-        load = signals.attrs.get("set_normal_force_N")
+    load = load_of(run.normal_force, signals, friction)
     outcome = RunOutcome(
         name=run.name,
         files=run.labels,
         surface=run.surface,
         medium=run.medium,
-        normal_force=None if load is None else float(load),
+        normal_force=load.normal_force,
+        load_from=load.load_from,
+        measured_load=load.measured_load,
         status="done",
         data_file=task.data_file,
         seconds=time.monotonic() - began,
@@ -284,6 +285,7 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
         surface=run.surface,
         medium=run.medium,
         normal_force=run.normal_force,
+        load_from="" if run.normal_force is None else LOAD_STATED,
         status="failed",
         reason=reason,
         error=error,

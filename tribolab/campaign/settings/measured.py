@@ -113,7 +113,8 @@ class RunEntry(Table):
     medium: Text | None = None
     """Name of a [medium.*] table."""
     normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
-    """Set-point of the normal force; it is the load where the files record none."""
+    """Set-point of the normal force; it is the load where the files record none, and left out, the
+    measured load tells which runs are under the same."""
     sliding_speed: Annotated[float, PositiveSi("m/s", "6 mm/min")] | None = None
     """Set-point of the speed; it is the sliding speed where the files record none."""
     clock_shift: Annotated[float, Si("s", "0.42 s")] | None = None

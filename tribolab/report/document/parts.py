@@ -35,6 +35,7 @@ def run_document(record: RunRecord) -> Json:
         surface=run.surface,
         medium=run.medium,
         nominal_normal_force_N=run.normal_force,
+        load_from=run.load_from,
         files=run.files,
         segments_found=len(record.facts.segments),
         segments_rejected=run.segments_rejected,
@@ -58,6 +59,7 @@ def reported_curve(curve: CurveRecord) -> ReportedCurve:
         curve.points_as_found,
         curve.budget,
         curve.uncertainty_says,
+        outcome.load_from,
     )
 
 

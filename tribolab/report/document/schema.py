@@ -25,6 +25,7 @@ from tribolab.records.wording import UNITS
 from tribolab.report.document.models import BESIDE_FIT, SENSITIVE
 from tribolab.report.tables import SEVERITIES
 from tribolab.untyped import Json
+from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
 
 SCHEMA_FILE = "report.schema.json"
 _DESCRIPTION = (
@@ -50,7 +51,14 @@ _ADHESION = "a row of tables/adhesion.csv: in one medium, at one load"
 
 Seconds = Annotated[float, Field(ge=0)]
 Status = Annotated[str, one_of("done", "failed", "skipped")]
-Load = Annotated[float | None, means("set-point of the normal force")]
+Load = Annotated[float | None, means("normal force: its set-point, else what was measured")]
+LoadFrom = Annotated[
+    str,
+    one_of(
+        *("", LOAD_STATED, LOAD_MEASURED, LOAD_VARIES),
+        meaning="where the nominal normal force is from; varies where a run has several loads",
+    ),
+]
 RoughnessRow = Annotated[Row, Columns(ROUGHNESS, row=_ROUGHNESS)]
 ContactRow = Annotated[Row, Columns(CONTACT, row=_CONTACT)]
 AdhesionRow = Annotated[Row, Columns(ADHESION, texts=("medium",), row=_ADHESION)]
@@ -93,6 +101,7 @@ class _RunHead(ReportedPart):
     surface: str
     medium: str
     nominal_normal_force_N: Load
+    load_from: LoadFrom
     files: tuple[str, ...]
     segments_found: Natural
     segments_rejected: Annotated[Natural, means("how many of them a person rejected")]
@@ -126,6 +135,7 @@ class ReportedCurve:
     uncertainty_says: Annotated[
         str, means("what the points' uncertainty does not hold; empty where it holds all")
     ]
+    load_from: LoadFrom
 
 
 @dataclass(frozen=True, kw_only=True)

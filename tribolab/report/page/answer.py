@@ -9,7 +9,7 @@ from typing import Any
 from tribolab.records.judgement import check_words, is_bad, status_word, why
 from tribolab.report.live.curves import system_name
 from tribolab.report.page.in_words import friction_in_words, model_in_words, sentence
-from tribolab.words import force_text, many
+from tribolab.words import force_text, load_text, many
 
 _GRAVE = ("fail", "error", "suspect")
 _MOST_FINDINGS = 2  # on a card; all of them stand among the findings
@@ -18,10 +18,14 @@ _LONGEST = 160  # characters of a finding on a card
 
 @dataclass(frozen=True)
 class AtLoad:
-    """What was found at one load [N]: sentences, each about one thing."""
+    """What was found at one load [N]: sentences, each about one thing.
+
+    `text` is what the switch of loads calls it, `title` says where the load is from, too.
+    """
 
     load: float | None
     text: str
+    title: str
     sentences: tuple[str, ...]
 
 
@@ -101,7 +105,8 @@ def _at_load(document: Mapping[str, Any], curve: Mapping[str, Any]) -> AtLoad:
         sentences += model_in_words(model["fit"])
     elif model is not None and model["status"] != "skipped":
         sentences.append(sentence(f"no model: {model['reason'] or 'see the findings'}"))
-    return AtLoad(load, force_text(load), tuple(sentences))
+    title = load_text(load, curve["load_from"])
+    return AtLoad(load, force_text(load), title, tuple(sentences))
 
 
 def _thin(

@@ -167,11 +167,14 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
     >>> conditions(of)
     'Sb-R, dry, at 31 N and 91 N'
     """
-    grouped: dict[str, list[str]] = {}
+    grouped: dict[str, list[float | None]] = {}
     for curve in of:
         loads = grouped.setdefault(system_name(curve["surface"], curve["medium"]), [])
-        loads.append(force_text(curve["nominal_normal_force_N"]))
-    return "; ".join(f"{name}, at {listed(loads)}" for name, loads in grouped.items())
+        loads.append(curve["nominal_normal_force_N"])
+    return "; ".join(
+        name if loads == [None] else f"{name}, at {listed(list(map(force_text, loads)))}"
+        for name, loads in grouped.items()
+    )
 
 
 def oscillation_text(mode: Mapping[str, Any]) -> str:

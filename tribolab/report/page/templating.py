@@ -156,6 +156,7 @@ def environment(folder: Path) -> jinja2.Environment:
     jinja.globals |= {
         "with_error": wording.with_error,
         "span": words.span,
+        "load_text": words.load_text,
         "judge": judgement.judge,
         "trend_texts": judgement.trend_texts,
         "stress_interval": stress_interval,

@@ -1,0 +1,90 @@
+"""The load of a run that states none is the measured one, the same for repeats."""
+
+import numpy as np
+import pytest
+from dialects import dialect_of
+
+from tribolab.campaign.pipeline import process
+from tribolab.campaign.settings.load import load_campaign
+from tribolab.words import force_text, load_text
+
+DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N", sliding_velocity="v")
+CAMPAIGN = """
+[campaign]
+name = "Loads"
+[[surface]]
+name = "steel"
+[medium.oil]
+[[run]]
+files = "m*.csv"
+surface = "steel"
+medium = "oil"
+instrument = "plain.toml"
+"""
+STATED = """
+[[run]]
+files = "s*.csv"
+surface = "steel"
+medium = "oil"
+instrument = "plain.toml"
+normal_force = "15 N"
+"""
+
+
+def rows_of(loads, seed):
+    rng = np.random.default_rng(seed)
+    steps = np.repeat(loads, 400)
+    force, load = np.outer([0.2, 1.0], steps) + 0.01 * rng.standard_normal((2, steps.size))
+    speed = np.repeat(np.arange(1, len(loads) + 1), 400)
+    signals = zip(np.arange(steps.size) / 20, force, load, speed, strict=True)
+    return "t [s],F [N],N [N],v [mm/s]\n" + "".join(
+        f"{t:.3f},{f:.4f},{n:.4f},{v}\n" for t, f, n, v in signals
+    )
+
+
+def analysed(folder, campaign=CAMPAIGN, previous=None, **files):
+    raw = folder / "raw"
+    raw.mkdir(exist_ok=True, parents=True)
+    for seed, (name, loads) in enumerate(files.items()):
+        (raw / f"{name}.csv").write_text(rows_of(loads, seed))
+    (folder / "plain.toml").write_text(DIALECT)
+    (folder / "campaign.toml").write_text(campaign)
+    results = folder / f"results{len(list(folder.glob('results*')))}"
+    results.mkdir()
+    return process(load_campaign(folder), results, previous=previous)
+
+
+def loads(outcome):
+    return {run.name: (run.normal_force, run.load_from) for run in outcome.runs}
+
+
+def test_repeats_have_one_measured_load_and_another_load_is_another_curve(tmp_path):
+    outcome = analysed(tmp_path, m1=[14.9, 14.95], m2=[15.2, 15.2], m3=[30.1, 29.9])
+    (light, low), (again, _), (heavy, high) = loads(outcome).values()
+    assert light == again == pytest.approx(15.1, abs=0.05) and low == high == "measured"
+    assert heavy == pytest.approx(30, abs=0.1)
+    assert [(c.normal_force, c.load_from, len(c.run_names)) for c in outcome.curves] == [
+        (light, "measured", 2),
+        (heavy, "measured", 1),
+    ]
+    # as results that are taken over, and with a repeat more
+    outcome.store.save()
+    (tmp_path / "raw" / "m4.csv").write_text(rows_of([15.6, 15.6], 9))
+    more = analysed(tmp_path, previous=outcome.folder)
+    assert [run.reused for run in more.runs] == [True, True, True, False]
+    assert len({run.normal_force for run in more.runs}) == 2
+    kept = {run.name: run.normal_force for run in more.store.outcomes("run", type(more.runs[0]))}
+    assert kept == {run.name: run.normal_force for run in more.runs}
+
+
+def test_a_measured_load_joins_that_which_a_repeat_states(tmp_path):
+    outcome = analysed(tmp_path, CAMPAIGN + STATED, m1=[14.9, 14.95], s1=[15.2, 15.2])
+    assert loads(outcome) == {"m1": (15.0, "measured"), "s1": (15.0, "stated")}
+    [curve] = outcome.curves
+    assert (curve.normal_force, curve.load_from) == (15.0, "stated")
+
+
+def test_a_run_under_several_loads_has_none_of_its_own(tmp_path):
+    outcome = analysed(tmp_path, m1=[10.0, 20.0])
+    assert loads(outcome) == {"m1": (None, "varies")}
+    assert load_text(*loads(outcome)["m1"]) == "several loads" != force_text(None)
