@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 from real_runs import mitutoyo as workbook
 
+from tribolab.app.file_info import file_lines
 from tribolab.errors import AnalysisError, UnitError
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
@@ -134,3 +135,16 @@ def test_what_has_no_roughness_says_why(call, words):
 def test_a_cutoff_without_a_unit_is_refused():
     with pytest.raises(UnitError, match="lambda_c"):
         roughness_parameters(wave(1e-4), lambda_c="0.8")
+
+
+def test_info_tells_the_roughness_with_the_cut_off_and_with_none(tmp_path):
+    x = 1e-6 * np.arange(8000)
+    short, long = (a * np.sin(2 * np.pi * x / s) for a, s in ((1e-6, 0.05e-3), (2e-6, 2e-3)))
+    file = tmp_path / "profile.csv"
+    rows = [f"{1e3 * at:.4f},{1e6 * z:.6f}" for at, z in zip(x, short + long, strict=True)]
+    file.write_text("x [mm],z [um]\n" + "\n".join(rows))
+    said = {line.split()[0]: line for line in file_lines(file)[1:]}
+    left = 1 - transmission(2e-3, 0.8e-3)  # of the long wave, whose amplitude is twice
+    assert float(said["Rq"].split()[1]) == pytest.approx(np.sqrt((1 + 4 * left**2) / 2), rel=0.01)
+    assert "longer than 0.8 mm" in said["Rq"]
+    assert float(said["Pq"].split()[1]) == pytest.approx(np.sqrt((1 + 4) / 2), rel=0.03)

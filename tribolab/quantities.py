@@ -140,6 +140,7 @@ _ROWS = [
     ("origin", "", "1", "where the value comes from"),
     ("Ra", "Ra", "m", "arithmetic mean deviation of the profile"),
     ("Rq", "Rq", "m", "root-mean-square deviation of the profile"),
+    ("Pq", "Pq", "m", "root-mean-square deviation of the profile, no cut-off applied"),
     ("Rz", "Rz", "m", "greatest height of the profile, mean over sampling lengths"),
     ("Rsk", "Rsk", "1", "skewness of the profile"),
     ("Rku", "Rku", "1", "kurtosis of the profile"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import holds_run, read_run
-from tribolab.errors import ReadError, TribolabError, shown, told
+from tribolab.errors import AnalysisError, ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+_LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 
@@ -141,7 +142,30 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
         lines.append(f"  {Count(missing):point|points} without a height")
-    return lines + _attribute_lines(scan.attrs)
+    return lines + _roughness_lines(scan) + _attribute_lines(scan.attrs)
+
+
+def _roughness_lines(scan: xr.Dataset) -> list[str]:
+    """Say how rough it is: with the cut-off that instruments apply, and with none."""
+    from tribolab.surface.form import remove_form
+    from tribolab.surface.roughness import primary_roughness, roughness_parameters
+
+    if scan["height"].size > _LARGEST:
+        return []
+    try:
+        flat = remove_form(scan, "polynomial" if scan.sizes.get("y", 1) > 1 else "circle")
+        iso = roughness_parameters(flat)
+    except AnalysisError:  # a check of the scan says why
+        return []
+    told = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
+    all_waves = 1e6 * float(primary_roughness(flat).mean())
+    cut = iso.attrs.get("lambda_c_m")
+    by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
+    filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
+    return [
+        f"  Rq      {told['Rq']}, Ra {told['Ra']}: form taken off, {filtered} (ISO 4287)",
+        f"  Pq      {all_waves:.3g} um: form taken off, waves of every length",
+    ]
 
 
 def _results_lines(path: Path) -> list[str]:

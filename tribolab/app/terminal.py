@@ -14,8 +14,8 @@ from rich.table import Table
 from tribolab.app.ranges import range_of
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
-from tribolab.records.part_records import CurveRecord
-from tribolab.records.parts import CurveOutcome, Row, RunOutcome
+from tribolab.records.part_records import CurveRecord, SurfaceRecord
+from tribolab.records.parts import CurveOutcome, Row, RunOutcome, number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.words import Count, load_text
 
@@ -143,6 +143,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
         lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
+        lines += _roughness(outcome)
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     if _is_uncalibrated(outcome):
         lines.append(
@@ -195,6 +196,24 @@ def _computed(outcome: Outcome) -> str:
     words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
     parts = {part for surface in outcome.surfaces for part in surface.parts}
     return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
+
+
+def _roughness(outcome: Outcome) -> list[str]:
+    """Say the roughness of surfaces as drawings and instruments state it, with its cut-off."""
+    told: dict[str, list[str]] = {}
+    for surface in outcome.surfaces:
+        entry = outcome.store.get("surface", surface.name, SurfaceRecord)
+        row = entry.record.rows.roughness if entry and entry.record.rows else None
+        if not row or (rq := number_of(row, "Rq_m")) is None:
+            continue
+        cut = number_of(row, "lambda_c_m")
+        by = "no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm"
+        told.setdefault(by, []).append(f"{surface.name} {1e6 * rq:.3g} µm")
+    return [
+        f"Rq ({by}): {', '.join(names[:_HANDFUL])}"
+        + (f" and {len(names) - _HANDFUL} more" if len(names) > _HANDFUL else "")
+        for by, names in told.items()
+    ]
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:

@@ -23,6 +23,7 @@ _ISO = ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq")
 ROUGHNESS = [
     "scans",
     *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
+    "Pq_m",
     *(column(f"{name}_gap_error") for name in _ISO),
     *(f"rms_roughness{end}_m" for end in _BAND),
     *(f"rms_slope{end}" for end in _BAND),
@@ -84,6 +85,7 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
         rough[column(name)] = float(moments[name].mean())
         if (error := f"{name}_gap_error") in moments:
             rough[column(error)] = _error_of_mean(moments[error])
+    rough["Pq_m"] = float(moments["Pq"].mean()) if "Pq" in moments else None
     for name in ("rms_roughness", "rms_slope"):
         for end in _BAND:
             if name + end in moments:

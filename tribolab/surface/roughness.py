@@ -104,6 +104,33 @@ def roughness_parameters(
     )
 
 
+def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
+    """Root mean square of all heights of each profile, of waves of every length: Pq.
+
+    Parameters
+    ----------
+    scans
+        ``height`` [m] (..., x) without form; missing heights are left out.
+
+    Returns
+    -------
+    xarray.DataArray
+        Pq [m], with the dims of the heights but x: that of the profile as it is without form. Rq
+        leaves out waves longer than the cut-off and is smaller.
+
+    References
+    ----------
+    .. [1] ISO 21920-2:2021 (primary profile).
+
+    Examples
+    --------
+    >>> wave = xr.Dataset({"height": ("x", [1e-6, -1e-6, 1e-6, -1e-6])}, {"x": np.arange(4.0)})
+    >>> float(primary_roughness(wave))
+    1e-06
+    """
+    return stamp(scans.height.std("x").rename("Pq").to_dataset())["Pq"]
+
+
 class _Evaluation(NamedTuple):
     """How roughness is evaluated: pitch, cut-offs [m], who filtered, over which lengths."""
 

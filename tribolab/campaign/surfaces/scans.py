@@ -18,7 +18,7 @@ from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.moments import band, rms_roughness, rms_slope
 from tribolab.surface.psd import psd_1d, psd_2d
-from tribolab.surface.roughness import roughness_parameters, spectral_roughness
+from tribolab.surface.roughness import primary_roughness, roughness_parameters, spectral_roughness
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -204,7 +204,8 @@ def spectra_of_scans(
     part = band(psd, float(seen[0]), float(seen[-1]))
     share = (rms_slope(part) / float(whole.rms_slope)) ** 2
     groups["psd"] = psd
-    groups["roughness"] = roughness_parameters(flat).merge(whole, combine_attrs="drop_conflicts")
+    iso = roughness_parameters(flat).assign(Pq=primary_roughness(flat))
+    groups["roughness"] = iso.merge(whole, combine_attrs="drop_conflicts")
     groups["roughness"].attrs |= {
         "measured_rms_roughness_m": rms_roughness(part),
         "measured_rms_slope": rms_slope(part),

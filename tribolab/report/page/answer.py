@@ -157,6 +157,8 @@ def _why(runs: Sequence[Mapping[str, Any]]) -> str:
         count = len(rejected)
         were = "was" if count == 1 else "were"
         return f"{len(failed)} could not be read and {count} {were} rejected"
+    if not any(run["segments_found"] for run in runs if not is_bad(run)):
+        return f"{which} never {'slides' if len(runs) == 1 else 'slide'} at constant speed"
     return "no run has both a speed and a load"
 
 
